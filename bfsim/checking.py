@@ -89,7 +89,8 @@ def require_comparable(case: Case, path: Path) -> None:
             differences.append(f"{key} {name} {_difference(key, then, now)}")
     if then.differs_in("code", now):
         differences.append(
-            f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)}"
+            f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)} (with the compiler of then on "
+            "the PATH it is the same; limits of --profile gcc-O2, an estimate, need none)"
         )
     if differences:
         raise ConfigError(
@@ -115,6 +116,12 @@ def _recording_differences(then: MeasuredOn, now: MeasuredOn, recording: Path | 
     name = (recording or shipped.RECORDING).name
     if now.recording == then.recording:
         return []
+    size = then.width_px, then.height_px
+    if all(size) and size != (now.width_px, now.height_px):
+        was, has = (f"{each.width_px}x{each.height_px} px" for each in (then, now))
+        return [
+            f"recording {name} must have pictures of {was}, as when the limits were measured, not of {has}"
+        ]
     if now.frames != then.frames:
         has = f"recording {name} must have {then.frames} frames to run, as when the limits were measured, not {now.frames}"
         is_longer = now.frames > then.frames and recording_digest(recording, then.frames) == then.recording

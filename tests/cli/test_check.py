@@ -127,11 +127,13 @@ def test_faster_firmware_passes_and_update_tightens(repository: Path) -> None:
 
 
 def test_what_it_saw_is_a_limit(repository: Path) -> None:
-    """Firmware that finds less is told in which frames."""
+    """Firmware that finds less is told in which frames, with the numbers of the one that is most off; there is nothing to keep."""
     Path("fw_eyes.py").write_text(BLIND)
     result = call(*WHAT, "--baseline", "limits.toml")
     assert result.exit_code == 1
-    assert "results.bright_A is another in frames 0, 1, 2" in result.output
+    assert "results.bright_A, results.bright_B are others in frames 0, 1, 2" in result.output
+    assert re.search(r"results.bright_A in frame \d +== \d+ +\d+ +-\d+", result.output)
+    assert "To keep it" not in result.output
 
 
 def refused(*arguments: object) -> str:
@@ -188,6 +190,19 @@ def test_another_recording_is_told_before_the_first_run(idle_repository: Path) -
     assert "recording drive.mcap has other pictures or time stamps than" in refused(
         "--baseline", "limits.toml"
     )
+
+
+def test_pictures_of_another_size_are_told_by_their_size(idle_repository: Path) -> None:
+    """It is the size that differs, whatever else does; a file that does not have it yet names the pictures."""
+    record(idle_repository / "drive.mcap", 2, width=64, height=32)
+    limits = idle_repository / "limits.toml"
+    told = refused("--baseline", "limits.toml")
+    assert (
+        "drive.mcap must have pictures of 32x16 px, as when the limits were measured, not of 64x32 px" in told
+    )
+    record(idle_repository / "drive.mcap", 3, width=64, height=32)
+    limits.write_text(re.sub(r"(width|height)_px = \d+\n", "", limits.read_text()))
+    assert "has other pictures or time stamps than" in refused("--baseline", "limits.toml")
 
 
 def test_history_has_a_line_a_run_and_draws_the_trend(repository: Path) -> None:
@@ -256,7 +271,9 @@ def test_code_of_another_gcc_is_refused(repository: Path, monkeypatch: pytest.Mo
     was = re.findall(r'\bcode = "(.+?)"', text)[-1]
     Path("limits.toml").write_text(text.replace(was, "GCC 3.0 -O2"))
     monkeypatch.setattr("bfsim.machine.board.Board.run", None)
-    assert f"code was 'GCC 3.0 -O2' when the limits were measured, and is {was!r}" in refused(*what)
+    told = refused(*what)
+    assert f"code was 'GCC 3.0 -O2' when the limits were measured, and is {was!r}" in told
+    assert "limits of --profile gcc-O2, an estimate, need none" in told
 
 
 def test_who_stops_reading_gets_the_files_all_the_same(repository: Path) -> None:

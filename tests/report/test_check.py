@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from bfsim.report.check.baseline import Case, read_baseline
 from bfsim.report.check.cause import difference_of_outcome, explanation
 from bfsim.report.check.judge import judge
 from bfsim.report.check.kept import kept_side
+from bfsim.report.check.outputs import broken_lines, check_json, markdown
 from bfsim.report.check.tables import changes, verdict_line
 from bfsim.report.check.update import loosened, write_cases
 from bfsim.report.result_file import Result, result_of
@@ -140,7 +142,7 @@ def test_a_lost_ball_is_a_failure_however_fast(tmp_path: Path) -> None:
     measured(path, with_results(edge_run(950, 1050), {"edges": 100, "balls": 1}, {"edges": 100, "balls": 1}))
     lost = with_results(edge_run(500, 500), {"edges": 103, "balls": 1}, {"edges": 97, "balls": 0})
     assert broken(hold(lost, path)) == ["results.edges", "results.balls"]
-    assert "results.balls is another in frames 1" in list(explanation(hold(lost, path)))
+    assert "results.balls is another in frame 1" in list(explanation(hold(lost, path)))
     replace_in(path, 'name = "drive"', 'name = "drive"\nresults_tolerance_percent = 3')
     assert broken(hold(lost, path)) == ["results.balls"]
 
@@ -169,6 +171,29 @@ def test_a_lost_ball_is_a_failure_that_says_so(tmp_path: Path) -> None:
         "objects.goal == 1 0",
         "distance_mm.goal == 300 0",
     ]
+
+
+def test_a_result_is_told_of_the_frame_that_is_most_off(tmp_path: Path) -> None:
+    """Not as totals, which may be the same; beside a limit of nothing stands no percentage."""
+    path = tmp_path / "bfsim.toml"
+    measured(path, with_results(edge_run(950, 1050), {"edges": 100, "balls": 0}, {"edges": 100, "balls": 0}))
+    other = with_results(edge_run(950, 1050), {"edges": 97, "balls": 0}, {"edges": 103, "balls": 1})
+    outcome = hold(other, path)
+    assert list(broken_lines(outcome)) == [
+        "results.edges in frame 0 must be == 100, not 97 (-3.00 %)",
+        "results.balls in frame 1 must be == 0, not 1",
+    ]
+    assert json.loads(check_json([outcome]))["runs"][0]["verdicts"][-2]["frame"] == 0
+
+
+def test_a_failure_names_no_command_that_keeps_it(tmp_path: Path) -> None:
+    """The command makes all of what was measured the limits: firmware that is fast because it is blind keeps nothing."""
+    path = tmp_path / "bfsim.toml"
+    measured(path, with_results(edge_run(950, 1050), {"balls": 1}, {"balls": 1}))
+    blind, fast = (with_results(edge_run(500, 500), {"balls": balls}, {"balls": balls}) for balls in (0, 1))
+    assert hold(blind, path).better
+    assert "--update" not in markdown([hold(blind, path)], path)
+    assert "--update" in markdown([hold(fast, path)], path)
 
 
 def test_a_ball_whose_place_is_lost_is_lost(tmp_path: Path) -> None:
@@ -257,6 +282,23 @@ def test_what_is_small_is_kept_together(tmp_path: Path) -> None:
         ("total += row[x]", 5060),
         ("what is too small to be kept", -60),
     ]
+
+
+def test_what_was_too_small_to_be_kept_is_no_reason(tmp_path: Path) -> None:
+    """It has no name: the whole that it is in is told."""
+
+    def run(big: int, small: int) -> RunRecord:
+        lines = (
+            LineCost(line=10, executions=1, issue_cclk=big, stall_cclk={}),
+            LineCost(line=11, executions=1, issue_cclk=small, stall_cclk={}),
+        )
+        return owned(big + small, big=lines[0], small=lines[1])
+
+    path = tmp_path / "bfsim.toml"
+    measured(path, run(100_000, 90))
+    told = " ".join(explanation(hold(run(100_050, 0), path)))
+    assert "what is too small to be kept: -90" in told
+    assert "in it line 10 +50" in told
 
 
 def test_without_limits_measured_what_takes_most_is_told() -> None:

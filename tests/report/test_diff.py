@@ -12,15 +12,18 @@ from hypothesis import strategies as st
 
 from bfsim.errors import ConfigError
 from bfsim.report.diff.alignment import LinePair, aligned
+from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.compare import difference_of
 from bfsim.report.diff.difference import Contribution, Difference, Kind
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.markdown import diff_markdown
-from bfsim.report.diff.sentences import clock, reason, verdict, work
+from bfsim.report.diff.sentences import clock, code, reason, verdict, work
 from bfsim.report.diff.side import Line, Stall
+from bfsim.report.diff.tables import diff_report
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
 from tests.report.records import IDENTITY, cost, frame, run_of
+from tests.report.test_tables import printed
 
 TEXT = ("@kernel\n", "def blur(row):\n", "    left = row[0]\n", "    row[1] = left\n")
 SDRAM = StallReason.SDRAM_PAGE_MISS
@@ -143,6 +146,13 @@ def test_a_loop_of_another_kind_has_not_run_more_often() -> None:
         ("comparison: +1 x 1,000 x 1 cycles", 1000),
         ("set-up of a hardware loop: -10 x 1 cycles", -10),
     ]
+
+
+def test_a_line_of_many_cycles_is_told_in_whole_ones() -> None:
+    """To the cycle, and not as a power of ten."""
+    old, new = (Line(text="", times=1, operations={"": (1, cclk)}) for cclk in (100_000, 100_050))
+    [cause] = line_causes(old, new, {}, {})
+    assert cause.name == "operations: 100,000 → 100,050 cycles x 1"
 
 
 def test_a_buffer_that_moved_is_named_with_both_memories() -> None:
@@ -310,6 +320,81 @@ def test_a_kernel_that_was_renamed_is_the_one_with_its_lines() -> None:
     assert {name: each.cclk for name, each in parts.items()} == {"other": 99, "blur → smooth": 4}
     assert [(each.name, each.cclk) for each in parts["blur → smooth"].parts] == [("left = row[0]", 4)]
     check_sums(found.stages, 103)
+
+
+def test_a_stage_that_was_renamed_is_the_one_with_its_kernels() -> None:
+    """What grew is told, not both of them in full; another stage that came with one kernel of it is not taken for it."""
+
+    def blurs(stage: str, *more: KernelRecord, cclk: int) -> Result:
+        blur, sharpen = (
+            kernel(line(12, 1, cclk), stage=stage),
+            kernel(line(12, 1, 7), name="sharpen", stage=stage),
+        )
+        return run(blur, sharpen, *more, waits=[wait(stage, "core B", StallReason.SEMAPHORE, 5)])
+
+    new = kernel(line(12, 1, 99), stage="Look")
+    found = difference_of(blurs("Blur", cclk=10), blurs("Smooth", new, cclk=14))
+    stages = {each.name: (each.before_cclk, each.after_cclk) for each in found.stages}
+    assert stages["Blur → Smooth"] == (17, 21)
+    assert stages["Look"] == (0, 99)
+    assert stages.keys() <= {"Blur → Smooth", "Look", "waits for the other core and the cameras"}
+    check_sums(found.stages, 103)
+    assert difference_of(blurs("Blur", cclk=10), blurs("Smooth", cclk=10)).cclk == 0
+
+
+def test_stages_of_other_kernels_are_no_renamed_ones() -> None:
+    """Half of the kernels, such as a routine of the library, do not make one of them."""
+    before = run(kernel(line(12, 1, 10)), kernel(line(12, 1, 3), name="divide"))
+    after = run(*(kernel(line(12, 1, 9), name=name, stage="Find") for name in ("divide", "peak")))
+    assert {each.name for each in difference_of(before, after).stages} == {"Blur", "Find"}
+
+
+def test_many_files_are_told_as_the_first_few_and_a_number() -> None:
+    """On the screen and in a comment; the JSON has all."""
+    files = tuple(f"far/{each}.py" for each in range(40))
+    one = run(kernel(line(12, 1, 10)))
+    other = result_of(replace(one.run, identity=replace(IDENTITY, firmware_files=files)), one.seen)
+    found = difference_of(one, other)
+    screen = " ".join(" ".join(printed(diff_report(found, top=5))).split())
+    for text in (screen, diff_markdown(found, top=5)):
+        assert "far/5.py and 34 others" in text
+        assert "far/6.py" not in text
+    assert "far/39.py" in diff_json(found)
+
+
+def test_markdown_has_what_the_screen_has() -> None:
+    """Frames that changed, published numbers, and that the sides have other frames."""
+    before, after = (
+        result_of(
+            replace(
+                each.run, frames=tuple(replace(one, results={"balls": balls}) for one in each.run.frames)
+            ),
+            {},
+        )
+        for balls, each in enumerate((run(kernel(line(12, 1, 10))), run(kernel(line(12, 1, 30)))))
+    )
+    text = diff_markdown(difference_of(before, after), top=5)
+    assert "| 0 | 10 | 30 | +20 |" in text
+    assert "| balls | 0 | 1 |" in text
+    longer = replace(
+        after.run, frames=(*before.run.frames, *run(kernel(line(12, 1, 30)), index=1).run.frames)
+    )
+    assert "without source lines" in diff_markdown(difference_of(before, result_of(longer, {})), top=5)
+
+
+def test_other_code_of_the_same_compiler_is_told_apart_from_edits() -> None:
+    """Where one side was estimated; not where another compiler was asked for."""
+    estimated = "estimated, for bfin-elf-gcc is not on the PATH"
+    one = run(kernel(line(12, 1, 10)))
+    compiled, guessed, asked = (
+        result_of(replace(one.run, identity=replace(IDENTITY, code=words, compiler=compiler)), one.seen)
+        for words, compiler in (("GCC 12.2.0", "gcc-adi"), (estimated, "gcc-adi"), ("", "gcc-O2"))
+    )
+    assert code(difference_of(compiled, guessed)).startswith(
+        f"The code of the kernels went from 'GCC 12.2.0' to {estimated!r}, which makes a part of the difference"
+    )
+    assert code(difference_of(compiled, asked)) == ""
+    assert code(difference_of(compiled, compiled)) == ""
 
 
 costs = st.tuples(st.integers(0, 50), st.integers(0, 10**6), st.integers(0, 10**6))

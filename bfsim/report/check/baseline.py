@@ -54,7 +54,8 @@ class MeasuredOn(_Table):
     """What the limits were measured on: digests (sha256), sizes and versions.
 
     `code` is whose object code kernels ran as, in words: the code itself is another one with each edit of the firmware.
-    It is empty where the compiler is an estimate, and in files that were written before it was kept.
+    It is empty where the compiler is an estimate, and in files that were written before it was kept; so is the size of the
+    pictures, 0, in older ones.
     """
 
     recording: str
@@ -67,6 +68,8 @@ class MeasuredOn(_Table):
     bfsim_version: str
     llvm_version: str
     code: str = ""
+    width_px: int = 0
+    height_px: int = 0
     board_numbers: list[str] = []
     compiler_numbers: list[str] = []
 
@@ -185,6 +188,8 @@ def measured_on(identity: Identity, frames: int) -> MeasuredOn:
         bfsim_version=identity.bfsim_version,
         llvm_version=identity.llvm_version,
         code=identity.code,
+        width_px=identity.width_px,
+        height_px=identity.height_px,
         board_numbers=list(identity.board_numbers),
         compiler_numbers=list(identity.compiler_numbers),
     )

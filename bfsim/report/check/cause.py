@@ -9,7 +9,7 @@ from bfsim.report.check.kept import kept_side, whole_side
 from bfsim.report.diff.compare import difference_between
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.line_causes import line_text
-from bfsim.report.diff.sentences import reason, work
+from bfsim.report.diff.sentences import why
 from bfsim.report.diff.side import Side
 from bfsim.report.diff.tables import cells, frames_compared, labelled, scope, seen_lines, shown
 from bfsim.report.units import milliseconds_of
@@ -35,7 +35,7 @@ def explanation(outcome: Outcome) -> Iterator[str]:
     if difference is None:
         yield from dearest(whole_side(outcome.result), stages_of(outcome))
         return
-    yield from filter(None, (work(difference), reason(difference), *scope(difference)))
+    yield from (*why(difference), *scope(difference))
     rows = shown(difference, CAUSES)
     if rows:
         yield f"Cycles of both cores in {frames_compared(difference)}, before and now:"
@@ -48,12 +48,16 @@ def explanation(outcome: Outcome) -> Iterator[str]:
 
 
 def counts_that_differ(outcome: Outcome) -> Iterator[str]:
-    """Yield in which frames a result is another."""
+    """Yield in which frames results are others, those of the same frames together."""
+    names: dict[tuple[int, ...], list[str]] = {}
     for verdict in outcome.broken:
         if verdict.frames:
-            named = ", ".join(map(str, verdict.frames[:FRAMES_NAMED]))
-            more = ", …" if len(verdict.frames) > FRAMES_NAMED else ""
-            yield f"{verdict.requirement.dotted} is another in frames {named}{more}"
+            names.setdefault(verdict.frames, []).append(verdict.requirement.dotted)
+    for frames, others in names.items():
+        named = ", ".join(map(str, frames[:FRAMES_NAMED]))
+        more = ", …" if len(frames) > FRAMES_NAMED else ""
+        are_others = "are others" if len(others) > 1 else "is another"
+        yield f"{', '.join(others)} {are_others} in frame{'s' if len(frames) > 1 else ''} {named}{more}"
 
 
 def stages_of(outcome: Outcome) -> Collection[str]:

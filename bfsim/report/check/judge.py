@@ -24,7 +24,8 @@ HZ_RESOLUTION = 1e-6
 class Verdict:
     """One sentence and what was measured, in the figure's unit. `limit` is what was written, `allowed` with its tolerance.
 
-    `frames` are those whose results differ, by their places in the run.
+    `frames` are those whose results differ, by their index; where there are some, limit and measured are of `frame`, which is
+    most off. They are totals where no frame differs, or where there are more or fewer frames than limits.
     """
 
     requirement: Requirement
@@ -36,6 +37,13 @@ class Verdict:
     broken: bool
     better: bool
     frames: tuple[int, ...] = ()
+    frame: int | None = None
+
+    @property
+    def label(self) -> str:
+        """What was measured, and in which frame."""
+        where = "" if self.frame is None else f" in frame {self.frame}"
+        return f"{self.requirement.dotted}{where}"
 
     @property
     def by_percent(self) -> float:
@@ -153,16 +161,21 @@ def _frame_by_frame(
     pairs = list(zip(requirement.numbers, figure.values, strict=False))
     off = [index for index, (want, got) in enumerate(pairs) if abs(Fraction(got) - want) > share * want]
     are_as_many = len(requirement.numbers) == len(figure.values)
+    limit, measured, frame = float(sum(requirement.numbers)), sum(figure.values), None
+    if off and are_as_many:
+        most = max(off, key=lambda index: abs(pairs[index][1] - pairs[index][0]))
+        limit, measured, frame = float(pairs[most][0]), pairs[most][1], run.frames[most].index
     return Verdict(
         requirement=requirement,
         is_persons=is_persons,
         unit=figure.unit,
-        limit=float(sum(requirement.numbers)),
-        allowed=float(sum(requirement.numbers)),
-        measured=sum(figure.values),
+        limit=limit,
+        allowed=limit,
+        measured=measured,
         broken=bool(off) or not are_as_many,
         better=False,
         frames=tuple(run.frames[index].index for index in off),
+        frame=frame,
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from bfsim.report.check.baseline import Case, Costs, KeptLine, KeptOwner
 from bfsim.report.check.figures import OBJECTS, RESULTS, Name
 from bfsim.report.check.requirement import parse_requirement
-from bfsim.report.diff.contributions import SMALL
+from bfsim.report.diff.pairs import SMALL
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.diff.side import SEPARATOR, Line, Owner, Side, Source, Stall
 from bfsim.report.result_file import Result
@@ -86,6 +86,8 @@ def kept_side(case: Case) -> Side:
         "board numbers": SEPARATOR.join(on.board_numbers),
         "compiler numbers": SEPARATOR.join(on.compiler_numbers),
     }
+    if on.width_px:
+        configuration |= {"width px": str(on.width_px), "height px": str(on.height_px)}
     counts = dict(_counts(case))
     frames = list(map(int, costs.frame_cclk)) or list(range(costs.frames))
     return Side(

@@ -12,11 +12,11 @@ from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_o
 from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
 from bfsim.report.check.requirement import dotted
-from bfsim.report.check.tables import amount, changes, tighten_command, verdict_line
+from bfsim.report.check.tables import amount, changes, percent, tighten_command, verdict_line
 from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.markdown import contribution_rows
-from bfsim.report.diff.sentences import reason, work
-from bfsim.report.diff.tables import seen_lines
+from bfsim.report.diff.sentences import why
+from bfsim.report.diff.tables import scope, seen_lines
 from bfsim.report.markdown import escaped
 from bfsim.report.start_up import of_one_frame
 
@@ -98,11 +98,12 @@ def benchmark_json(outcomes: Sequence[Outcome]) -> str:
 def broken_lines(outcome: Outcome) -> Iterator[str]:
     """Yield a line for each figure whose limits are broken."""
     for each in worst_of_each(outcome.broken):
-        label, hz = each.requirement.dotted, outcome.run.identity.cclk_hz
+        hz = outcome.run.identity.cclk_hz
         measured = amount(each.measured, each.unit, hz)
         limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
         once = of_one_frame(outcome.run) if each.unit is Unit.HZ else ""
-        yield f"{label} must be {limit}, not {measured}{once} ({each.by_percent:+.2f} %)"
+        by = f" ({percent(each)} %)" if percent(each) else ""
+        yield f"{each.label} must be {limit}, not {measured}{once}{by}"
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
@@ -116,6 +117,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "broken": verdict.broken,
         "better": verdict.better,
         "frames": list(verdict.frames),
+        "frame": verdict.frame,
     }
 
 
@@ -126,14 +128,13 @@ def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
     if rows:
         yield "| | limit | measured | % |\n|---|--:|--:|--:|"
         for each in rows:
-            name = each.requirement.dotted
             mark = "❌" if each.broken else "faster" if each.unit is Unit.CCLK else "better"
             limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
             measured = amount(each.measured, each.unit, hz)
-            yield f"| {escaped(name)} {mark} | {limit} | {measured} | {each.by_percent:+.2f} |"
+            yield f"| {escaped(each.label)} {mark} | {limit} | {measured} | {percent(each)} |"
         yield ""
     yield from _why(outcome) if outcome.broken else ()
-    if outcome.better:
+    if outcome.better and outcome.passed:
         yield f"\nTo keep what became better: `{tighten_command(outcome, path)}`"
     yield ""
 
@@ -143,7 +144,7 @@ def _why(outcome: Outcome) -> Iterator[str]:
     if difference is None:
         yield from ("```", *explanation(outcome), "```")
         return
-    yield from (f"{escaped(each)}\n" for each in (work(difference), reason(difference)) if each)
+    yield from (f"{escaped(each)}\n" for each in (*why(difference), *scope(difference)))
     yield from contribution_rows(difference, CAUSES)
     for line in (*counts_that_differ(outcome), *seen_lines(difference)):
         yield f"- {escaped(line)}"

@@ -12,7 +12,7 @@ from rich.text import Text
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import Unit
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
-from bfsim.report.diff.sentences import reason, work
+from bfsim.report.diff.sentences import why
 from bfsim.report.diff.tables import contribution_table, scope, seen_lines
 from bfsim.report.start_up import of_one_frame
 from bfsim.report.tables import new_table, stacked, warning_table
@@ -27,7 +27,7 @@ def check_report(outcome: Outcome, path: Path) -> RenderableType:
         parts += _why(outcome)
     if outcome.better:
         parts.append(_table("Better than", outcome.better, outcome))
-        parts.append(Text(f"To keep it: {tighten_command(outcome, path)}"))
+        parts += [Text(f"To keep it: {tighten_command(outcome, path)}")] if outcome.passed else []
     parts += [Text(each) for each in changes(outcome)]
     return stacked(*parts, *warning_table(outcome.run))
 
@@ -46,7 +46,7 @@ def _why(outcome: Outcome) -> Iterator[RenderableType]:
     if difference is None:
         yield Text("\n".join(explanation(outcome)))
         return
-    told = [*filter(None, (work(difference), reason(difference))), *scope(difference)]
+    told = [*why(difference), *scope(difference)]
     counts = [*counts_that_differ(outcome), *seen_lines(difference)]
     yield from (Text("\n".join(each)) for each in (told, counts) if each)
     yield from contribution_table(difference, CAUSES)
@@ -88,14 +88,19 @@ def amount(value: float, unit: Unit, cclk_hz: float) -> str:
             return f"{value:,.0f}"
 
 
+def percent(verdict: Verdict) -> str:
+    """Return by how many percent of its limit a figure is off; nothing where the limit is 0."""
+    return f"{verdict.by_percent:+.2f}" if verdict.limit else ""
+
+
 def _table(title: str, verdicts: Sequence[Verdict], outcome: Outcome) -> Table:
     table = new_table("", title, "Limit", "Measured", "%")
     hz = outcome.run.identity.cclk_hz
     for each in worst_of_each(verdicts):
         table.add_row(
-            each.requirement.dotted,
+            each.label,
             f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}",
             amount(each.measured, each.unit, hz),
-            f"{each.by_percent:+.2f}",
+            percent(each),
         )
     return table

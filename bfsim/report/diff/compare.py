@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from bfsim.errors import ConfigError
 from bfsim.report.diff.contributions import contributions_of
-from bfsim.report.diff.difference import Change, Difference, FrameChange, SeenChange
+from bfsim.report.diff.difference import NOTHING, Change, Difference, FrameChange, SeenChange
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.diff.side import SEPARATOR, Side
 from bfsim.report.result_file import Result
@@ -62,7 +62,7 @@ def _configuration(before: Side, after: Side) -> Iterator[Change]:
             old = SEPARATOR.join(each for each in one if each not in other)
             new = SEPARATOR.join(each for each in other if each not in one)
         cut = DIGEST_SHOWN if what.endswith(CONTENT) else None
-        yield Change(what=what, before=old[:cut] or "-", after=new[:cut] or "-")
+        yield Change(what=what, before=old[:cut] or NOTHING, after=new[:cut] or NOTHING)
 
 
 def _moved(before: Mapping[str, str], after: Mapping[str, str]) -> Iterator[Change]:
@@ -94,7 +94,7 @@ def _results(
 
 def _total(values: Sequence[int | None]) -> str:
     known = [each for each in values if each is not None]
-    return f"{sum(known):,}" if known else "-"
+    return f"{sum(known):,}" if known else NOTHING
 
 
 def _seen(before: Side, after: Side) -> Iterator[SeenChange]:

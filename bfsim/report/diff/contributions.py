@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from difflib import SequenceMatcher
-from itertools import product
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 
 from bfsim.report.diff.alignment import LinePair, aligned
 from bfsim.report.diff.difference import Contribution, Kind
 from bfsim.report.diff.line_causes import line_causes
+from bfsim.report.diff.pairs import SMALL, pairs_of, with_stages_alike
 from bfsim.report.diff.side import Line, Owner, Side, Source
 
 WAITS = "waits for the other core and the cameras"
-SMALL = "what is too small to be kept"
-"""All owners of a stage, or lines of a kernel, that a baseline does not have."""
 NO_LINE = "not of a line"
-ALIKE = 0.5
-"""Kernels of two names are one if so many of their lines are the same."""
-
-Pair = tuple[Owner | None, Owner | None]
 
 
 def contributions_of(before: Side, after: Side) -> tuple[Contribution, ...]:
@@ -28,8 +21,8 @@ def contributions_of(before: Side, after: Side) -> tuple[Contribution, ...]:
     They sum to the difference, as the parts of each do to their whole.
     """
     parts: defaultdict[str, list[Contribution]] = defaultdict(list)
-    before, after = _kept_alike(before, after), _kept_alike(after, before)
-    for old, new in _pairs(before, after):
+    before, after = with_stages_alike(before, after)
+    for old, new in pairs_of(before, after):
         owner = new or old
         assert owner is not None
         parts[owner.stage].append(_of_owner(old, new, before, after))
@@ -46,72 +39,6 @@ def walk(contributions: Iterable[Contribution], depth: int = 0) -> Iterator[tupl
     for each in contributions:
         yield depth, each
         yield from walk(each.parts, depth + 1)
-
-
-def _kept_alike(side: Side, other: Side) -> Side:
-    """Return a side without owners that the other one did not keep because they are small."""
-    if not other.least_cclk:
-        return side
-    owners = Counter[Owner]()
-    known = {(each.stage, each.name) for each in other.owners}
-    for owner, cclk in side.owners.items():
-        is_small = cclk < other.least_cclk and (owner.stage, owner.name) not in known
-        owners[Owner(owner.stage, SMALL, "") if is_small else owner] += cclk
-    return side.with_owners(owners)
-
-
-def _pairs(before: Side, after: Side) -> Iterator[Pair]:
-    """Pair the owners of two runs: those that are the same, and those that went and came under another symbol or name."""
-    known = before.owners.keys() & after.owners.keys()
-    gone = [each for each in before.owners if each not in known]
-    come = [each for each in after.owners if each not in known]
-    same = _same_name(gone, come)
-    left = [each for each in gone if each not in same], [each for each in come if each not in same.values()]
-    same |= _same_text(*left, before.sources, after.sources)
-    for owner in before.owners:
-        yield owner, owner if owner in known else same.get(owner)
-    yield from ((None, owner) for owner in come if owner not in same.values())
-
-
-def _same_name(gone: Sequence[Owner], come: Sequence[Owner]) -> dict[Owner, Owner]:
-    """Return what is one alone of its name in each run: the symbol of a kernel has the name of its file, which may be another one."""
-    olds, news = _by_name(gone), _by_name(come)
-    return {
-        each[0]: news[name][0]
-        for name, each in olds.items()
-        if len(each) == 1 and len(news.get(name, [])) == 1
-    }
-
-
-def _same_text(
-    gone: Sequence[Owner],
-    come: Sequence[Owner],
-    olds: Mapping[Owner, Source],
-    news: Mapping[Owner, Source],
-) -> dict[Owner, Owner]:
-    """Return the kernels of a stage that were renamed, those most alike first: at least half of their lines are the same."""
-    alike = [
-        (_likeness(olds[old], news[new]), old, new)
-        for old, new in product(gone, come)
-        if old.stage == new.stage and old in olds and new in news
-    ]
-    same: dict[Owner, Owner] = {}
-    for likeness, old, new in sorted(alike, key=lambda each: -each[0]):
-        if likeness >= ALIKE and old not in same and new not in same.values():
-            same[old] = new
-    return same
-
-
-def _likeness(old: Source, new: Source) -> float:
-    before, after = [each.text for each in old.lines], [each.text for each in new.lines]
-    return SequenceMatcher(None, before, after, autojunk=False).ratio()
-
-
-def _by_name(owners: Iterable[Owner]) -> Mapping[tuple[str, str], list[Owner]]:
-    found: defaultdict[tuple[str, str], list[Owner]] = defaultdict(list)
-    for each in owners:
-        found[each.stage, each.name].append(each)
-    return found
 
 
 def _of_owner(old: Owner | None, new: Owner | None, before: Side, after: Side) -> Contribution:

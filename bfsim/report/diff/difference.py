@@ -35,9 +35,13 @@ class Contribution:
     parts: tuple[Contribution, ...] = ()
 
 
+NOTHING = "-"
+"""What a change is from, or to, where one side has nothing of it."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """Something about the runs that is not the same: what it is, and what it was and is."""
+    """Something about the runs that is not the same: what it is, and what it was and is, in words or NOTHING."""
 
     what: str
     before: str

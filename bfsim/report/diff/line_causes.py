@@ -14,6 +14,9 @@ from bfsim.report.units import counted
 NAMED = 3
 """As many operations are named of a line that is on one side alone."""
 
+MANY = 1000
+"""From so many cycles on there are only whole ones."""
+
 Memories = Mapping[str, str]
 """In which memory buffers lie."""
 
@@ -132,7 +135,8 @@ def _stalls(
 
 
 def _each(cclk: int, times: int) -> str:
-    return f"{cclk / times:.3g}" if times else "0"
+    each = cclk / times if times else 0
+    return f"{each:,.0f}" if each >= MANY else f"{each:.3g}"
 
 
 def _cause(text: str, cclk: int) -> Contribution:

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
-from bfsim.report.diff.difference import Difference
-from bfsim.report.diff.sentences import clock, reason, verdict, work
-from bfsim.report.diff.tables import cells, frames_compared, labelled, seen_lines, shown
+from bfsim.report.diff.difference import Change, Difference
+from bfsim.report.diff.sentences import verdict, why
+from bfsim.report.diff.tables import (
+    RESULTS_LISTED,
+    cells,
+    frame_heads,
+    frame_rows,
+    frames_compared,
+    labelled,
+    listed,
+    scope,
+    seen_lines,
+    shown,
+)
 from bfsim.report.markdown import escaped
 
 INDENT = "&emsp;"
+TEXT, NUMBER = "---", "---:"
+"""Columns of words, and of numbers."""
 
 
 def diff_markdown(difference: Difference, top: int) -> str:
@@ -19,13 +32,14 @@ def diff_markdown(difference: Difference, top: int) -> str:
 
 def _lines(difference: Difference, top: int) -> Iterator[str]:
     yield f"**{verdict(difference)}**"
-    for why in (clock(difference), work(difference), reason(difference)):
-        if why:
-            yield f"\n{escaped(why)}"
-    if difference.configuration:
-        rows = ((each.what, each.before, each.after) for each in difference.configuration)
-        yield from _table(("Configuration", "before", "after"), rows)
+    for each in (*why(difference), *scope(difference)):
+        yield f"\n{escaped(each)}"
+    yield from _changes("Configuration", difference.configuration)
     yield from contribution_rows(difference, top)
+    if difference.changed_frames:
+        title, _, *heads = frame_heads(difference)
+        yield from _table((title, *heads), NUMBER, frame_rows(difference))
+    yield from _changes("Published numbers, all frames together", difference.results, RESULTS_LISTED)
     for each in seen_lines(difference):
         yield f"- {escaped(each)}"
 
@@ -35,15 +49,23 @@ def contribution_rows(difference: Difference, top: int) -> Iterator[str]:
     contributions = shown(difference, top)
     if contributions:
         heads = f"Cycles of both cores in {frames_compared(difference)}", "before", "after", "difference"
-        yield from _table(
-            heads, ((INDENT * depth + labelled(each), *cells(each)) for depth, each in contributions)
-        )
+        rows = ((INDENT * depth + labelled(each), *cells(each)) for depth, each in contributions)
+        yield from _table(heads, NUMBER, rows)
 
 
-def _table(heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+def _changes(title: str, changes: Sequence[Change], most: int | None = None) -> Iterator[str]:
+    """Yield what changed as a table, if there is anything: the first ones, and how many others."""
+    if changes:
+        rows = [(each.what, listed(each.before), listed(each.after)) for each in changes[:most]]
+        others = len(changes) - len(rows)
+        more = [(f"({others} others)", "", "")] if others else []
+        yield from _table((title, "before", "after"), TEXT, [*rows, *more])
+
+
+def _table(heads: Sequence[str], column: str, rows: Iterable[Sequence[str]]) -> Iterator[str]:
     yield ""
-    yield f"| {' | '.join(heads)} |"
-    yield f"| --- |{' ---: |' * (len(heads) - 1)}"
+    yield f"| {' | '.join(map(escaped, heads))} |"
+    yield f"| {' | '.join([TEXT, *[column] * (len(heads) - 1)])} |"
     for row in rows:
-        yield f"| {' | '.join(escaped(each) for each in row)} |"
+        yield f"| {' | '.join(map(escaped, row))} |"
     yield ""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from bfsim.report.diff.difference import Contribution, Difference, Kind
+from bfsim.report.diff.difference import NOTHING, Contribution, Difference, Kind
+from bfsim.report.diff.pairs import SMALL
 from bfsim.report.units import counted, mhz
 
 
@@ -21,6 +22,11 @@ def verdict(difference: Difference) -> str:
     )
 
 
+def why(difference: Difference) -> Iterator[str]:
+    """Yield what there is to say of the reason: how time and work are counted, then what changed most."""
+    yield from filter(None, (clock(difference), code(difference), work(difference), reason(difference)))
+
+
 def clock(difference: Difference) -> str:
     """Say what another core clock makes of the difference; nothing where the clock is the same."""
     before, after = difference.before_hz, difference.after_hz
@@ -28,6 +34,19 @@ def clock(difference: Difference) -> str:
         return ""
     alone_ms = difference.before_ms * (before / after - 1)
     return f"The core clock went from {mhz(before)} to {mhz(after)}, which alone makes {alone_ms:+.2f} ms a frame."
+
+
+def code(difference: Difference) -> str:
+    """Say that kernels ran as code of another origin, for one and the same compiler; nothing where they did not."""
+    changes = {each.what: each for each in difference.configuration}
+    change = changes.get("code")
+    is_asked_for = any(each.startswith("compiler") for each in changes)
+    if change is None or is_asked_for or NOTHING in {change.before, change.after}:
+        return ""
+    return (
+        f"The code of the kernels went from {change.before!r} to {change.after!r}, which makes a part of the difference, "
+        "whatever was edited: compare runs of the same code, or with `--profile gcc-O2`, which estimates all of it."
+    )
 
 
 def work(difference: Difference) -> str:
@@ -71,8 +90,8 @@ def _named(contribution: Contribution) -> str:
 
 
 def _largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
-    """Yield the largest contribution that follows from no other, and in it the largest again."""
-    own = [each for each in parts if each.kind is not Kind.FOLLOWS and each.cclk]
+    """Yield the largest contribution that follows from no other and has a name, and in it the largest again."""
+    own = [each for each in parts if each.kind is not Kind.FOLLOWS and each.name != SMALL and each.cclk]
     if own:
         largest = max(own, key=lambda each: abs(each.cclk))
         yield largest

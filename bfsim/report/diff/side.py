@@ -114,6 +114,19 @@ class Side:
         """Return the same with other owners."""
         return replace(self, owners=owners)
 
+    def with_stages(self, names: Mapping[str, str]) -> Side:
+        """Return the same with other names of some stages, by those that they have."""
+
+        def renamed(owner: Owner) -> Owner:
+            return owner._replace(stage=names.get(owner.stage, owner.stage))
+
+        return replace(
+            self,
+            owners={renamed(owner): cclk for owner, cclk in self.owners.items()},
+            waits={names.get(stage, stage): cclk for stage, cclk in self.waits.items()},
+            sources={renamed(owner): source for owner, source in self.sources.items()},
+        )
+
     def without_lines(self) -> Side:
         """Return the same without sources."""
         return replace(self, sources={})

@@ -10,7 +10,8 @@ from rich.text import Text
 
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
-from bfsim.report.diff.sentences import clock, reason, verdict, work
+from bfsim.report.diff.sentences import verdict, why
+from bfsim.report.diff.side import SEPARATOR
 from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import counted
 
@@ -20,18 +21,14 @@ CHANGED_LISTED = 5
 RESULTS_LISTED = 10
 """Published numbers that changed which are listed."""
 
+FILES_LISTED = 6
+"""So many files, or numbers of a board, are listed of each side."""
+
 
 def diff_report(difference: Difference, top: int) -> RenderableType:
     """Return the difference: what it is, what was compared, the `top` contributions, frames, results and what was seen."""
-    lines = [
-        verdict(difference),
-        clock(difference),
-        work(difference),
-        reason(difference),
-        *scope(difference),
-    ]
     return stacked(
-        Text("\n".join(each for each in lines if each)),
+        Text("\n".join([verdict(difference), *why(difference), *scope(difference)])),
         *_change_table("What differs in the configuration", "What", difference.configuration),
         *contribution_table(difference, top),
         *_frame_table(difference),
@@ -64,10 +61,17 @@ def _change_table(
         for column in table.columns[1:]:
             column.justify, column.overflow = "left", "fold"
         for each in changes[:most]:
-            table.add_row(each.what, each.before, each.after)
+            table.add_row(each.what, listed(each.before), listed(each.after))
         if most and len(changes) > most:
             table.add_row(f"({len(changes) - most} others)")
         yield table
+
+
+def listed(text: str) -> str:
+    """Return a list with its first few words, and how many others there are; other text as it is."""
+    words = text.split(SEPARATOR)
+    others = len(words) - FILES_LISTED
+    return f"{SEPARATOR.join(words[:FILES_LISTED])} and {others} others" if others > 1 else text
 
 
 def contribution_table(difference: Difference, top: int) -> Iterator[Table]:
@@ -126,14 +130,24 @@ def _ids(contribution: Contribution) -> Iterable[int]:
 
 
 def _frame_table(difference: Difference) -> Iterator[Table]:
-    changed = difference.changed_frames
-    if changed:
-        title = f"Frames that changed most, of {len(changed)} (cycles of the slower core)"
-        table = new_table(title, "Frame", "before", "after", "difference")
-        for each in changed[:CHANGED_LISTED]:
-            more = each.after_cclk - each.before_cclk
-            table.add_row(str(each.index), f"{each.before_cclk:,}", f"{each.after_cclk:,}", f"{more:+,}")
+    if difference.changed_frames:
+        table = new_table(*frame_heads(difference))
+        for row in frame_rows(difference):
+            table.add_row(*row)
         yield table
+
+
+def frame_heads(difference: Difference) -> tuple[str, ...]:
+    """Return the title of a table of `frame_rows`, and the heads of its columns."""
+    title = f"Frames that changed most, of {len(difference.changed_frames)} (cycles of the slower core)"
+    return title, "Frame", "before", "after", "difference"
+
+
+def frame_rows(difference: Difference) -> Iterator[tuple[str, str, str, str]]:
+    """Yield the frames that changed most with their cycles before, after, and more than before."""
+    for each in difference.changed_frames[:CHANGED_LISTED]:
+        more = each.after_cclk - each.before_cclk
+        yield str(each.index), f"{each.before_cclk:,}", f"{each.after_cclk:,}", f"{more:+,}"
 
 
 def _seen(difference: Difference) -> Iterator[Text]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from bfsim.report.budget import milliseconds
 from bfsim.report.diff.difference import Difference
-from bfsim.report.diff.sentences import clock, reason, verdict, work
-from bfsim.report.diff.tables import cells, frames_compared, labelled, scope, seen_lines
+from bfsim.report.diff.sentences import verdict, why
+from bfsim.report.diff.tables import cells, frames_compared, labelled, listed, scope, seen_lines
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.html.rendering import rendered
 
@@ -48,10 +48,11 @@ class DiffPage:
                 "difference": difference,
                 "sides": {"before": self.before, "after": self.after},
                 "verdict": verdict(difference),
-                "why": [each for each in (clock(difference), work(difference), reason(difference)) if each],
+                "why": list(why(difference)),
                 "scope": list(scope(difference)),
                 "compared": frames_compared(difference),
                 "labelled": labelled,
+                "listed": listed,
                 "cells": cells,
                 "half": lambda cclk: f"{50 * abs(cclk) / largest_cclk:.2f}" if largest_cclk else "0",
                 "frames": difference.changed_frames[:FRAMES],
