@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -15,7 +16,9 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
+from bfsim.errors import BfsimWarning
 from bfsim.report.check.baseline import Configuration
+from bfsim.store import can_keep
 from bfsim.sweeping.running import Outcome, Work, run_point
 
 
@@ -36,6 +39,7 @@ class Pool(Executor):
         self._leash, self._hand = self._context.Pipe(duplex=False)
         self._all: list[Executor] = []
         self._free: list[Executor] = []
+        can_keep()  # warns of a cache that is not used: here, once for all processes
 
     def room(self) -> int:
         """Return how many calls may be on their way at a time."""
@@ -84,7 +88,8 @@ def _deaf() -> Iterator[None]:
 
 
 def _begin(leash: Connection) -> None:
-    """Make this process a worker: what firmware prints goes nowhere, and the process ends when its parent lets go."""
+    """Make this process a worker: what firmware prints goes nowhere, its parent warns, and it ends when that one lets go."""
+    warnings.simplefilter("ignore", BfsimWarning)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     Thread(target=_end_with, args=(leash,), daemon=True).start()

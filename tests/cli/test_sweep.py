@@ -137,6 +137,20 @@ def test_what_cannot_work_is_told_at_once(file: Path, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.exhaustive
+def test_all_processes_warn_together(tmp_path: Path) -> None:
+    """Of a cache that others may write to: as every command does, and not once for each process."""
+    file = home_in(tmp_path)
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    cache.chmod(0o777)
+    command = [sys.executable, "-m", "bfsim", "sweep", str(file), "--workers", "2"]
+    environment = os.environ | {"BFSIM_CACHE_DIR": str(cache)}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == 0
+    assert re.fullmatch("bfsim: warning: the kernel cache .* must be private, .*\n", done.stderr)
+
+
+@pytest.mark.exhaustive
 def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
     """What is done is reported and kept, no process is left, and the same command goes on."""
     file = home_in(tmp_path, FILE.replace("[2, 4]", "[2, 3, 4, 5, 6, 7]"))

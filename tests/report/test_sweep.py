@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from io import StringIO
 from pathlib import Path
 
@@ -10,9 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from bfsim.errors import ConfigError
 from bfsim.report.sweep.front import front, sign_of
 from bfsim.report.sweep.screen import ONE_FRAME, Shown, failures, lines_of, sweep_report
-from bfsim.report.sweep.table import columns_of, csv_of
+from bfsim.report.sweep.table import columns_of, csv_of, write_parquet
 
 PLACES = st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), max_size=20)
 
@@ -41,6 +44,17 @@ def test_a_column_is_numbers_or_text() -> None:
     rows = [{"a": 1, "b": 'x,"y"'}, {"a": 2.5, "c": None}, {"b": 3, "c": 4}]
     assert columns_of(rows) == {"a": [1.0, 2.5, None], "b": ['x,"y"', None, "3"], "c": [None, None, 4]}
     assert csv_of(rows) == 'a,b,c\n1.0,"x,""y""",\n2.5,,\n,3,4\n'
+
+
+def test_a_table_on_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As every other file that cannot be written."""
+
+    def write_table(*_arguments: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(pytest.importorskip("pyarrow.parquet"), "write_table", write_table)
+    with pytest.raises(ConfigError, match=r"what-if\.parquet must be writable: No space left on device"):
+        write_parquet(tmp_path / "what-if.parquet", [{"missed": 0}])
 
 
 def test_a_line_is_a_setting_over_its_recordings() -> None:

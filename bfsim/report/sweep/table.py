@@ -7,7 +7,7 @@ import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from bfsim.report.save import growing_file
+from bfsim.report.save import growing_file, writing
 
 Cell = str | int | float | None
 Row = Mapping[str, Cell]
@@ -43,5 +43,5 @@ def write_parquet(path: Path, rows: Sequence[Row]) -> None:
     from pyarrow import parquet
 
     table = pa.table(columns_of(rows))
-    with growing_file(path) as stream:
+    with growing_file(path) as stream, writing(path):
         parquet.write_table(table, stream)
