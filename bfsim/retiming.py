@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -72,11 +72,18 @@ def retimed(
         yield
 
 
+class _InterruptedError(Exception):
+    """Raised to leave no file of a part of a run, which cannot be played, in the place of a whole one."""
+
+
 @contextmanager
 def recording_work(
     path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
 ) -> Iterator[None]:
-    """Record what the cores of `machine` do in the `with` block; the file is there at its end. Raises ConfigError where none can be written."""
+    """Record what the cores of `machine` do in the `with` block; the file is there at its end, unless the run is interrupted.
+
+    Raises ConfigError where none can be written.
+    """
     from bfsim.machine.retiming.recorded_ahead import RecordedAhead  # few runs are recorded
     from bfsim.machine.retiming.recording_core import RecordingCore
     from bfsim.work_file import WorkWriter
@@ -85,7 +92,7 @@ def recording_work(
         raise ConfigError(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
         )
-    with growing_file(path) as stream, WorkWriter(stream, path) as writer:
+    with suppress(_InterruptedError), growing_file(path) as stream, WorkWriter(stream, path) as writer:
         cores: list[RecordingCore] = []
 
         def recorded(parts: Parts) -> Core:
@@ -105,7 +112,7 @@ def recording_work(
         for core in cores:
             core.end()
         if not all(each.is_done for each in machine.main_loops.values()):
-            writer.add_obstacle("the run was interrupted before its end")
+            raise _InterruptedError
         writer.end(
             frame_digests=frames.digests,
             modules=sorted(loaded.own.modules),

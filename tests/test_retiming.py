@@ -158,6 +158,24 @@ def small(folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
     return record(folder / "drive.mcap", FRAMES), folder / "thesis.work"
 
 
+def test_an_interrupted_run_leaves_the_file_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A part of a run cannot be played: it is not put in the place of a whole one, nor where there was none."""
+    recording, path = small(tmp_path, monkeypatch)
+    stops = FIRMWARE.replace(
+        "core.next_frame())) is not None:\n",
+        "core.next_frame())) is not None:\n        if frame.index:\n            raise KeyboardInterrupt\n",
+    )
+    (tmp_path / "fw_stops.py").write_text(stops)
+    assert simulate(recording, firmware="fw_stops:eyes", record_work=path).interrupted
+    assert not path.exists()
+    simulate(recording, firmware="fw_mixed:eyes", record_work=path)
+    whole = path.read_bytes()
+    assert simulate(recording, firmware="fw_stops:eyes", record_work=path).interrupted
+    assert path.read_bytes() == whole
+
+
 @pytest.mark.parametrize(
     ("what", "said"),
     [
