@@ -79,7 +79,7 @@ def check(
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
     from bfsim.checking import require_comparable
-    from bfsim.report.check.history import read_history
+    from bfsim.report.check.history import append_history, read_history
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
     _require_places([path, history, *outputs.values()], [what["recording"], what["script"], what["ldf"]])
@@ -95,7 +95,7 @@ def check(
         outcomes = _judged(runs, path)
         _write(outcomes, path, outputs)
         if history:
-            _append(outcomes, history)
+            append_history(history, outcomes, _commit())
         _print(outcomes, path, history)  # last: who reads may go away
     if not all(each.passed for each in outcomes):
         raise SystemExit(LIMIT_BROKEN)
@@ -189,15 +189,6 @@ def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path |
     for name, file in outputs.items():
         if file:
             write_text(file, texts[name]())
-
-
-def _append(outcomes: Sequence[Outcome], path: Path) -> None:
-    """Append to the history."""
-    from bfsim.report.check.history import history_lines
-    from bfsim.report.save import writing
-
-    with writing(path), path.open("a", encoding="utf-8") as stream:
-        stream.write(history_lines(outcomes, _commit()))
 
 
 def _commit() -> str:

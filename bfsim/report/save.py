@@ -1,9 +1,10 @@
-"""Writing a file whole or not at all."""
+"""Writing a file whole or not at all, and one after the other."""
 
 from __future__ import annotations
 
 import os
 import shutil
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -11,6 +12,9 @@ from typing import IO, Any
 
 from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
+
+if sys.platform != "win32":
+    import fcntl
 
 
 def require_place(path: Path) -> None:
@@ -49,6 +53,25 @@ def write_bytes(path: Path, content: Iterable[bytes]) -> None:
     """
     with growing_file(path) as stream, writing(path):
         stream.writelines(content)
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Have other processes that change a file in `folder` wait until the end of the `with` block: what it reads of it, it may write back.
+
+    Where a folder cannot be locked nobody waits.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    with writing(folder):
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 @contextmanager

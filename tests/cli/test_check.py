@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -14,9 +15,9 @@ from xml.etree import ElementTree as ET
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim.cli.check import _append
 from bfsim.cli.main import main
 from bfsim.errors import BfsimError, ConfigError
+from bfsim.report.check.history import append_history
 from tests.test_run import FIRMWARE, record
 
 SLOWER = FIRMWARE.replace(
@@ -217,11 +218,21 @@ def test_history_has_a_line_a_run_and_draws_the_trend(repository: Path) -> None:
     assert "▁█▁" in result.output
 
 
-def test_a_history_on_a_full_disk_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As every other file that cannot be written."""
-    monkeypatch.setattr("bfsim.report.check.history.history_lines", lambda *_: "a line\n")
-    with pytest.raises(ConfigError, match="/dev/full must be writable: No space left on device"):
-        _append([], Path("/dev/full"))
+def test_a_history_that_has_no_room_is_named_and_stays_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As every other file that cannot be written: half a line would be one that the next check cannot read."""
+    path = tmp_path / "history.jsonl"
+    path.write_text("{}\n")
+    monkeypatch.setattr("bfsim.report.check.history._lines", lambda *_: "a line" * 1000)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with pytest.raises(ConfigError, match=r"history\.jsonl must be writable: File too large"):
+            append_history(path, [], "")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert path.read_text() == "{}\n"
 
 
 def test_a_person_requires_more(repository: Path) -> None:

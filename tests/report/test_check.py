@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from threading import Event, Thread
+from time import sleep
 
 import pytest
 
@@ -17,6 +19,7 @@ from bfsim.report.check.outputs import broken_lines, check_json, markdown
 from bfsim.report.check.tables import changes, verdict_line
 from bfsim.report.check.update import loosened, write_cases
 from bfsim.report.result_file import Result, result_of
+from bfsim.report.save import write_text
 from bfsim.trace import REST, LineCost, OwnerCost, RunRecord, StallReason
 from tests.report.check_rig import (
     broken,
@@ -402,6 +405,24 @@ def test_a_stage_that_is_gone(path: Path) -> None:
     new = measured(path, run, reason="it is called Thinning now")
     assert gone in new.loosened[0]
     assert not any("Edge" in each for each in new.limits)
+
+
+def test_two_updates_at_once_are_both_in_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second one waits for the first to be done, and then reads the file."""
+    path, is_slow = tmp_path / "bfsim.toml", Event()
+
+    def slow_text(place: Path, text: str) -> None:
+        is_slow.set()
+        sleep(0.2)
+        write_text(place, text)
+
+    monkeypatch.setattr("bfsim.report.check.update.write_text", slow_text)
+    first = Thread(target=write_cases, args=(path, {"one": Case(name="one")}))
+    first.start()
+    is_slow.wait()
+    write_cases(path, {"two": Case(name="two")})
+    first.join()
+    assert [case.name for case in read_baseline(path).run] == ["one", "two"]
 
 
 def test_update_leaves_a_file_alone_that_is_no_baseline(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from bfsim.errors import ConfigError
 from bfsim.file_content import read_bounded
 from bfsim.report.check.judge import Outcome
 from bfsim.report.check.outputs import figures_json
+from bfsim.report.save import alone_in, write_bytes
 from bfsim.report.tables import new_table
 
 TREND = "frame.median ms"
@@ -22,8 +23,14 @@ DRAWN = 30
 """The trend shows so many of the last lines of a run."""
 
 
-def history_lines(outcomes: Sequence[Outcome], commit: str) -> str:
-    """Return what is appended."""
+def append_history(path: Path, outcomes: Sequence[Outcome], commit: str) -> None:
+    """Append a line for each run, all of them or none, also where two processes do so. Raises ConfigError where that cannot be."""
+    with alone_in(path.parent):
+        before = read_bounded(path) if path.exists() else b""
+        write_bytes(path, [before, _lines(outcomes, commit).encode()])
+
+
+def _lines(outcomes: Sequence[Outcome], commit: str) -> str:
     return "".join(
         json.dumps(
             {
@@ -47,7 +54,7 @@ def read_history(path: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     try:
-        lines = read_bounded(path).decode().splitlines()
+        lines = read_bounded(path).decode().split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} must be a readable history of `bfsim check`: {error}") from error
     return [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1) if line.strip()]

@@ -23,7 +23,7 @@ from bfsim.report.check.kept import kept_costs, whole_side
 from bfsim.report.check.requirement import Requirement, counts_text, limit_text
 from bfsim.report.check.toml_items import toml_item
 from bfsim.report.result_file import Result
-from bfsim.report.save import write_text
+from bfsim.report.save import alone_in, write_text
 from bfsim.trace import RunRecord
 
 NEW_FILE = """\
@@ -72,10 +72,15 @@ def updated(case: Case, result: Result, reason: str, path: Path) -> Case:
 
 
 def write_cases(path: Path, cases: Mapping[str, Case]) -> None:
-    """Write runs, by their names, into the file at `path`. Everything else in it stays as it is.
+    """Write runs, by their names, into the file at `path`. Everything else in it stays as it is, also what others write meanwhile.
 
     Raises ConfigError, and leaves the file alone, if it is no baseline.
     """
+    with alone_in(path.parent):
+        _write_cases(path, cases)
+
+
+def _write_cases(path: Path, cases: Mapping[str, Case]) -> None:
     document = parsed(path) if path.exists() else tomlkit.parse(NEW_FILE)
     validated(document, path)
     tables = document.setdefault("run", tomlkit.aot())
