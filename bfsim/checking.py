@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bfsim import shipped
-from bfsim.errors import ConfigError, cut, shown
+from bfsim.errors import ConfigError, FirmwareError, RecordingError, cut, shown
 from bfsim.identifying import recording_digest
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
 from bfsim.run import Feed, Fidelity, identified
@@ -76,10 +76,13 @@ def name_of(configuration: Configuration) -> str:
 
 
 def require_comparable(case: Case, path: Path) -> None:
-    """Read and check all that a run needs. Raises ConfigError if it is not what its limits were measured on."""
+    """Read and check all that a run needs. Raises ConfigError if it is not what its limits were measured on, or cannot be at all."""
     arguments = arguments_of(case.configuration, path.parent)
     then = case.measured_on
-    identity, frames = identified(**arguments)
+    try:
+        identity, frames = identified(**arguments)
+    except (ConfigError, FirmwareError, RecordingError) as error:
+        raise type(error)(f"{path}: run {shown(case.name)}: {error}") from error
     if then is None:
         return
     now = measured_on(identity, frames)

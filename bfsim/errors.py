@@ -24,6 +24,11 @@ def cut(text: str) -> str:
     if hidden > 0:
         half = LONGEST_VALUE // 2
         text = f"{text[:half]}[{hidden} more characters]{text[-half:]}"
+    return printable(text)
+
+
+def printable(text: str) -> str:
+    """Return foreign text on one line, with what cannot be seen as Python writes it."""
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 

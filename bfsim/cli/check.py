@@ -141,7 +141,10 @@ def _update(runs: Sequence[tuple[Case, Result]], path: Path, reason: str | None)
     done = [(updated(case, result, reason or "", path), result) for case, result in runs]
     write_cases(path, {case.name: case for case, _ in done})
     for case, result in done:
-        click.echo(f"{path}: {case.name}: {len(case.limits)} limits from {len(result.run.frames)} frames.")
+        frames = len(result.run.frames)
+        click.echo(
+            f"{path}: {case.name}: {len(case.limits)} limits from {frames} frame{'s' if frames > 1 else ''}."
+        )
     return done
 
 

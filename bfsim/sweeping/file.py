@@ -11,7 +11,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from bfsim.errors import ConfigError, cut, shown
+from bfsim.errors import ConfigError, cut, printable, shown
 from bfsim.file_content import read_bounded
 from bfsim.report.check.baseline import Configuration
 from bfsim.sweeping.options import SCRIPT, Options, configured, flattened, merged, written
@@ -57,7 +57,7 @@ def read_sweep(path: Path, scripts: Path) -> list[Point]:
     ConfigError that names file and key.
     """
     try:
-        plain = tomllib.loads(read_bounded(path).decode())
+        plain = tomllib.loads(read_bounded(path).decode("utf-8-sig"))
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
     except (ValueError, RecursionError) as error:
@@ -116,7 +116,8 @@ def _point(
         options = merged(options, chosen[key].options)
     words = {key: each.words for key, each in chosen.items() if len(axes[key]) > 1 or key == POINT}
     recording = words.pop(RECORDING, "")
-    return Point(configured(options, folder, scripts), options, " ".join(words.values()), recording)
+    setting = printable(" ".join(words.values()))
+    return Point(configured(options, folder, scripts), options, setting, printable(recording))
 
 
 def _axes(table: object, folder: Path) -> Iterator[tuple[str, list[_Choice]]]:
@@ -164,7 +165,7 @@ def _tables(tables: object, where: str) -> Iterator[_Choice]:
         raise ConfigError(f"{where} must be a list of tables, [[{where}]], not {shown(tables)}")
     for number, table in enumerate(tables, 1):
         name = table.get(NAME, "") if isinstance(table, dict) else ""
-        if not isinstance(name, str):
+        if not isinstance(name, str) or (name and not name.strip()):
             raise ConfigError(f"{where}.{number}.{NAME} must be text, not {shown(name)}")
         rest = (
             {key: value for key, value in table.items() if key != NAME} if isinstance(table, dict) else table

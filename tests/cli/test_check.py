@@ -166,6 +166,31 @@ def test_what_does_not_fit_is_told_before_anything_runs(arguments: list[str], me
     assert message in refused("--baseline", "limits.toml", *arguments)
 
 
+@pytest.mark.usefixtures("idle_repository")
+def test_a_mistake_in_the_file_is_told_with_its_run() -> None:
+    """What a run names and is not there is told as what the file says of it, which may have many runs."""
+    text = Path("limits.toml").read_text()
+    for key, other, message in (
+        ("firmware", "fw_nose.py", "fw_nose.py must be a file, but there is none"),
+        ("recording", "dive.mcap", "dive.mcap: recording must be a readable file"),
+    ):
+        edited = re.sub(rf'^{key} = "\w+\.\w+"', f'{key} = "{other}"', text, count=1, flags=re.MULTILINE)
+        Path("limits.toml").write_text(edited)
+        assert f"limits.toml: run 'drive --firmware fw_eyes.py': {message}" in refused(
+            "--baseline", "limits.toml"
+        )
+
+
+def test_a_file_is_the_same_by_any_way_to_it(repository: Path) -> None:
+    """By its whole path in the baseline, and by a relative one here."""
+    limits = repository / "limits.toml"
+    limits.write_text(limits.read_text().replace('"drive.mcap"', f'"{repository}/drive.mcap"'))
+    (repository / "ci").mkdir()
+    with chdir("ci"):
+        result = call("../drive.mcap", "--firmware", "../fw_eyes.py", "--baseline", "../limits.toml")
+    assert result.exit_code == 0, result.output
+
+
 @pytest.mark.parametrize(
     ("frames", "message"),
     [

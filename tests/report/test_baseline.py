@@ -25,7 +25,7 @@ from bfsim.report.check.requirement import counts_text, limit_text, parse_requir
         ("latency <= -1 ms", "after <= must come a number that is not negative"),
         ("frame_rate >= 15 fps", "the unit of frame_rate must be Hz, not 'fps'"),
         ("latency <= 200", "the unit of latency must be cycles or s or ms or us, not ''"),
-        ('"Edge detection".max <= 80 sec', "the unit of Edge detection must be cycles or s or ms or us, not 'sec'"),
+        ('"Edge detection".max <= 80 sec', "the unit of the stage Edge detection must be cycles or s or ms or us, not 'sec'"),
         ("memory.L2 <= 100 kB", "the unit of memory.L2 must be B or KB or MB or %, not 'kB'"),
         ("missed == 0 frames", "the unit of missed must be none, not 'frames'"),
         ("memory <= 1 KB", "memory must be followed by a name"),
@@ -118,6 +118,12 @@ def test_faulty_file_names_run_and_key(tmp_path: Path, text: str, message: str) 
     told = refusal(tmp_path, text)
     assert told.startswith(str(tmp_path / "bfsim.toml"))
     assert message in told
+
+
+def test_a_file_of_windows_is_read(tmp_path: Path) -> None:
+    """With its mark at the beginning."""
+    (tmp_path / "bfsim.toml").write_text("[[run]]\nname = 'a'\n", encoding="utf-8-sig")
+    assert [case.name for case in read_baseline(tmp_path / "bfsim.toml").run] == ["a"]
 
 
 def test_missing_file_is_told_how_to_make_one(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from bfsim.report.check.kept import kept_side
 from bfsim.report.check.outputs import broken_lines, check_json, markdown
 from bfsim.report.check.tables import changes, verdict_line
 from bfsim.report.check.update import loosened, write_cases
+from bfsim.report.diff.sentences import verdict
 from bfsim.report.result_file import Result, result_of
 from bfsim.report.save import write_text
 from bfsim.trace import REST, LineCost, OwnerCost, RunRecord, StallReason
@@ -405,6 +406,15 @@ def test_a_stage_that_is_gone(path: Path) -> None:
     new = measured(path, run, reason="it is called Thinning now")
     assert gone in new.loosened[0]
     assert not any("Edge" in each for each in new.limits)
+
+
+def test_a_run_does_not_differ_from_its_baseline(tmp_path: Path) -> None:
+    """Which has the time of a frame to six digits."""
+    path = tmp_path / "bfsim.toml"
+    run = edge_run(950, 1051, 1000)
+    run = replace(run, identity=replace(run.identity, cclk_hz=7_000_003.0))
+    measured(path, run)
+    assert verdict(difference_of_outcome(hold(run, path))).startswith("No difference")
 
 
 def test_two_updates_at_once_are_both_in_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -102,6 +102,18 @@ def test_equal_runs_have_no_difference() -> None:
     assert reason(found) == ""
 
 
+def test_another_core_that_does_something_else_is_a_difference() -> None:
+    """Also where the frames take as long, for one core waits as much longer as it works less; and no change is no -0.00 %."""
+    semaphore = StallReason.SEMAPHORE
+    before = run(kernel(line(12, 5, 50)), waits=[wait("Blur", "core B", semaphore, 50)])
+    after = run(kernel(line(12, 5, 40)), waits=[wait("Blur", "core B", semaphore, 60)])
+    found = difference_of(before, after)
+    assert (found.cclk, found.changed_frames) == (0, ())
+    assert verdict(found).startswith("0.10 → 0.10 ms a frame (+0.00 %, as fast as before)")
+    almost = replace(found, after_ms=found.before_ms - 1e-9)
+    assert "(+0.00 %, as fast as before)" in verdict(almost)
+
+
 def test_a_line_that_takes_longer_is_named_with_its_cause() -> None:
     """One more operation of 3 cycles in a line that runs 100 times."""
     before = run(kernel(line(12, 100, 200), line(13, 100, 100)))

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from bfsim.errors import ConfigError
 from bfsim.report.sweep.front import front, sign_of
+from bfsim.report.sweep.plot import plot_svg
 from bfsim.report.sweep.screen import ONE_FRAME, Shown, failures, lines_of, sweep_report
 from bfsim.report.sweep.table import columns_of, csv_of, write_parquet
 
@@ -44,6 +45,15 @@ def test_a_column_is_numbers_or_text() -> None:
     rows = [{"a": 1, "b": 'x,"y"'}, {"a": 2.5, "c": None}, {"b": 3, "c": 4}]
     assert columns_of(rows) == {"a": [1.0, 2.5, None], "b": ['x,"y"', None, "3"], "c": [None, None, 4]}
     assert csv_of(rows) == 'a,b,c\n1.0,"x,""y""",\n2.5,,\n,3,4\n'
+
+
+@pytest.mark.exhaustive
+def test_a_plot_takes_any_text() -> None:
+    """What XML has no way to write ended the process: the library that draws is not Python."""
+    rows = [("a\x1b[31m", {"point": "b\x00", "missed": 0}), ("Straße ⚽", {"point": "c", "missed": 1})]
+    svg = plot_svg(rows, ("point", "missed"))
+    assert r"a\x1b[31m" in svg
+    assert "Straße ⚽" in svg
 
 
 def test_a_table_on_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

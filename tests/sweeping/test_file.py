@@ -126,6 +126,7 @@ def test_a_path_into_a_script_that_is_a_file(tmp_path: Path) -> None:
         ("base.script.send = []\naxes.script = {'send.²' = [1]}", "'²' must be the number of one of"),
         ("axes.ldf = ['l2', 'l2']", "a point must be there once, not twice: 'ldf=l2'"),
         ("axes.ldf = ['l2', 'thesis']\npoint = [{ldf = 'l2'}]", "a point must be there once, not twice: 'ldf=l2'"),
+        ("point = [{name = ' '}]", "point.1.name must be text, not ' '"),
         ("point = [{name = 'x'}, {name = 'x', ldf = 'l2'}]", "what differs must have names that differ, and two are 'x'"),
         (f"axes = {{frames = {[1] * 1000}, ldf = {['a'] * 1000}}}", "at most 100,000 points, not 1,000,000"),
     ],
@@ -138,6 +139,22 @@ def test_what_a_file_must_not_say(text: str, message: str, tmp_path: Path) -> No
     assert str(caught.value).startswith(str(tmp_path / "what-if.toml"))
     assert message in str(caught.value)
     assert len(str(caught.value)) < 600
+
+
+def test_names_are_on_one_line_and_can_be_seen(tmp_path: Path) -> None:
+    """Of points and of values: what drives a terminal, or breaks a table, is written as Python does; words of all languages stay."""
+    text = r"""
+        axes.define.DAY = ["a\u001b[31m", "日"]
+        point = [{name = "Straße ⚽"}, {name = "two\nlines", ldf = "l2"}]
+    """.replace("\n        ", "\n")
+    names = [each.name for each in points_of(text, tmp_path)]
+    assert names == ["DAY=a\\x1b[31m", "DAY=日", "Straße ⚽", "two\\nlines"]
+
+
+def test_a_file_of_windows_is_read(tmp_path: Path) -> None:
+    """With its mark at the beginning."""
+    (tmp_path / "what-if.toml").write_text("axes.ldf = ['l2', 'thesis']", encoding="utf-8-sig")
+    assert len(read_sweep(tmp_path / "what-if.toml", tmp_path / "scripts")) == 2
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

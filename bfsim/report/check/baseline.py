@@ -198,7 +198,7 @@ def measured_on(identity: Identity, frames: int) -> MeasuredOn:
 def parsed(path: Path) -> TOMLDocument:
     """Return a file as TOML. Raises ConfigError."""
     try:
-        return tomlkit.parse(read_bounded(path).decode())
+        return tomlkit.parse(read_bounded(path).decode("utf-8-sig"))
     except (TOMLKitError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} must be TOML: {cut(str(error))}") from error
     except OSError as error:

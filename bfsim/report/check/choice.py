@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from pathlib import Path
 
 from bfsim.errors import ConfigError, shown
@@ -31,13 +32,13 @@ def chosen(
             return [named]
         if update:
             return [named.model_copy(update=dict(given))]
-        if named.configuration == given:
+        if not _different(named, given, path):
             return [named]
         raise ConfigError(
-            f"{path}: run {shown(name)} says itself what to run: {_differences(named, given)}; leave the options out, or "
+            f"{path}: run {shown(name)} says itself what to run: {_differences(named, given, path)}; leave the options out, or "
             "change it with --update"
         )
-    same = [case for case in baseline.run if case.configuration == given]
+    same = [case for case in baseline.run if given is not None and not _different(case, given, path)]
     if name is None and same:
         return same
     if not update:
@@ -65,20 +66,32 @@ def _nothing_meant(baseline: Baseline, path: Path, given: Configuration | None, 
             f"{', '.join(map(shown, nearest))}; --update adds a new one"
         )
     assert given is not None
-    nearest_case = min(baseline.run, key=lambda case: len(_different(case, given)))
+    nearest_case = min(baseline.run, key=lambda case: len(_different(case, given, path)))
     return (
         f"{path} must have a run of these options; the nearest, {shown(nearest_case.name)}, differs: "
-        f"{_differences(nearest_case, given)}; --update adds one, and without options all runs in the file are checked"
+        f"{_differences(nearest_case, given, path)}; --update adds one, and without options all runs in the file are checked"
     )
 
 
-def _different(case: Case, given: Configuration) -> list[str]:
-    return [key for key in Configuration.model_fields if getattr(case, key) != getattr(given, key)]
+def _different(case: Case, given: Configuration, path: Path) -> list[str]:
+    """Return in which keys a run differs from what is given; a file by another way to it is the same."""
+    return [
+        key
+        for key in Configuration.model_fields
+        if _placed(getattr(case, key), path) != _placed(getattr(given, key), path)
+    ]
 
 
-def _differences(case: Case, given: Configuration) -> str:
+def _placed(value: object, path: Path) -> object:
+    """Return a value with each name as a path from the root, as those in the file at `path` are relative to it."""
+    if isinstance(value, list):
+        return [_placed(each, path) for each in value]
+    return os.path.abspath(path.parent / value) if isinstance(value, str) and value else value  # noqa: PTH100 - of no link
+
+
+def _differences(case: Case, given: Configuration, path: Path) -> str:
     return ", ".join(
         f"{key} is {shown(getattr(case, key)) if getattr(case, key) else 'the default'} there and "
         f"{shown(getattr(given, key)) if getattr(given, key) else 'the default'} here"
-        for key in _different(case, given)
+        for key in _different(case, given, path)
     )

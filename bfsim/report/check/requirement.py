@@ -111,7 +111,8 @@ def parse_requirement(text: str, where: str) -> Requirement:
         named = text[at:].strip()
         if named not in UNITS[unit]:
             known = " or ".join(each or "none" for each in UNITS[unit])
-            _fail(f"the unit of {'.'.join(name)} must be {known}, not {shown(named)}", text, at, where)
+            what = "the stage " if unit is Unit.CCLK and name not in {LATENCY, FRAME} else ""
+            _fail(f"the unit of {what}{'.'.join(name)} must be {known}, not {shown(named)}", text, at, where)
     return Requirement(
         name=name, statistic=stands_for, comparison=comparison, numbers=numbers, unit=named, text=text
     )

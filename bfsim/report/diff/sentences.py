@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import NOTHING, Contribution, Difference, Kind
 from bfsim.report.diff.pairs import SMALL
 from bfsim.report.units import counted, mhz
+
+MS_RESOLUTION = 1e-6
+"""To which a baseline has the time of a frame."""
 
 
 def verdict(difference: Difference) -> str:
     """Say by how much a frame takes longer or shorter."""
     before, after = difference.before_ms, difference.after_ms
-    if not difference.cclk and before == after:
+    is_other = any(each.cclk for _, each in walk(difference.stages)) or difference.changed_frames
+    if not is_other and abs(after - before) <= MS_RESOLUTION:
         return f"No difference: {after:.2f} ms a frame, every cycle of every frame as before."
-    change = round(100 * (after / before - 1), 2)
+    change = round(100 * (after / before - 1), 2) + 0.0  # none is no -0.00
     word = "slower" if change > 0 else "faster" if change < 0 else "as fast as before"
     return (
         f"{before:.2f} → {after:.2f} ms a frame ({change:+.2f} %, {word}): {1000 / before:.2f} → "

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from bfsim.errors import ConfigError, cut, shown
+from bfsim.errors import ConfigError, cut, printable, shown
 from bfsim.report.sweep.figures import FRAME_TIME, ON_CHIP
 from bfsim.report.sweep.front import front, sign_of
 from bfsim.report.sweep.table import Row, columns_of
@@ -45,7 +45,8 @@ def plot_svg(points: Sequence[tuple[str, Row]], axes: Axes) -> str:
     columns = columns_of(rows)
     for name in axes:
         _require_column(name, columns)
-    cells = list(zip(columns[axes[0]], columns[axes[1]], [setting for setting, _ in points], strict=True))
+    texts = columns[axes[0]], columns[axes[1]], [setting for setting, _ in points]
+    cells = list(zip(*(map(_drawable, each) for each in texts), strict=True))
     values = [
         {"x": x, "y": y, "setting": setting} for x, y, setting in cells if x is not None and y is not None
     ]
@@ -72,6 +73,11 @@ def plot_svg(points: Sequence[tuple[str, Row]], axes: Axes) -> str:
         chart = line.encode(x="x:Q", y="y:Q", order="place:Q") + chart
     svg: str = vl_convert.vegalite_to_svg(chart.properties(width=WIDTH_PX, height=HEIGHT_PX).to_dict())
     return svg
+
+
+def _drawable(cell: Any) -> Any:
+    """Return a number as it is, and text without what XML has no way to write."""
+    return printable(cell) if isinstance(cell, str) else cell
 
 
 def _require_column(name: str, columns: dict[str, list[Any]]) -> None:
