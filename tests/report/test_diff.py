@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import ConfigError
-from bfsim.report.diff.alignment import LinePair, aligned
+from bfsim.report.diff.alignment import LinePair, aligned, with_moved
 from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.compare import difference_of
 from bfsim.report.diff.difference import Contribution, Difference, Kind
@@ -303,6 +303,20 @@ def test_a_line_that_was_rewritten_is_the_one_most_like_it() -> None:
         LinePair(1, 2),
         LinePair(2, 3),
     ]
+
+
+def test_a_line_that_was_moved_is_the_same() -> None:
+    """Its place is another; it has not gone and come."""
+    swapped = (*TEXT[:2], TEXT[3], TEXT[2])
+    before = run(kernel(line(12, 10, 20), line(13, 10, 30)))
+    after = run(kernel(line(12, 10, 30), line(13, 10, 25), text=swapped))
+    assert leaves(difference_of(before, after)) == {"operations: 2 → 2.5 cycles x 10": 5}
+    old, new = ["a", "b", "c", "b"], ["b", "a", "b", "c"]
+    pairs = list(with_moved(aligned(old, new), old, new))
+    assert sorted(each.old for each in pairs if each.old is not None) == [0, 1, 2, 3]
+    assert all(
+        each.old is not None and old[each.old] == new[each.new] for each in pairs if each.new is not None
+    )
 
 
 @given(st.lists(st.sampled_from("abcd"), max_size=6), st.lists(st.sampled_from("abcd"), max_size=6))

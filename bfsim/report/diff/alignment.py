@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
@@ -18,6 +19,25 @@ class LinePair:
 
     old: int | None
     new: int | None
+
+
+def with_moved(pairs: Iterable[LinePair], old: Sequence[str], new: Sequence[str]) -> Iterator[LinePair]:
+    """Yield pairs of `aligned`, where a line that is gone from one place and stands in another one is the same."""
+    pairs = list(pairs)
+    gone: defaultdict[str, deque[int]] = defaultdict(deque)
+    for each in pairs:
+        if each.old is not None and each.new is None:
+            gone[old[each.old].strip()].append(each.old)
+    moved = {
+        each.new: there.popleft()
+        for each in pairs
+        if each.old is None and each.new is not None and (there := gone[new[each.new].strip()])
+    }
+    for each in pairs:
+        if each.new in moved:
+            yield LinePair(moved[each.new], each.new)
+        elif each.new is not None or each.old not in moved.values():
+            yield each
 
 
 def aligned(old: Sequence[str], new: Sequence[str]) -> Iterator[LinePair]:

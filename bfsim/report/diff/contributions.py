@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from bfsim.report.diff.alignment import LinePair, aligned
+from bfsim.report.diff.alignment import LinePair, aligned, with_moved
 from bfsim.report.diff.difference import Contribution, Kind
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.pairs import SMALL, pairs_of, with_stages_alike
@@ -62,7 +62,8 @@ def _of_owner(old: Owner | None, new: Owner | None, before: Side, after: Side) -
 def _lines(old: Source | None, new: Source | None, before: Side, after: Side) -> Iterator[Contribution]:
     """Yield what the lines of a kernel contribute; lines are the same where their text is, or almost."""
     olds, news = old.lines if old else (), new.lines if new else ()
-    for pair in aligned([each.text for each in olds], [each.text for each in news]):
+    texts = [each.text for each in olds], [each.text for each in news]
+    for pair in with_moved(aligned(*texts), *texts):
         was, now = _at(pair, olds, news)
         if (was is None and now and now.cclk < before.least_cclk) or (
             now is None and was and was.cclk < after.least_cclk
