@@ -15,6 +15,7 @@ import pytest
 
 from bfsim import building
 from bfsim.building import build_for
+from bfsim.compiling.loaded_code import LoadedCode
 from bfsim.compiling.object_code import object_code
 from bfsim.errors import BfsimWarning
 from bfsim.explain import explain_named
@@ -52,6 +53,27 @@ MAKERS = (
 def exact() -> Run:
     """A frame of the built-in firmware by the compiler's own code."""
     return simulate(frames=1)
+
+
+def test_what_is_inlined_is_of_the_line_that_calls_it() -> None:
+    """Divisions that round down, and shifts, are functions of headers of the C: in the Python they are of the line that has them.
+
+    They were of the line with the number of the instruction, which may be behind the kernel.
+    """
+    loaded = load_firmware(FIRMWARE[0])
+    kernels, entries = kernels_of(loaded.own), entries_of(loaded.firmware)
+    code = object_code(kernels | entries, entries, GCC_ADI, None)
+    places = LoadedCode(code)._places
+    signs: dict[str, set[str]] = {}
+    for routine in places.image.routines:
+        for address in range(routine.address, routine.end, 2) if routine.name in places.kernels else ():
+            line = places.lines.at(address)
+            if line and line.file == "operators.h":
+                place = places.line_of(address)
+                rows = places.function_called(place.routine).source.splitlines()
+                assert 1 < place.line <= len(rows)
+                signs.setdefault(places.kernels[routine.name].name, set()).add(rows[place.line - 1].strip())
+    assert signs["slope"] == {"return (across << SLOPE_BITS) // along"}
 
 
 @pytest.mark.exhaustive

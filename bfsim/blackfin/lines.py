@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import io
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from elftools.dwarf.ranges import BaseAddressEntry
 from elftools.elf.constants import SH_FLAGS
 from elftools.elf.elffile import ELFFile
 
@@ -24,6 +25,14 @@ class Line(NamedTuple):
 
     file: str
     line: int
+
+
+class InlinedCall(NamedTuple):
+    """From `begin` up to `end` the code is that of what is called in `line`, in the place of the call."""
+
+    begin: int
+    end: int
+    line: Line
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +72,62 @@ def lines_of(image: Image) -> LineTable:
     return LineTable(tuple(last.values()))
 
 
+def calls_inlined_in(image: Image) -> tuple[InlinedCall, ...]:
+    """Return the calls in an image in whose place the compiler has put what is called, the innermost first.
+
+    Raises KernelError where its debugging information is damaged.
+    """
+    try:
+        elf = ELFFile(io.BytesIO(image.octets))
+        if any(_is_compressed(each) for each in elf.iter_sections()) or not elf.has_dwarf_info():
+            return ()
+        return tuple(sorted(_inlined(elf), key=lambda each: each.end - each.begin))
+    except Exception as error:  # noqa: BLE001  # bytes of others: the parser may fail in any way
+        raise damaged(f"the debugging information of {image.name}", error) from None
+
+
 def _is_compressed(section: Any) -> bool:
     """What is small in the file may be of any size: it is left alone."""
     return bool(section["sh_flags"] & SH_FLAGS.SHF_COMPRESSED) or section.name.startswith(".zdebug")
+
+
+def _files(program: Any) -> dict[int, str]:
+    """Return the names of the files of a line table by their numbers."""
+    first = 0 if program["version"] >= FIRST_VERSION_FROM_0 else 1
+    return {
+        number: each.name.decode(errors="replace") for number, each in enumerate(program["file_entry"], first)
+    }
+
+
+def _inlined(elf: ELFFile) -> Iterator[InlinedCall]:
+    dwarf = elf.get_dwarf_info(relocate_dwarf_sections=False, follow_links=False)
+    for unit in dwarf.iter_CUs():
+        program = dwarf.line_program_for_CU(unit)
+        if program is None:
+            continue
+        names = _files(program)
+        for entry in unit.iter_DIEs():
+            if entry.tag == "DW_TAG_inlined_subroutine":
+                values = {name: each.value for name, each in entry.attributes.items()}
+                line = Line(names[values["DW_AT_call_file"]], values["DW_AT_call_line"])
+                for begin, end in _ranges(dwarf, unit, entry, values):
+                    yield InlinedCall(begin, end, line)
+
+
+def _ranges(dwarf: Any, unit: Any, entry: Any, values: Mapping[str, int]) -> Iterator[tuple[int, int]]:
+    """Yield where the code of an entry is, from an address up to another one."""
+    if "DW_AT_low_pc" in values:
+        begin, length = values["DW_AT_low_pc"], values["DW_AT_high_pc"]
+        yield begin, length if entry.attributes["DW_AT_high_pc"].form == "DW_FORM_addr" else begin + length
+    elif "DW_AT_ranges" in values:
+        top = unit.get_top_DIE().attributes
+        base = top["DW_AT_low_pc"].value if "DW_AT_low_pc" in top else 0
+        for each in dwarf.range_lists().get_range_list_at_offset(values["DW_AT_ranges"], cu=unit):
+            if isinstance(each, BaseAddressEntry):
+                base = each.base_address
+            else:
+                start = 0 if each.is_absolute else base
+                yield start + each.begin_offset, start + each.end_offset
 
 
 def _rows(elf: ELFFile) -> Iterator[Row]:
@@ -74,9 +136,7 @@ def _rows(elf: ELFFile) -> Iterator[Row]:
         program = dwarf.line_program_for_CU(unit)
         if program is None:
             continue
-        files = program["file_entry"]
-        first = 0 if program["version"] >= FIRST_VERSION_FROM_0 else 1
-        names = {number: each.name.decode(errors="replace") for number, each in enumerate(files, first)}
+        names = _files(program)
         for entry in program.get_entries():
             state = entry.state
             if state is not None:

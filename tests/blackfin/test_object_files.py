@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.blackfin.image import Use, packed, unpacked
-from bfsim.blackfin.lines import Line, lines_of
+from bfsim.blackfin.lines import Line, calls_inlined_in, lines_of
 from bfsim.blackfin.linking import BASE, link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.errors import KernelError
@@ -110,6 +110,7 @@ def _survives(octets: bytes) -> None:
     try:
         image = link(read_object(octets, "given.o"))
         lines_of(image)
+        calls_inlined_in(image)
     except KernelError as refusal:
         assert "\n" not in str(refusal)
     else:

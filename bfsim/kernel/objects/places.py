@@ -14,7 +14,7 @@ from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, sourc
 from bfsim.kernel.types import Number
 
 if TYPE_CHECKING:
-    from bfsim.blackfin.lines import LineTable
+    from bfsim.blackfin.lines import InlinedCall, Line, LineTable
 
 
 @dataclass
@@ -42,8 +42,8 @@ class Places:
 
     def line_of(self, address: int) -> SourceLine:
         """Return the line of the instruction at an address."""
-        line = self.lines.at(address)
-        if line is not None and line.file in self.of_file:
+        line = self._line_in_kernel(address)
+        if line is not None:
             function = self.of_file[line.file]
             self.functions[function.symbol] = function
             # what leaves it has the line of the C's closing brace, which is behind the Python
@@ -51,6 +51,30 @@ class Places:
             return SourceLine(function.symbol, min(line.line, last))
         function, source = self._source(self._routine(address))
         return SourceLine(function.symbol, source.lines.get(address, 1))
+
+    def _line_in_kernel(self, address: int) -> Line | None:
+        """Return the line of a kernel that the instruction at an address is of, None if it is of no kernel.
+
+        What the compiler took from a file of bfsim's own, such as the floor division, is of the line that calls it; where it tells of
+        no call, of the line before.
+        """
+        routine = self._routine(address)
+        begin = routine.address if routine.name in self.kernels else address
+        lines = map(self._line_told, range(address, begin - 1, -2))
+        return next((each for each in lines if each), None)
+
+    def _line_told(self, address: int) -> Line | None:
+        line = self.lines.at(address)
+        if line is None or line.file in self.of_file:
+            return line
+        calls = (each.line for each in self._inlined if each.begin <= address < each.end)
+        return next((each for each in calls if each.file in self.of_file), None)
+
+    @cached_property
+    def _inlined(self) -> tuple[InlinedCall, ...]:
+        from bfsim.blackfin.lines import calls_inlined_in
+
+        return calls_inlined_in(self.image) if self.of_file else ()
 
     def function_at(self, address: int) -> Function:
         """Return the kernel, or other function, that has the code at an address."""
