@@ -165,6 +165,7 @@ MAY_IMPORT = {
         "run",
         "shipped",
         "signals",
+        "store",
         "trace",
     },
     "placing": {
