@@ -14,7 +14,7 @@ from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, sourc
 from bfsim.kernel.types import Number
 
 if TYPE_CHECKING:
-    from bfsim.blackfin.lines import InlinedCall, Line, LineTable
+    from bfsim.blackfin.lines import Line, LineTable
 
 
 @dataclass
@@ -58,23 +58,30 @@ class Places:
         What the compiler took from a file of bfsim's own, such as the floor division, is of the line that calls it; where it tells of
         no call, of the line before.
         """
+        line = self._line_told(address)
+        if line is not None:  # most often; to look for the routine takes longer
+            return line
         routine = self._routine(address)
         begin = routine.address if routine.name in self.kernels else address
-        lines = map(self._line_told, range(address, begin - 1, -2))
+        lines = map(self._line_told, range(address - 2, begin - 1, -2))
         return next((each for each in lines if each), None)
 
     def _line_told(self, address: int) -> Line | None:
         line = self.lines.at(address)
         if line is None or line.file in self.of_file:
             return line
-        calls = (each.line for each in self._inlined if each.begin <= address < each.end)
-        return next((each for each in calls if each.file in self.of_file), None)
+        return self._lines_of_calls.get(address)
 
     @cached_property
-    def _inlined(self) -> tuple[InlinedCall, ...]:
+    def _lines_of_calls(self) -> Mapping[int, Line]:
+        """The line of the innermost call in a file of kernels that an instruction, by its address, is in the place of."""
         from bfsim.blackfin.lines import calls_inlined_in
 
-        return calls_inlined_in(self.image) if self.of_file else ()
+        found: dict[int, Line] = {}
+        for each in reversed(calls_inlined_in(self.image) if self.of_file else ()):
+            if each.line.file in self.of_file:
+                found |= dict.fromkeys(range(each.begin, each.end, 2), each.line)
+        return found
 
     def function_at(self, address: int) -> Function:
         """Return the kernel, or other function, that has the code at an address."""
