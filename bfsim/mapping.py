@@ -10,7 +10,7 @@ from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
 from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
-from bfsim.linker import LinkerScript, link
+from bfsim.linker import CORE_OF_PROCESSOR, LinkerScript, link
 from bfsim.loading import load_firmware
 from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.program import Calibration, Firmware
@@ -43,9 +43,9 @@ def map_memory(
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
     size = FrameSize(width_px, height_px)
     program = loaded.firmware if calibration is None else loaded.firmware.calibrated(calibration)
-    fits = _fits(program, script, spec)
+    why_without = _misfit(program, script, spec)
     link_map, kinds = None, {}
-    if fits:
+    if not why_without:
         with loaded.own.named():
             symbols, kinds = symbols_of(program, size, build_for(loaded, compiler)), _kinds(program, size)
         link_map = link(script, symbols, spec.chip.regions, chip=spec.chip.name)
@@ -54,16 +54,29 @@ def map_memory(
         link_map,
         _memories(script, spec),
         kinds,
-        firmware=loaded.name if fits else "",
+        firmware="" if why_without else loaded.name,
         width_px=width_px,
         height_px=height_px,
+        why_without=why_without,
     )
 
 
-def _fits(firmware: Firmware, script: LinkerScript, spec: BoardSpec) -> bool:
-    """Say whether firmware, LDF and board are about the same cores."""
-    placed = {script.core_of_processor.get(name) for block in script.blocks for name in block.processors}
-    return _is_of_chip(script, spec) and set(firmware.mains) == set(spec.chip.cores) == placed
+def _misfit(firmware: Firmware, script: LinkerScript, spec: BoardSpec) -> str:
+    """Return what keeps the firmware out of the map: LDF and board, or one of them and it, are not about the same cores; or nothing."""
+    if not _is_of_chip(script, spec):
+        return f"the LDF is for an {script.chip}, the board {spec.name} has an {spec.chip.name}"
+    mains, cores = sorted(firmware.mains), sorted(spec.chip.cores)
+    if mains != cores:
+        return f"its main loops are for {_and(mains)}, the cores of {spec.name} are {_and(cores)}"
+    processors = sorted({name for block in script.blocks for name in block.processors})
+    if sorted(script.core_of_processor.get(name, name) for name in processors) != cores:
+        wanted = [name for name, core in CORE_OF_PROCESSOR.items() if core in cores]
+        return f"the PROCESSORs of the LDF must be {_and(wanted)}, not {_and(processors) or 'none'}"
+    return ""
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join(names)
 
 
 def _is_of_chip(script: LinkerScript, spec: BoardSpec) -> bool:

@@ -113,10 +113,14 @@ def regions_under(address: int, nbytes: int, regions: Sequence[Region]) -> tuple
 
 def region_of(address: int, nbytes: int, regions: Sequence[Region] = CM_BF561_REGIONS) -> Region:
     """Return the region that holds all `nbytes` from `address`; raise ConfigError if no single one does."""
-    problem = "at an address where there is none"
     for region in regions:
         if region.holds(address, nbytes):
             return region
-        if region.holds(address, 1):
-            problem = f"beyond the end of {region.name}, 0x{region.start + region.nbytes - 1:08X}"
+    problem = "at an address where there is none"
+    below = max(
+        (each for each in regions if each.start <= address), key=lambda each: each.start, default=None
+    )
+    if below:
+        end = f"the end of {below.name}, 0x{below.start + below.nbytes - 1:08X}"
+        problem = f"beyond {end}" if below.holds(address, 1) else f"{problem}, above {end}"
     raise ConfigError(f"{nbytes} bytes at 0x{address:08X} must lie inside one memory, not {problem}")

@@ -39,7 +39,8 @@ def check_symbols(script: LinkerScript, symbols: Sequence[Symbol]) -> None:
             raise LinkError(f"{symbol} must be aligned to a power of two, not {symbol.align}")
         if symbol.processor is not None and symbol.processor not in processors:
             known = " or ".join(sorted(processors)) or "none"
-            raise LinkError(f"{symbol} must belong to a processor of {script.path} ({known})")
+            block = f"write a PROCESSOR {symbol.processor} that says where its sections go"
+            raise LinkError(f"{symbol} must belong to a processor of {script.path} ({known}); {block}")
         for other in taken.setdefault(symbol.name, []):
             if symbol.processor == other.processor or None in (symbol.processor, other.processor):
                 raise LinkError(
@@ -103,7 +104,8 @@ def _region_under(segment: Segment, regions: Sequence[Region]) -> Region:
     try:
         return regions_under(segment.start, segment.nbytes, regions)[0]
     except ConfigError as error:
-        raise LinkError(f"{segment.place}: segment '{segment.name}': {error}") from None
+        advice = "`bfsim boards NAME` lists the memories of a board, and --board takes another one"
+        raise LinkError(f"{segment.place}: segment '{segment.name}': {error}; {advice}") from None
 
 
 def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: str, place: Place) -> None:

@@ -7,19 +7,21 @@ fit waits for the next output section that names its input section; one that wai
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS, Region
-from bfsim.errors import LinkError
+from bfsim.errors import LinkError, cut
 from bfsim.linker.checks import check_chip, check_memories, check_resolves, check_symbols
 from bfsim.linker.filling import Filling, align_up
 from bfsim.linker.link_map import LinkMap, Placement, SegmentUsage, Symbol
 from bfsim.linker.reserves import Reserved, expanded
 from bfsim.linker.script import (
+    COMMAND_LINE_OBJECTS,
     Assignment,
     Block,
     FixedReserve,
+    Input,
     InputSections,
     LinkerScript,
     Move,
@@ -186,26 +188,42 @@ class _Linker:
         if len(waiting) > 1:
             nbytes = sum(other.nbytes for other in waiting)
             message += f"; in all {len(waiting)} symbols, {nbytes} bytes, are left without a place"
-        return LinkError(message)
+        return LinkError(message + self._of_other_files(symbol))
 
     def _not_taken(self, symbol: Symbol) -> LinkError:
-        """Return the LinkError for a symbol whose input section no output section names."""
-        inputs = [
-            source
-            for block in self._script.blocks
-            if block.serves(symbol)
-            for output in block.output_sections
-            for statement in output.statements
-            if isinstance(statement, InputSections)
-            for source in statement.inputs
-        ]
+        """Return the LinkError for a symbol whose input section no output section takes from its file."""
         owner = symbol.processor or "both cores"
-        taken = sorted({name for source in inputs if source.takes_file(symbol) for name in source.sections})
+        sources = [source for _, source in self._inputs_for(symbol)]
+        taken = sorted({name for source in sources if source.takes_file(symbol) for name in source.sections})
         return LinkError(
             f"{self._script.path}: section of {symbol} ({symbol.object_file}, {symbol.nbytes} bytes) must "
             f"be one that the LDF takes for {owner} ({', '.join(taken) or 'none'}), "
-            f"not {symbol.section}"
+            f"not {symbol.section}{self._of_other_files(symbol)}"
         )
+
+    def _of_other_files(self, symbol: Symbol) -> str:
+        """Return the end of an error: the first statement that names the symbol's section, of other files; or nothing.
+
+        The wizard of VisualDSP++ writes such LDFs for a project with sub-projects, whose output are the libraries sml2.dlb and sml3.dlb.
+        """
+        for statement, source in self._inputs_for(symbol):
+            if source.files and source.takes_section(symbol) and not source.takes_file(symbol):
+                where = statement.place.beside(Place(self._script.path, 0))
+                return (
+                    f"; {where} takes {symbol.section} only of {cut(', '.join(sorted(source.files)))}: add to its files "
+                    f"{COMMAND_LINE_OBJECTS}, which is all of the firmware, or {symbol.object_file}"
+                )
+        return ""
+
+    def _inputs_for(self, symbol: Symbol) -> Iterator[tuple[InputSections, Input]]:
+        """Yield what the output sections of the symbol's core take, with the statements."""
+        for block in self._script.blocks:
+            if not block.serves(symbol):
+                continue
+            for output in block.output_sections:
+                for statement in output.statements:
+                    if isinstance(statement, InputSections):
+                        yield from ((statement, source) for source in statement.inputs)
 
 
 def _fullness(usage: SegmentUsage) -> str:

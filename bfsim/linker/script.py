@@ -68,12 +68,15 @@ class Input:
         is_object = not symbol.object_file.endswith(".dlb")
         return symbol.object_file in self.files or (is_object and COMMAND_LINE_OBJECTS in self.files)
 
+    def takes_section(self, symbol: Symbol) -> bool:
+        """Say whether `symbol` lies in one of the sections."""
+        return symbol.section in self.sections or any(
+            fnmatchcase(symbol.section, section) for section in self.sections if {*section} & {*"*?"}
+        )
+
     def takes(self, symbol: Symbol) -> bool:
         """Say whether `symbol` lies in one of the sections of one of the files."""
-        return self.takes_file(symbol) and (
-            symbol.section in self.sections
-            or any(fnmatchcase(symbol.section, section) for section in self.sections if {*section} & {*"*?"})
-        )
+        return self.takes_file(symbol) and self.takes_section(symbol)
 
 
 @dataclass(frozen=True, slots=True)

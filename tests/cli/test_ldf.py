@@ -59,7 +59,7 @@ def test_shipped_ldfs_are_found_by_name_from_anywhere(
     assert call(name, "--no-symbols").output == call(str(FOLDER / "l2.ldf"), "--no-symbols").output
     (tmp_path / "l2").rmdir()
     (tmp_path / name).write_text(BF533)
-    assert "no firmware: it is for other cores" in call(name, "--no-symbols").output
+    assert "no firmware: the LDF is for an ADSP-BF533" in call(name, "--no-symbols").output
 
 
 def test_shipped_parts_of_ldfs_are_included_from_anywhere(tmp_path: Path) -> None:
@@ -120,17 +120,24 @@ def test_picture(suffix: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    [BF533, BF533.replace("BF533", "BF561").replace("p0", "p9")],
-    ids=["another chip", "another processor"],
+    ("text", "why"),
+    [
+        (BF533, "the LDF is for an ADSP-BF533, the board cm-bf561 has an ADSP-BF561"),
+        (BF533.replace("BF533", "BF561"), "the PROCESSORs of the LDF must be p0 and p1, not p0"),
+        (
+            BF533.replace("BF533", "BF561").replace("p0", "P0"),
+            "the PROCESSORs of the LDF must be p0 and p1, not P0",
+        ),
+    ],
+    ids=["another chip", "one processor", "another name"],
 )
-def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, tmp_path: Path) -> None:
-    """Segments, and what they take in what order."""
+def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, why: str, tmp_path: Path) -> None:
+    """Segments, and what they take in what order, and why there is no more."""
     path = tmp_path / "other.ldf"
     path.write_text(text)
     done = call(str(path))
     assert done.exit_code == 0
-    assert "no firmware: it is for other cores" in done.output
+    assert f"no firmware: {why}" in " ".join(done.output.split())
     assert "L1_data_a data1" in done.output
     assert json.loads(call(str(path), "--json").output)["firmware"] == ""
 

@@ -57,7 +57,10 @@ def test_a_section_that_nothing_takes_is_named(parse: Parse) -> None:
         ([symbol("x", "fast", -1)], r"symbol 'x' of p0 must have a size of 0 bytes or more, not -1"),
         ([symbol("x", "fast", 4, align=3)], r"symbol 'x' of p0 must be aligned to a power of two, not 3"),
         ([symbol("x", "fast", 4, align=0)], r"must be aligned to a power of two, not 0"),
-        ([symbol("x", "fast", 4, "p2")], r"symbol 'x' of p2 must belong to a processor of .* \(p0 or p1\)"),
+        (
+            [symbol("x", "fast", 4, "p2")],
+            r"symbol 'x' of p2 must belong to a processor of .* \(p0 or p1\); write a PROCESSOR p2 that",
+        ),
         (
             [symbol("x", "fast", 4), symbol("x", "data1", 8)],
             r"'x' of p0 \(section data1, 8 .* 'x' of p0 \(section fast",
@@ -89,7 +92,10 @@ def test_impossible_symbols_are_refused(parse: Parse, symbols: list[Symbol], mes
             "START(0xFF807FFC) LENGTH(8)",
             r"'M': 8 bytes at .* one memory, not beyond the end of COREA_L1_DATA_A",
         ),
-        ("START(0x02000000) LENGTH(4)", r"'M': 4 bytes at 0x02000000 must lie inside one memory"),
+        (
+            "START(0x02000000) LENGTH(4)",
+            r"'M': 4 bytes at 0x02000000 must lie inside one memory, .* above the end of SDRAM, 0x01FFFFFF; `bfsim boards NAME`",
+        ),
         (
             "START(0xFF400000) LENGTH(4)",
             r"'M' lies in COREB_L1_DATA_A, which only core B reaches: .* not by p0",

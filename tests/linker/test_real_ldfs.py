@@ -107,6 +107,46 @@ def test_lists_in_a_circle_end(parse: Parse) -> None:
     assert statement.inputs[0].files == {"a.doj", "b.doj", "c.doj"}
 
 
+SHARED_LIBRARY = (
+    "$SML3 = sml3.dlb, libc.dlb;",
+    "MEMORY { M { TYPE(RAM) START(0x1000) LENGTH(64) WIDTH(8) } }",
+    "COMMON_MEMORY { MASTERS(p0, p1) SECTIONS { s {",
+    "INPUT_SECTIONS($SML3(data1))",
+    "INPUT_SECTIONS($SML3(sdram*)) INPUT_SECTIONS($COMMAND_LINE_OBJECTS(sdram_b)) } > M } }",
+    "PROCESSOR p0 { }",
+)
+
+
+@pytest.mark.parametrize(
+    ("section", "nbytes", "message"),
+    [
+        (
+            "sdram_bank0",
+            8,
+            r"not sdram_bank0; line 5 takes sdram_bank0 only of libc.dlb, sml3.dlb: add to its files \$COMMAND",
+        ),
+        ("data1", 8, r"not data1; line 4 takes data1 only of libc.dlb, sml3.dlb: .*, or camera.doj$"),
+        (
+            "sdram_b",
+            80,
+            r"does not fit in M: 64 of 64 bytes free; line 5 takes sdram_b only of libc.dlb, sml3.dlb",
+        ),
+        ("data2", 8, r"not data2$"),
+    ],
+)
+def test_a_section_of_other_files_is_said_to_be_one(
+    tmp_path: Path, section: str, nbytes: int, message: str
+) -> None:
+    """The wizard's LDF for two cores takes SDRAM's sections of sml3.dlb, the output of a sub-project, which firmware of bfsim is not."""
+    script = parse_ldf(text_of(tmp_path / "shared.ldf", *SHARED_LIBRARY))
+    symbols = [Symbol("camera", section, nbytes, processor="p0", object_file="camera.doj")]
+    with pytest.raises(LinkError, match=message):
+        link(script, symbols)
+    wider = text_of(tmp_path / "wider.ldf", "$SML3 = $COMMAND_LINE_OBJECTS, sml3.dlb;", *SHARED_LIBRARY[1:])
+    if section != "data2" and nbytes <= 64:
+        assert link(parse_ldf(wider), symbols).find("p0", "camera").address == 0x1000
+
+
 @pytest.mark.parametrize(
     "include", ['#include "a\0b"', "#include <a\0b>", 'INCLUDE("a\0b")', '#include "loop"']
 )

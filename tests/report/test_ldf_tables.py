@@ -66,9 +66,11 @@ def test_symbols_can_be_left_out() -> None:
 
 def test_without_firmware_nothing_is_judged() -> None:
     """Segments and what they take, and the reason why there is no more."""
-    empty = replace(MAP, firmware="", segments=(replace(SDRAM, symbols=(), pieces=()),))
+    empty = replace(
+        MAP, firmware="", why_without="of another chip", segments=(replace(SDRAM, symbols=(), pieces=()),)
+    )
     text = "\n".join(text_of(ldf_report(empty, (), symbols=True)))
-    assert "no firmware: it is for other cores" in text
+    assert "no firmware: of another chip" in text
     assert "bank0 bank1" in text
     assert "Picture" not in text
     assert "Symbols\n" not in text

@@ -114,7 +114,7 @@ class CacheRange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MemoryMap:
-    """An LDF with the symbols of a firmware in it; without a `firmware` only what the LDF itself says."""
+    """An LDF with the symbols of a firmware in it; without a `firmware` only what the LDF itself says, and `why_without`."""
 
     ldf: str
     firmware: str
@@ -123,6 +123,7 @@ class MemoryMap:
     height_px: int
     segments: tuple[MapSegment, ...]
     caches: tuple[CacheRange, ...]
+    why_without: str = ""
 
     @property
     def symbols(self) -> tuple[MapSymbol, ...]:

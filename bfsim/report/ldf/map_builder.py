@@ -52,8 +52,9 @@ def memory_map(
     firmware: str,
     width_px: int,
     height_px: int,
+    why_without: str = "",
 ) -> MemoryMap:
-    """Return the map of `script` as `link_map` fills it, or empty without one.
+    """Return the map of `script` as `link_map` fills it, or empty without one, for which `why_without` is the reason.
 
     `kinds`: what the symbols are, by processor (None: both) and name; every other one is code.
     """
@@ -66,6 +67,7 @@ def memory_map(
         height_px=height_px,
         segments=tuple(builder.segment(each) for each in script.segments),
         caches=tuple(_caches(script, memories.regions)),
+        why_without=why_without,
     )
 
 

@@ -45,7 +45,7 @@ def ldf_json(memory_map: MemoryMap, findings: Sequence[Finding]) -> str:
 def _headline(memory_map: MemoryMap) -> Text:
     what = f"{memory_map.firmware}, {memory_map.width_px}x{memory_map.height_px} px"
     if not memory_map.firmware:
-        what = "no firmware: it is for other cores than the LDF or the board"
+        what = f"no firmware: {memory_map.why_without}"
     lines = [f"{memory_map.ldf} on {memory_map.board}: {what}"]
     lines += [
         f"{size(each.nbytes)} of {each.memory} from 0x{each.start:08X} are cache"
