@@ -10,7 +10,7 @@ from pathlib import Path
 
 from PIL import Image, ImageOps, UnidentifiedImageError
 
-from bfsim.errors import RecordingError
+from bfsim.errors import RecordingError, cut
 from bfsim.recording.frames import UyvyImage
 from bfsim.recording.pairs import pairs_of
 from bfsim.recording.planes import YuvPlanes
@@ -96,8 +96,7 @@ def image_paths(source: str) -> list[Path]:
 def _images_and_others(source: str) -> tuple[list[Path], list[Path]]:
     path = Path(source)
     if is_pattern(source):
-        anchor = Path(path.anchor)
-        found = list(anchor.glob(str(path.relative_to(anchor))))
+        found = _matching(path)
     elif path.is_dir():
         found = list(path.iterdir())
     elif path.exists():
@@ -106,16 +105,35 @@ def _images_and_others(source: str) -> tuple[list[Path], list[Path]]:
         raise RecordingError(
             f"{source}: source must be a file, a folder or a pattern of image files, but is not there"
         )
-    files = sorted((file for file in found if file.is_file()), key=_natural_key)
+    # A link that leads nowhere is a picture that cannot be read, and not none.
+    files = sorted((each for each in found if each.is_file() or _is_broken_link(each)), key=_natural_key)
     images = [
         file for file in files if file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
     ]
     if not images:
         raise RecordingError(
             f"{source}: source must hold images ({', '.join(sorted(IMAGE_SUFFIXES))}), "
-            f"but none of its {len(found)} files is one"
+            f"but none of its {len(found)} files is one{_names_of(found)}"
         )
     return images, [file for file in files if file not in images]
+
+
+def _matching(pattern: Path) -> list[Path]:
+    """Return the files that a pattern means; folders in it that are there have that name, brackets and all."""
+    folder, rest = Path(pattern.anchor), list(pattern.relative_to(pattern.anchor).parts)
+    while (folder / rest[0]).exists():
+        folder /= rest.pop(0)
+    return list(folder.glob(str(Path(*rest))))
+
+
+def _is_broken_link(path: Path) -> bool:
+    return path.is_symlink() and not path.exists()
+
+
+def _names_of(found: list[Path]) -> str:
+    """Return the end of an error: what is there instead of images, folders with a slash."""
+    names = sorted(f"{each.name}/" if each.is_dir() else each.name for each in found)
+    return f": {cut(', '.join(names))}" if names else ""
 
 
 def _natural_key(path: Path) -> list[tuple[int, str]]:
@@ -146,5 +164,8 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
         raise RecordingError(f"image must be readable: {error}") from None
     if mode not in _EIGHT_BIT_MODES:
-        raise RecordingError(f"image must have 8 bits a channel, not the pixel format {mode}")
+        raise RecordingError(
+            f"image must have 8 bits a channel, not the pixel format {mode}; make 8 of the bits that the camera uses, of 16 "
+            "bits with `mogrify -depth 8`"
+        )
     return upright

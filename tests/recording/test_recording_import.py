@@ -250,6 +250,38 @@ def test_video(tmp_path: Path) -> None:
     assert set(frames[0].left[:, 0::4].flat) == {128}
 
 
+@pytest.mark.parametrize(("degrees", "corner"), [(90, (15, 0)), (180, (7, 15)), (-90, (0, 7))])
+def test_video_of_a_turned_camera_is_upright(tmp_path: Path, degrees: int, corner: tuple[int, int]) -> None:
+    """A phone stores its pictures as its sensor lies; the bright upper left corner goes where the video says."""
+    av = pytest.importorskip("av", reason="needs the optional extra: video")
+    picture = np.zeros((8, 16, 3), np.uint8)
+    picture[0, :2] = 255
+    with av.open(tmp_path / "a.mp4", "w") as container:
+        stream = container.add_stream("mpeg4", rate=25)
+        stream.width, stream.height, stream.pix_fmt = 16, 8, "yuv420p"
+        stream.set_display_rotation(degrees)
+        container.mux(stream.encode(av.VideoFrame.from_ndarray(picture)))
+        container.mux(stream.encode())
+    import_recording([tmp_path / "a.mp4"], tmp_path / "a.mcap", mono=True)
+    luma = frames_of(tmp_path / "a.mcap")[0].left[:, 1::2]
+    assert luma.shape == ((8, 16) if degrees == 180 else (16, 8))
+    assert luma[corner] == luma.max() > 200
+
+
+def test_a_file_with_sound_alone_is_no_video(tmp_path: Path) -> None:
+    """The error says what is in it."""
+    av = pytest.importorskip("av", reason="needs the optional extra: video")
+    with av.open(tmp_path / "a.mkv", "w") as container:
+        stream = container.add_stream("pcm_s16le", rate=8000)
+        sound = av.AudioFrame.from_ndarray(np.zeros((1, 64), np.int16), layout="mono")
+        sound.sample_rate = 8000
+        container.mux(stream.encode(sound))
+    with pytest.raises(
+        RecordingError, match=r"a\.mkv: file must be whole and have a video stream, not audio"
+    ):
+        import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True)
+
+
 def test_existing_recording_needs_force(tmp_path: Path) -> None:
     """A recording is not overwritten by accident."""
     save_grey(tmp_path / "a.png", 7)
@@ -311,6 +343,25 @@ def test_one_bad_picture_takes_its_pair_along(tmp_path: Path) -> None:
     assert [each.name for each in summary.skipped] == ["0.png"]
 
 
+def test_a_link_that_leads_nowhere_is_a_picture_that_cannot_be_read(tmp_path: Path) -> None:
+    """Data sets kept by git-annex have those where a picture was not fetched."""
+    save_grey(tmp_path / "left" / "0.png", 1)
+    (tmp_path / "left" / "1.png").symlink_to("nowhere.png")
+    (tmp_path / "left" / "2.png").symlink_to(tmp_path / "left" / "2.png")
+    summary = import_recording([tmp_path / "left"], tmp_path / "a.mcap", mono=True)
+    assert summary.frame_count == 1
+    assert [each.name for each in summary.skipped] == ["1.png", "2.png"]
+    assert "No such file" in summary.skipped[0].reason
+
+
+def test_a_pattern_in_a_folder_with_brackets(tmp_path: Path) -> None:
+    """Brackets of a folder that is there are its name; those of the rest are a pattern."""
+    for k in (1, 2, 3):
+        save_grey(tmp_path / "run [1]" / f"left_{k}.png", k)
+    import_recording([str(tmp_path / "run [1]" / "left_[12].png")], tmp_path / "a.mcap", mono=True)
+    assert [frame.left[0, 1] for frame in frames_of(tmp_path / "a.mcap")] == [1, 2]
+
+
 @pytest.mark.parametrize("layout", ["444", "422", "420"])
 def test_crop_keeps_the_middle(layout: str) -> None:
     """Brightness and colour are cut alike, on whole colour samples."""
@@ -336,6 +387,7 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("empty").mkdir()
     Path("texts").mkdir()
     Path("texts/a.txt").touch()
+    Path("texts/cam0").mkdir()
     Image.fromarray(noise((32, 32))).save("whole.png")
     Path("bad.png").write_bytes(Path("whole.png").read_bytes()[:500])
     Path("text.png").write_text("no image")
@@ -384,14 +436,18 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["mixed"], {"mono": True, "crop": (20, 4)}, "mixed: picture 1: 8x5 is too small for `--crop` 20x4"),
         (["two"], {"mono": True, "crop": (6, 4), "resize": (8, 4)}, "`--resize` or `--crop`, not both"),
         (["empty"], {"mono": True}, r"empty: source must hold images \(\.bmp, .*none of its 0 files"),
-        (["texts"], {"mono": True}, "none of its 1 files"),
+        (["texts"], {"mono": True}, r"none of its 2 files is one: a\.txt, cam0/$"),
         (["two/*.jpg"], {"mono": True}, "none of its 0 files"),
         (["nowhere"], {"mono": True}, "nowhere: source .* is not there"),
         (["nowhere.png"], {"mono": True}, r"nowhere\.png: source must be .* is not there"),
         (["nowhere.uyvy"], {"mono": True, "size": (8, 4)}, "must be a readable file: No such file"),
         (["bad.png"], {"mono": True}, r"bad\.png: image must be readable: "),
         (["text.png"], {"mono": True}, r"text\.png: file must be an image that Pillow reads"),
-        (["deep.png"], {"mono": True}, r"deep\.png: image must have 8 bits a channel, not .* I;16"),
+        (
+            ["deep.png"],
+            {"mono": True},
+            r"deep\.png: image must have 8 bits a channel, not .* I;16; make 8 of",
+        ),
         (["short.uyvy"], {"mono": True}, r"short\.uyvy: raw UYVY needs the size .* `--size 320x240`"),
         (
             ["short.uyvy"],
