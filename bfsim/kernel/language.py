@@ -1,7 +1,7 @@
 """The kernel language: the Python source of a function → typed tree, or a refusal with file, line and caret.
 
 The subset: parameters that are integers or arrays, 32-bit local integers, assignments, `if`, `while`,
-`for ... in range(...)`, `break`, `continue`, `return`, and the expressions of `expressions.py` and `calls.py`. Anything
+`for ... in` a range or an array, `break`, `continue`, `return`, and the expressions of `expressions.py` and `calls.py`. Anything
 else is refused when the function is decorated, before it ever runs.
 """
 
@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from types import CodeType, FunctionType
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from bfsim.errors import with_article
 from bfsim.kernel import tree
@@ -21,10 +21,19 @@ from bfsim.kernel.function import Body, Parameter
 from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
+from bfsim.kernel.split_assignments import each_alike, together
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, f32, i32, u32
 
 SCALARS = (i32, u32, f32)
-STATEMENTS = {"try": "tests with if", "with": "plain statements"}
+STATEMENTS = {
+    "try": "tests with if",
+    "with": "plain statements",
+    "match": "write if and elif",
+    "def": "write another @kernel beside this one, and call it",
+    "global": "keep it in an element of an array parameter",
+    "nonlocal": "keep it in an element of an array parameter",
+}
+"""What to do instead of a statement, by its first word."""
 
 
 class Read(NamedTuple):
@@ -159,6 +168,8 @@ class _Reader:
     ended: bool = False
     breaks: list[bool] = field(default_factory=list)
     """Of each open loop: whether a `break` leaves it."""
+    hidden: set[str] = field(default_factory=set)
+    """Names of the locals that only the compiled code has."""
 
     def block(self, body: list[ast.stmt]) -> tuple[tree.Stmt, ...]:
         self.ended = False
@@ -182,11 +193,24 @@ class _Reader:
         return []
 
     def _assign(self, node: ast.Assign) -> list[tree.Stmt]:
-        if len(node.targets) != 1:
-            self.scope.source.refuse(node, "a kernel assigns one name at a time", "write two lines")
-        if isinstance(node.targets[0], ast.Tuple):
-            return self._set_both(node.targets[0], node.value)
-        return self._set(node.targets[0], node.value, None)
+        target, value = node.targets[0], node.value
+        if len(node.targets) > 1:
+            pairs = each_alike(node.targets, value, self._hidden)
+        elif not isinstance(target, ast.Tuple):
+            pairs = [(target, value)]
+        elif isinstance(value, ast.Tuple) and len(value.elts) == len(target.elts):
+            pairs = together(target.elts, value.elts, self._hidden)
+        else:
+            return self._set_both(target, value)
+        return [stmt for target, value in pairs for stmt in self._set(target, value, None)]
+
+    def _hidden(self, stem: str = "value") -> str:
+        """Return the name of a new local that only the compiled code has."""
+        taken = {*self.scope.own, *self.scope.locals, *self.hidden}
+        name = next(f"{stem}_{n}" for n in count(1) if f"{stem}_{n}" not in taken)
+        self.hidden.add(name)
+        self.scope.assigned.add(name)
+        return name
 
     def _set_both(self, target: ast.Tuple, value: ast.expr) -> list[tree.Stmt]:
         """Assign the two results of an intrinsic, by way of a local that only the compiled code has."""
@@ -196,10 +220,10 @@ class _Reader:
         if pair is None or pair.type is not PAIR or names[0].id == names[1].id:
             scope.source.refuse(
                 target,
-                "only an intrinsic with two results is assigned to two names",
-                "write `upper, lower = add_i4x8(x, y)`, or two lines",
+                "only as many values, or an intrinsic with two results, are assigned to several names",
+                "write `a, b = x, y`, `upper, lower = add_i4x8(x, y)`, or a line for each",
             )
-        hidden = next(f"pair_{n}" for n in count(1) if f"pair_{n}" not in {*scope.own, *scope.locals})
+        hidden = self._hidden("pair")
         scope.locals[hidden] = PAIR
         found: list[tree.Stmt] = [tree.Assign(hidden, pair, target.lineno)]
         for name, upper in zip(names, (True, False), strict=True):
@@ -211,7 +235,9 @@ class _Reader:
         kind = _annotation(self.scope.outer, node.annotation)
         if kind not in SCALARS or node.value is None:
             self.scope.source.refuse(
-                node, "a local is an i32, a u32 or an f32 with a value", "write x: u32 = 0"
+                node,
+                "a local is an i32, a u32 or an f32 with a value",
+                "write x: u32 = 0, and u8(...) around what must wrap at 8 bits",
             )
         assert isinstance(kind, (IntType, FloatType))
         return self._set(node.target, node.value, kind)
@@ -295,15 +321,19 @@ class _Reader:
 
     def _for(self, node: ast.For) -> list[tree.Stmt]:
         self._no_else(node)
-        source = self.scope.source
-        call = node.iter
-        if not (
-            isinstance(call, ast.Call)
-            and isinstance(call.func, ast.Name)
-            and self.scope.is_builtin(call.func, range)
-        ):
+        source, call = self.scope.source, node.iter
+        if self._is_array(call):
+            return self._for_each(node, self._hidden(), node.target, call)
+        if self._is_call_of(call, enumerate) and len(call.args) == 1 and self._is_array(call.args[0]):
+            names = node.target.elts if isinstance(node.target, ast.Tuple) else []
+            if len(names) != 2 or not isinstance(names[0], ast.Name):
+                source.refuse(node.target, "enumerate gives two values", "write for i, v in enumerate(a)")
+            return self._for_each(node, names[0].id, names[1], call.args[0])
+        if not self._is_call_of(call, range):
             source.refuse(
-                call, "a kernel loops over range(...) only", "write for i in range(len(a)) and use a[i]"
+                call,
+                "a kernel loops over range(...), an array or enumerate(array) only",
+                "write for i in range(start, stop, step) and use a[i]",
             )
         if not isinstance(node.target, ast.Name) or node.target.id in self.scope.arrays or call.keywords:
             source.refuse(node, "a loop counts one plain name", "write for i in range(...)")
@@ -320,20 +350,41 @@ class _Reader:
         start, stop = (
             (bounds[0], bounds[1]) if len(bounds) > 1 else (tree.Const(0, i32, node.lineno), bounds[0])
         )
-        name = node.target.id
+        return self._counted(node, node.target.id, (start, stop, int(step.value)), node.body)
+
+    def _is_array(self, node: ast.expr) -> TypeGuard[ast.Name]:
+        return isinstance(node, ast.Name) and node.id in self.scope.arrays
+
+    def _is_call_of(self, node: ast.expr, function: object) -> TypeGuard[ast.Call]:
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name):
+            return False
+        return self.scope.is_builtin(node.func, function)
+
+    def _for_each(self, node: ast.For, counter: str, element: ast.expr, array: ast.Name) -> list[tree.Stmt]:
+        """Read a loop over the elements of an array, which `counter` counts."""
+        index = ast.copy_location(ast.Name(counter), array)
+        value = ast.copy_location(ast.Subscript(array, index), array)
+        first = ast.copy_location(ast.Assign([element], value), node)
+        bounds = tree.Const(0, i32, node.lineno), tree.Length(array.id, i32, node.lineno), 1
+        return self._counted(node, counter, bounds, [first, *node.body])
+
+    def _counted(
+        self, node: ast.For, name: str, bounds: tuple[tree.Expr, tree.Expr, int], statements: list[ast.stmt]
+    ) -> list[tree.Stmt]:
+        """Read the statements of a loop that counts `name` from a start to before a stop by a step."""
         if self.scope.locals.setdefault(name, i32) is not i32:
-            source.refuse(
+            self.scope.source.refuse(
                 node.target,
                 f"{name} is {self.scope.locals[name]}, not i32",
                 "use another name for the counter",
             )
         before = set(self.scope.assigned)
         self.scope.assigned.add(name)
-        body = self._loop_body(node.body)
+        body = self._loop_body(statements)
         self.scope.assigned = before
         self.breaks.pop()
         self.ended = False
-        return [tree.For(name, start, stop, int(step.value), body, node.lineno)]
+        return [tree.For(name, *bounds, body, node.lineno)]
 
     def _no_else(self, node: ast.While | ast.For) -> None:
         if node.orelse:
@@ -353,6 +404,10 @@ class _Reader:
         return [tree.Continue(node.lineno)]
 
     def _return(self, node: ast.Return) -> list[tree.Stmt]:
+        if isinstance(node.value, ast.Tuple):
+            self.scope.source.refuse(
+                node.value, "a kernel returns one number", "store several into an array that is a parameter"
+            )
         if (node.value is None) != (self.result is None):
             must = "must return a value" if self.result else "has no result type"
             self.scope.source.refuse(

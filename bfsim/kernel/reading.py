@@ -33,7 +33,18 @@ if TYPE_CHECKING:
 WORD = re.compile(r"[\w\x80-\U0010ffff]+")
 """All names of a text and more, such as the words of comments."""
 HALVES = (high_of_fr2x16, low_of_fr2x16)
-FUNCTIONS: tuple[Any, ...] = (*INTRINSICS, *TO_THE_RIGHT, *OF_TWO, *HALVES, abs, len, ord, range, sqrt)
+FUNCTIONS: tuple[Any, ...] = (
+    *INTRINSICS,
+    *TO_THE_RIGHT,
+    *OF_TWO,
+    *HALVES,
+    abs,
+    enumerate,
+    len,
+    ord,
+    range,
+    sqrt,
+)
 MEANINGS = {id(each): f"{each.__module__}.{each.__qualname__}" for each in FUNCTIONS}
 """Of the functions that the language knows."""
 

@@ -38,7 +38,9 @@ class IntType:
 
     def __getitem__(self, item: object) -> ArrayType:
         if item != slice(None):
-            raise TypeError(f"an array type must be written {self.name}[:]: one dimension, no size")
+            raise TypeError(
+                f"an array type must be written {self.name}[:]: one dimension, no size; in a picture of rows, pixel x of row y is a[y * width + x]"
+            )
         return ArrayType(self)
 
     def __call__(self, value: int) -> int:
@@ -68,7 +70,9 @@ class FloatType:
 
     def __getitem__(self, item: object) -> ArrayType:
         if item != slice(None):
-            raise TypeError(f"an array type must be written {self.name}[:]: one dimension, no size")
+            raise TypeError(
+                f"an array type must be written {self.name}[:]: one dimension, no size; in a picture of rows, pixel x of row y is a[y * width + x]"
+            )
         return ArrayType(self)
 
     def __call__(self, value: float) -> float:

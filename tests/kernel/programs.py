@@ -152,7 +152,7 @@ class Writer:
 
     def statement(self, margin: str, depth: int, *, in_loop: bool) -> None:
         """Write one statement; compound ones only while `depth` lasts."""
-        form = self.draw(st.integers(0, 9 if depth > 0 else 5))
+        form = self.draw(st.integers(0, 11 if depth > 0 else 7))
         kind = self.pick(SIGNED, UNSIGNED)
         if form <= 1:
             self.rows.append(f"{margin}{self.pick(*LOCALS[kind])} = {self.value(kind, 3)}")
@@ -174,9 +174,21 @@ class Writer:
         elif form == 5:
             self.rows.append(f"{margin}t = {self.test(2)}")
         elif form <= 7:
+            self.several(margin, kind, alike=form == 6)
+        elif form <= 9:
             self.branch(margin, depth, in_loop=in_loop)
         else:
             self.loop(margin, depth)
+
+    def several(self, margin: str, kind: str, *, alike: bool) -> None:
+        """Write an assignment to two or three targets: of one value to all, or of as many."""
+        count = self.draw(st.integers(2, 3))
+        array = f"{self.pick(*('e' if kind == UNSIGNED else 'abcdf'))}[{self.index(1)}]"
+        targets = [self.pick(*LOCALS[kind], array) for _ in range(count)]
+        calls = [f"mix({self.value(SIGNED, 1)}, a)"] if kind == SIGNED else []
+        values = [self.pick(self.value(kind, 2), *targets, *calls) for _ in range(count)]
+        left, right = (" = ".join(targets), values[0]) if alike else (", ".join(targets), ", ".join(values))
+        self.rows.append(f"{margin}{left} = {right}")
 
     def branch(self, margin: str, depth: int, *, in_loop: bool) -> None:
         """Write an if, with elif and else at times; in a loop it may jump."""
@@ -192,10 +204,16 @@ class Writer:
                 self.block(margin + "    ", depth - 1, in_loop=in_loop)
 
     def loop(self, margin: str, depth: int) -> None:
-        """Write a loop that surely ends: over a range, or bounded by a counter of its own."""
+        """Write a loop that surely ends: over a range or an array, or bounded by a counter of its own."""
         name = f"k{self.names}"
         self.names += 1
-        if self.draw(st.booleans()):
+        form = self.draw(st.integers(0, 5))
+        if form == 4:
+            self.rows.append(f"{margin}for {name} in {self.pick(*'abcdf')}:")
+        elif form == 5:
+            target = self.pick(*LOCALS[SIGNED], f"d[{name} & 15]")
+            self.rows.append(f"{margin}for {name}, {target} in enumerate({self.pick(*'abcdf')}):")
+        elif form <= 1:
             start, step = self.draw(st.integers(-3, 9)), self.draw(st.sampled_from((1, 1, 2, 3, -1, -2)))
             self.rows.append(f"{margin}for {name} in range({start}, {self.value(SIGNED, 1)} & 15, {step}):")
         else:

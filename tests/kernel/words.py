@@ -116,6 +116,10 @@ def _cast(bits: int, *, signed: bool) -> Callable[[Any], Word]:
     return lambda value: Word(_wrapped(int(value), bits, signed=signed), signed=register_signed)
 
 
+def _enumerate(row: Row) -> Iterator[tuple[Word, Word]]:
+    return ((each, row[each]) for each in _range(len(row)))
+
+
 def _range(*bounds: Any) -> Iterator[Word]:
     return (Word(each, signed=True) for each in builtins.range(*map(int, bounds)))
 
@@ -131,7 +135,7 @@ def _chosen(function: Callable[..., int]) -> Callable[..., Word]:
 NAMES: dict[str, Any] = {
     "i8": _cast(8, signed=True), "u8": _cast(8, signed=False), "i16": _cast(16, signed=True),
     "u16": _cast(16, signed=False), "i32": _cast(32, signed=True), "u32": _cast(32, signed=False),
-    "min": _chosen(min), "max": _chosen(max), "range": _range,
+    "min": _chosen(min), "max": _chosen(max), "range": _range, "enumerate": _enumerate,
     "quotient": _chosen(_defined(quotient)), "remainder": _chosen(_defined(remainder)),
     "len": lambda row: Word(len(row), signed=True),
     "kernel": lambda function: function,
