@@ -216,6 +216,47 @@ def test_a_source_needs_a_compiler_or_kept_code(tmp_path: Path, monkeypatch: pyt
         sums(tmp_path, "sums.c")
 
 
+def test_what_is_missing_is_told_when_the_code_comes_to_it() -> None:
+    """Under its name in C; an object file that another build links must have all."""
+    kernel = kernel_from(DATA / "missing.o", "missing", a=i32, result=i32)
+    with pytest.raises(
+        KernelError,
+        match=r"_missing must run .* but it comes to __divsi3, which missing.o does not define; def",
+    ):
+        kernel(3)
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_parts_of_a_file_that_do_not_run_need_nothing(tmp_path: Path) -> None:
+    """As functions of a library that want a heap, an assert that holds, and what another file has."""
+    (tmp_path / "library.c").write_text(
+        """
+        #include <assert.h>
+        #include <stdlib.h>
+        extern int elsewhere(int), table[];
+        void *fresh(int n) { return malloc(n); }
+        int twice(int n) { assert(n < 100); return 2 * n; }
+        int reads(int n) { return table[n]; }
+        int calls(int n) { return elsewhere(n) + 1; }
+        int points(int n) { int (*volatile f)(int) = elsewhere; return f(n) + 1; }
+        """
+    )
+    kernels = {
+        name: kernel_from(tmp_path / "library.c", name, n=i32, result=i32)
+        for name in ("twice", "reads", "calls", "points", "fresh")
+    }
+    assert kernels["twice"](21) == 42
+    for name, missing in (
+        ("reads", "table"),
+        ("calls", "elsewhere"),
+        ("points", "elsewhere"),
+        ("fresh", "_sbrk"),
+    ):
+        with pytest.raises(KernelError, match=f"it comes to {missing}, which library.c does not define"):
+            kernels[name](1)
+
+
 @pytest.mark.toolchain
 @pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
 def test_c_is_compiled_with_what_it_includes(tmp_path: Path) -> None:

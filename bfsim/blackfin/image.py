@@ -6,7 +6,7 @@ import hashlib
 import json
 from bisect import bisect_right
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
@@ -14,6 +14,12 @@ from bfsim.errors import KernelError, cut
 
 MOST_NAMES = 5
 """As many names are listed of what is missing."""
+
+
+NOWHERE = 0xFFC00000
+"""[HRM] Where the system's registers are: no code is there, and no data of a program."""
+NOWHERE_BYTES = 256
+"""[ours] From one missing symbol to the next."""
 
 
 class Use(StrEnum):
@@ -53,7 +59,7 @@ class Image:
     """A program in memory: its segments, addresses by symbol, its functions in the order of their addresses.
 
     `pointers`: addresses of code that its data holds, such as those of a switch; of a linked program all words that may be. `octets`: the file with
-    its relocations applied, for what reads debugging information.
+    its relocations applied, for what reads debugging information. `missing`: symbols that it uses and does not have, by addresses where nothing is.
     """
 
     name: str
@@ -62,6 +68,7 @@ class Image:
     routines: tuple[Routine, ...]
     pointers: frozenset[int]
     octets: bytes
+    missing: Mapping[int, str] = field(default_factory=dict)
 
     @cached_property
     def digest(self) -> str:
@@ -81,6 +88,10 @@ class Image:
         found = self.routines[number - 1] if number else None
         return found if found and address < found.end else None
 
+    def missing_at(self, address: int) -> str | None:
+        """Return the missing symbol for which an address stands, or None for any other one."""
+        return self.missing.get(address - address % NOWHERE_BYTES)
+
     def address_of(self, symbol: str) -> int:
         """Return the address of a symbol. Raises KernelError if there is none of that name."""
         if symbol not in self.symbols:
@@ -96,18 +107,25 @@ def packed(image: Image) -> bytes:
     """Return an image as bytes: a line of JSON, and behind it the contents of its segments and the file."""
     segments = [(each.address, len(each.octets), each.use) for each in image.segments]
     routines = [astuple(each) for each in image.routines]
-    head = json.dumps([image.name, segments, image.symbols, routines, sorted(image.pointers)])
+    missing = sorted(image.missing.items())
+    head = json.dumps([image.name, segments, image.symbols, routines, sorted(image.pointers), missing])
     return b"".join((head.encode(), b"\n", *(each.octets for each in image.segments), image.octets))
 
 
 def unpacked(octets: bytes) -> Image:
     """Return the image that `packed` has made bytes of."""
     head, _, rest = octets.partition(b"\n")
-    name, rows, symbols, routines, pointers = json.loads(head)
+    name, rows, symbols, routines, pointers, missing = json.loads(head)
     segments = []
     for address, nbytes, use in rows:
         segments.append(Segment(address, rest[:nbytes], Use(use)))
         rest = rest[nbytes:]
     return Image(
-        name, tuple(segments), symbols, tuple(Routine(*each) for each in routines), frozenset(pointers), rest
+        name,
+        tuple(segments),
+        symbols,
+        tuple(Routine(*each) for each in routines),
+        frozenset(pointers),
+        rest,
+        dict(missing),
     )

@@ -7,10 +7,11 @@ memory, or as far beyond as they reach: nothing of the timing depends on it, for
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from itertools import pairwise
 
-from bfsim.blackfin.image import MOST_NAMES, Image, Routine, Segment, Use
+from bfsim.blackfin.image import MOST_NAMES, NOWHERE, NOWHERE_BYTES, Image, Routine, Segment, Use
 from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol
 from bfsim.blackfin.relocations import FIELDS, Kind
 from bfsim.errors import KernelError, cut
@@ -22,16 +23,21 @@ LONGEST_ALIGN = 4096
 WORD_BYTES = 4
 
 
-def link(file: ObjectFile) -> Image:
+def link(file: ObjectFile, *, is_whole: bool = True) -> Image:
     """Place an object file in memory and apply its relocations; a linked program is taken as it is.
+
+    What it does not define is an error if it must be whole, else it gets an address where nothing is: most of a C file, and of the
+    library that it drags in, such as `malloc`, may never run.
 
     Raises KernelError for symbols that are nowhere defined, for relocations that cannot be applied, and for sections that leave
     the Blackfin's addresses or lie over each other.
     """
     places = _places(file)
     contents = [bytearray(each.octets) for each in file.sections]
+    missing: dict[int, str] = {}
     if not file.is_linked:
-        _require_symbols(file)
+        missing = _missing(file, is_whole=is_whole)
+        file = _with_missing(file, missing)
         for each in file.relocations:
             _apply(each, file, places, contents)
     octets = bytearray(file.octets)
@@ -50,7 +56,9 @@ def link(file: ObjectFile) -> Image:
         each.name: _value(each, file, places) for each in file.symbols if each.is_defined and each.name
     }
     pointers = frozenset(_likely_pointers(segments) if file.is_linked else _pointers(file, places))
-    return Image(file.name, tuple(segments), symbols, _routines(file, places), pointers, bytes(octets))
+    return Image(
+        file.name, tuple(segments), symbols, _routines(file, places), pointers, bytes(octets), missing
+    )
 
 
 def _places(file: ObjectFile) -> tuple[int, ...]:
@@ -72,17 +80,29 @@ def _places(file: ObjectFile) -> tuple[int, ...]:
     return tuple(places)
 
 
-def _require_symbols(file: ObjectFile) -> None:
+def _missing(file: ObjectFile, *, is_whole: bool) -> dict[int, str]:
+    """Return what the file uses and does not define, by addresses where nothing is. Raises KernelError if it must be whole."""
     used = {each.symbol for each in file.relocations if file.sections[each.section].use is not Use.NOTES}
     if beyond := [each for each in used if each >= len(file.symbols)]:
         raise KernelError(f"{file.name} must have the symbol number {beyond[0]}, which it relocates by")
     missing = sorted({file.symbols[each].name for each in used if not file.symbols[each].is_defined} - {""})
-    if missing:
+    if missing and is_whole:
         names = ", ".join(map(cut, missing[:MOST_NAMES]))
         raise KernelError(
             f"{file.name} must define all that it uses, but not {names}; link it with what does "
             "(bfin-elf-gcc -r -nostdlib ... -lgcc)"
         )
+    return {NOWHERE + number * NOWHERE_BYTES: name for number, name in enumerate(missing)}
+
+
+def _with_missing(file: ObjectFile, missing: Mapping[int, str]) -> ObjectFile:
+    """Return the file with values for the symbols that it does not define."""
+    addresses = {name: address for address, name in missing.items()}
+    symbols = tuple(
+        each if each.is_defined else replace(each, value=addresses.get(each.name, each.value))
+        for each in file.symbols
+    )
+    return replace(file, symbols=symbols)
 
 
 def _value(symbol: Symbol, file: ObjectFile, places: tuple[int, ...]) -> int:

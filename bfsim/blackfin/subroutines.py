@@ -76,7 +76,7 @@ class LoadedImage:
             results=frozenset({RESULT}),
             aligned=aligned,
         )
-        return Subroutine(symbol, address, processor)
+        return Subroutine(symbol, address, processor, self.image)
 
     def explored(self, *first: int) -> Code:
         """Return the code that is entered at `first`; it is looked for once."""
@@ -117,6 +117,7 @@ class Subroutine:
     symbol: str
     address: int
     processor: Processor
+    image: Image
 
     @property
     def translated(self) -> Translated:
@@ -128,7 +129,13 @@ class Subroutine:
         address = self.processor.state["PC"]
         self.processor.state.slots[:] = 0
         self.translated.counts[:] = 0
-        if event is Event.FAULT:
+        place = runner().fault.value if event is Event.FAULT else address
+        if missing := self.image.missing_at(place):
+            what = (
+                f"it comes to {missing.removeprefix('_')}, which {self.image.name} does not define; define it there, or do "
+                "without it (an object file is linked with what has it: bfin-elf-gcc -r -nostdlib ... -lgcc)"
+            )
+        elif event is Event.FAULT:
             fault = runner().fault.value
             what = f"it accesses 0x{fault:08X}, where there is no memory"
             if STACK - STACK_OVERRUN_BYTES <= fault < STACK:

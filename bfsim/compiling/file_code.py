@@ -56,7 +56,7 @@ class FileCode:
 def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result: Number | None) -> Kernel:
     """Return the function `name` of a file as a kernel. Raises as `kernel_from`."""
     files = _files(path)
-    image = link(read_object(_object_file(path, files), path.name))
+    image = link(read_object(_object_file(path, files), path.name), is_whole=False)
     symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
     address = image.address_of(symbol)
     routine = image.routine_at(address) or Routine(symbol, address, address)
