@@ -128,9 +128,11 @@ def load_named(name: str, kind: Kind[Wanted], apart: Collection[Wanted] = ()) ->
 def load_kernel(name: str, firmware: str) -> Kernel:
     """Find the kernel `name`: FILE.py:NAME, PACKAGE:NAME, or the name of one of the kernels of `firmware`.
 
-    Raises FirmwareError when there is no such kernel, or more than one.
+    :NAME may be left out where the file has one kernel. Raises FirmwareError when there is no such kernel, or more than one.
     """
     place, _, attribute = name.rpartition(":")
+    if not place and attribute.endswith(".py"):
+        place, attribute = attribute, ""
     own = load_firmware(firmware).own
     if not place:
         found = [each for each in kernels_of(own) if each.name == attribute]
@@ -138,9 +140,12 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         module = own.modules.get(place)
         if module is None:
             module, own = import_own(*located(parted(name, FIRMWARE.must_be)[0]))
-        found = [each for each in [getattr(module, attribute, None)] if isinstance(each, Kernel)]
+        meant = [getattr(module, attribute, None)] if attribute else vars(module).values()
+        found = [each for each in meant if isinstance(each, Kernel)]
     if len(found) != 1:
-        advice = _apart(found) if found else _nearest(attribute, {each.name for each in kernels_of(own)})
+        advice = (
+            _apart(found, place) if found else _nearest(attribute, {each.name for each in kernels_of(own)})
+        )
         raise FirmwareError(f"{cut(name)} must name one kernel, but names {len(found) or 'none'}; {advice}")
     return found[0]
 
@@ -157,9 +162,11 @@ def entries_of(firmware: Firmware) -> set[Kernel]:
     return {each for main in firmware.mains.values() for each in kernels_named(main)}
 
 
-def _apart(kernels: list[Kernel]) -> str:
-    """Say by which names kernels of one name are told apart."""
-    names = sorted(f"{getattr(each.definition, '__module__', each.place)}:{each.name}" for each in kernels)
+def _apart(kernels: list[Kernel], place: str) -> str:
+    """Say by which names kernels are told apart, those of `place` or, without it, of several modules."""
+    names = sorted(
+        f"{place or getattr(each.definition, '__module__', each.place)}:{each.name}" for each in kernels
+    )
     return f"write {' or '.join(names)}"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
@@ -11,6 +12,7 @@ from bfsim.cli.main import main
 from bfsim.errors import ConfigError, FirmwareError
 from bfsim.explain import explain, explain_named
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2
+from bfsim.loading import load_kernel
 from bfsim.run import simulate
 from bfsim.trace import RunRecord, StallReason
 from bfsim.trace.explanation import ExplainedLine, Explanation
@@ -88,6 +90,19 @@ def test_a_kernel_that_did_not_run_is_told(run: RunRecord) -> None:
         ConfigError, match=r"find must have run to be counted, but did not; `bfsim profile` lists"
     ):
         explain(cost_kernels.find, VDSP_O2, run.kernels)
+
+
+def test_the_one_kernel_of_a_file_needs_no_name(tmp_path: Path) -> None:
+    """Of several the message has the names."""
+    one = "from bfsim.api import i32, kernel\n\n\n@kernel\ndef half(x: i32) -> i32:\n    return x >> 1\n"
+    (tmp_path / "single.py").write_text(one)
+    assert load_kernel(str(tmp_path / "single.py"), "tinyphoon").name == "half"
+    (tmp_path / "double.py").write_text(one + "\n\n@kernel\ndef twice(x: i32) -> i32:\n    return x + x\n")
+    with pytest.raises(
+        FirmwareError,
+        match=r"double.py must name one kernel, but names 2; write \S+/double.py:half or \S+/double.py:twice",
+    ):
+        load_kernel(str(tmp_path / "double.py"), "tinyphoon")
 
 
 @pytest.mark.parametrize(

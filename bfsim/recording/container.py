@@ -60,6 +60,10 @@ class McapContainer:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
+        if self.path.is_dir():
+            raise RecordingError(
+                f"{self.path}: recording must be a readable file, not a folder; `bfsim record import` makes one of a folder of pictures"
+            )
         try:
             self._stream: IO[bytes] = self.path.open("rb")
         except OSError as error:

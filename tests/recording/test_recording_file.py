@@ -212,8 +212,11 @@ def test_not_an_mcap(tmp_path: Path, content: bytes, message: str) -> None:
 
 def test_missing_file(tmp_path: Path) -> None:
     """A path that is not there, or is a folder, is an error of the recording and not of the program."""
-    for path in (tmp_path / "none.mcap", tmp_path):
-        with pytest.raises(RecordingError, match="must be a readable file"):
+    for path, why in (
+        (tmp_path / "none.mcap", ": No such"),
+        (tmp_path, ", not a folder; `bfsim record import` makes one"),
+    ):
+        with pytest.raises(RecordingError, match=f"must be a readable file{why}"):
             RecordingReader(path)
 
 
