@@ -258,7 +258,7 @@ def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Pa
         ("from bfsim.api import *\nBuffer('line')\n", "TypeError: "),
         (
             "from bfsim.api import *\nImage = u8[:, :]\n",
-            "TypeError: an array type must be written u8[:]: one ",
+            "TypeError: an array type must be written u8[:]: one dimension, no size: a[y * width + x]",
         ),
     ],
 )

@@ -39,7 +39,7 @@ class IntType:
     def __getitem__(self, item: object) -> ArrayType:
         if item != slice(None):
             raise TypeError(
-                f"an array type must be written {self.name}[:]: one dimension, no size; index it as a[y * width + x]"
+                f"an array type must be written {self.name}[:]: one dimension, no size: a[y * width + x]"
             )
         return ArrayType(self)
 
@@ -71,7 +71,7 @@ class FloatType:
     def __getitem__(self, item: object) -> ArrayType:
         if item != slice(None):
             raise TypeError(
-                f"an array type must be written {self.name}[:]: one dimension, no size; index it as a[y * width + x]"
+                f"an array type must be written {self.name}[:]: one dimension, no size: a[y * width + x]"
             )
         return ArrayType(self)
 
