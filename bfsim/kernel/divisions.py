@@ -6,6 +6,7 @@ from llvmlite import ir
 
 I32 = ir.IntType(32)
 SIGNED = "signed"  # names divisions: LLVM may make them unsigned, the run-time library's routine stays
+ROUNDED = "signed.rounded"  # names those of `//` and `%`: of a function of ints in C, which never divides in fewer bits
 FLOOR = "floor"  # names remainders that only round a quotient down
 
 
@@ -32,8 +33,8 @@ def _by_power_of_two(builder: ir.IRBuilder, op: str, left: ir.Value, divisor: in
 
 def _rounded_down(builder: ir.IRBuilder, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
     """LLVM drops the correction where the signs are known; where it is left, the rest is made from the quotient."""
-    rest_name = FLOOR if op == "//" else SIGNED
-    quotient, rest = builder.sdiv(left, right, name=SIGNED), builder.srem(left, right, name=rest_name)
+    rest_name = FLOOR if op == "//" else ROUNDED
+    quotient, rest = builder.sdiv(left, right, name=ROUNDED), builder.srem(left, right, name=rest_name)
     signs_differ = builder.icmp_signed("<", builder.xor(rest, right), I32(0))
     down = builder.and_(signs_differ, builder.icmp_signed("!=", rest, I32(0)))
     if op == "//":

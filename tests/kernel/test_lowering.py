@@ -70,6 +70,29 @@ def test_a_minimum_of_what_was_shifted_or_added_is_one(body: str, shifts: int, t
         assert run(kernel, np.array(pair, np.uint8)).value == kernel.python(list(pair))
 
 
+@pytest.mark.parametrize(
+    ("element", "value", "is_call"),
+    [
+        ("i32", "quotient(a[i], 10)", True),
+        ("i32", "a[i] // 10", True),
+        ("i32", "a[i] % 10", True),
+        ("i16", "quotient(a[i], 10)", True),
+        ("u8", "a[i] // 10", True),
+        ("u8", "a[i] % 10", True),
+        ("u8", "quotient(a[i], 10)", False),
+        ("u8", "u32(a[i]) // 10", False),
+        ("u32", "a[i] // 10", False),
+    ],
+)
+def test_what_is_divided_by_a_constant_as_a_signed_int_calls_the_library(
+    element: str, value: str, is_call: bool, tmp_path: Path
+) -> None:
+    """Elements of i32 and i16, and what `//` and `%` divide, functions of ints in C; GCC 12.2 called as often for each of these."""
+    kind = "u32" if "u32" in element + value else "i32"
+    text = f"def f(a: {element}[:], out: {kind}[:]):\n    for i in range(len(a)):\n        out[i] = {value}"
+    assert (lowered(text, tmp_path)[Op.CALL] > 0) is is_call
+
+
 def test_a_sum_with_a_constant_is_no_narrow_factor(tmp_path: Path) -> None:
     """x * 454 - 58112 to LLVM; GCC subtracts, and multiplies words: R0 = R0 + R1, R0 *= R2."""
     text = "def f(a: u8[:], out: i16[:]):\n    out[0] = ((a[0] - 128) * 454 + {0}) >> 8\n"

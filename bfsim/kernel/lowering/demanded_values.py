@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from enum import Enum, auto
 from functools import cached_property
 
-from bfsim.kernel.divisions import FLOOR, SIGNED
+from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.bits_set import counted_word
@@ -248,12 +248,24 @@ class DemandedValues(Folding):
         constant = each.operands[1].lstrip("-").isdigit()
         if each.bits in NARROW and not constant:
             return True  # C widens bytes and half-words to int before it divides them
+        name = self._name_of(each)
         dividend = self.flow.instruction(each.operands[0])
-        narrow = dividend is not None and dividend.opcode in ("zext", "load")
-        if SIGNED in (each.result or "") or FLOOR in (each.result or "") or each.opcode[0] == "s":
+        narrow = (
+            dividend is not None
+            and (dividend.opcode == "zext" or (dividend.opcode == "load" and dividend.bits in NARROW))
+            and each.opcode[0] == "u"
+            and ROUNDED not in name
+        )
+        if SIGNED in name or FLOOR in name or each.opcode[0] == "s":
             return not (constant and narrow)
         known = constant and not narrow and self.profile.applies(Rule.KNOWN_SIGN)
         return known and self._never_negative(each.operands[0])
+
+    def _name_of(self, each: Instruction) -> str:
+        """Return the name of a division. Where LLVM has made it one of bytes, what extends it to an i32 has it."""
+        result = each.result or ""
+        extended = [user for user in self.flow.users.get(result, ()) if user.opcode == "zext"]
+        return " ".join([result, *(user.result or "" for user in extended)])
 
     def _never_negative(self, value: str, seen: frozenset[str] = frozenset()) -> bool:
         each = self.flow.instruction(value)
