@@ -81,13 +81,14 @@ def test_a_minimum_of_what_was_shifted_or_added_is_one(body: str, shifts: int, t
         ("u8", "a[i] % 10", True),
         ("u8", "quotient(a[i], 10)", False),
         ("u8", "u32(a[i]) // 10", False),
+        ("u8", "(u32(a[i]) + u32(a[0])) // 10", True),
         ("u32", "a[i] // 10", False),
     ],
 )
 def test_what_is_divided_by_a_constant_as_a_signed_int_calls_the_library(
     element: str, value: str, is_call: bool, tmp_path: Path
 ) -> None:
-    """Elements of i32 and i16, and what `//` and `%` divide, functions of ints in C; GCC 12.2 called as often for each of these."""
+    """Elements of i32 and i16, what `//` and `%` divide, functions of ints in C, and u32 sums that are known to be small; so does GCC 12.2."""
     kind = "u32" if "u32" in element + value else "i32"
     text = f"def f(a: {element}[:], out: {kind}[:]):\n    for i in range(len(a)):\n        out[i] = {value}"
     assert (lowered(text, tmp_path)[Op.CALL] > 0) is is_call

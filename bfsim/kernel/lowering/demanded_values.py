@@ -275,6 +275,8 @@ class DemandedValues(Folding):
             return False
         if each.opcode == "phi":
             return all(self._never_negative(operand, seen | {value}) for operand in each.operands)
+        if each.opcode == "add" and " nsw " in each.text:
+            return all(self._never_negative(operand, seen | {value}) for operand in each.operands[:2])
         bound = each.operands[-1] if each.operands else ""
         if each.opcode in ("lshr", "udiv", "urem", "and") and bound.isdigit():
             return int(bound) > (1 if each.opcode == "udiv" else 0)
