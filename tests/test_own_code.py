@@ -20,10 +20,13 @@ from bfsim.compiling.object_code import object_code
 from bfsim.errors import BfsimWarning
 from bfsim.explain import explain_named
 from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
+from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.profile import DEFAULT, GCC, GCC_ADI
 from bfsim.loading import entries_of, kernels_of, load_firmware, load_kernel
 from bfsim.machine.memories import Row
 from bfsim.report.code import MODEL_ERROR_PERCENT, code_in_words
+from bfsim.report.diff.result_side import result_side
+from bfsim.report.result_file import result_of
 from bfsim.result import Run
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame
@@ -130,6 +133,29 @@ def test_every_cycle_has_an_owner(profile: str) -> None:
     for core in run.frames[0].cores:
         total = sum(each.issue_cclk + each.idle_cclk + sum(each.stall_cclk.values()) for each in core.stages)
         assert total == core.end_cclk - core.begin_cclk
+
+
+def test_routines_of_the_library_are_told_in_the_lines_that_call_them(exact: Run) -> None:
+    """Each has its cycles in a comparison, with the routine's name; they were told as kernels that nobody wrote."""
+    side = result_side(result_of(exact, {}), {0})
+    ran = {each.kernel for each in exact.kernels if each.kernel.startswith("__")}
+    assert {"__divsi3", "__udivsi3"} <= ran
+    assert not {each.name for each in side.owners} & ran
+    assert sum(side.owners.values()) + sum(side.waits.values()) == sum(
+        core.end_cclk - core.begin_cclk for core in exact.frames[0].cores
+    )
+    division_cclk = GCC_ADI.library.divide_unsigned.cclk + COSTS[Op.CALL].cclk
+    divided = {
+        line.text: line.operations["__udivsi3"]
+        for owner, source in side.sources.items()
+        for line in source.lines
+        if owner.name == "angle8" and "__udivsi3" in line.operations
+    }
+    assert {each.strip() for each in divided} == {
+        "angle = atan[i32((u32(ay) << 8) // u32(ax))]",
+        "angle = 64 - atan[i32((u32(ax) << 8) // u32(ay))]",
+    }
+    assert all(cclk == times * division_cclk for times, cclk in divided.values())
 
 
 def test_the_run_says_whose_code_and_for_how_much(exact: Run, tmp_path: Path) -> None:

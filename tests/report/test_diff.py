@@ -15,10 +15,11 @@ from bfsim.report.diff.alignment import LinePair, aligned, with_moved
 from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.compare import difference_of
 from bfsim.report.diff.difference import Contribution, Difference, Kind
+from bfsim.report.diff.library import with_callers
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.markdown import diff_markdown
 from bfsim.report.diff.sentences import clock, code, reason, verdict, work
-from bfsim.report.diff.side import Line, Stall
+from bfsim.report.diff.side import Line, Owner, Source, Stall
 from bfsim.report.diff.tables import diff_report
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
@@ -148,6 +149,65 @@ def test_operations_that_were_not_there() -> None:
         ("branch mispredicted: +10 x 9 cycles", 90),
         ("branch taken as predicted: -10 x 5 cycles", -50),
     ]
+
+
+def test_a_routine_of_the_library_is_part_of_the_lines_that_call_it() -> None:
+    """By their calls, with what it calls in turn and what that waits for; object code has it as a kernel of its own."""
+
+    def dividing(number: int, times: int) -> LineCost:
+        return replace(line(number, times, 5 * times), operations={"__divsi3": (times, 5 * times)})
+
+    inner = replace(line(10, 4, 8, SDRAM_PAGE_MISS=6), operations={"alu": (4, 8)})
+    outer = replace(line(10, 4, 12), operations={"__udivsi3": (4, 12)})
+    before = run(kernel(line(11, 1, 9)))
+    after = run(
+        kernel(line(11, 1, 9), dividing(12, 3), dividing(13, 1)),
+        kernel(outer, name="__divsi3", text=["CALL __udivsi3"]),
+        kernel(inner, name="__udivsi3", text=["P0 = 0x20 (X)"]),
+    )
+    found = difference_of(before, after)
+    check_sums(found.stages, found.cclk)
+    (stage,) = (each for each in found.stages if each.kind is Kind.STAGE)
+    (blur,) = stage.parts
+    assert (blur.name, blur.cclk, found.cclk) == ("blur", 46, 46)
+    told = {each.place: [(cause.name, cause.cclk) for cause in each.parts] for each in blur.parts}
+    assert told == {
+        "mine.py:12": [
+            ("now 3 times x 10 cycles: library division 10", 30),
+            ("stall: SDRAM page miss", 4),
+        ],
+        "mine.py:13": [
+            ("now 1 times x 10 cycles: library division 10", 10),
+            ("stall: SDRAM page miss", 2),
+        ],
+    }
+
+
+calls = st.dictionaries(st.sampled_from(["__a", "__b", "__c", "memset", "load8"]), st.integers(0, 9))
+
+
+@given(st.lists(calls, min_size=5, max_size=5), st.lists(st.integers(0, 99), min_size=5, max_size=5))
+def test_cycles_of_routines_are_told_once(called: Sequence[dict[str, int]], cclks: Sequence[int]) -> None:
+    """Whoever calls whom, also each other: owners and their lines sum to what they did, and a caller alone has more."""
+    names = ["blur", "__a", "__b", "__c", "memset"]
+    owned = [Owner("Blur", name, name) for name in names]
+    sources = {
+        each: Source(
+            place="", lines=(Line(text="", operations={**{name: (n, n) for name, n in by.items()}, "alu": (1, cclk)}, stalls={Stall("wait", ""): cclk}),)
+        )
+        for each, by, cclk in zip(owned, called, cclks, strict=True)
+    }  # fmt: skip
+    owners = {each: sum(line.cclk for line in source.lines) for each, source in sources.items()}
+    now, lines = with_callers(owners, sources)
+    assert sum(now.values()) == sum(owners.values())
+    for each, cclk in now.items():
+        assert abs(cclk - sum(line.cclk for line in lines[each].lines)) <= len(names)
+    assert now[owned[0]] >= owners[owned[0]]
+    assert all(
+        times[0] == called[0][name]
+        for name, times in lines[owned[0]].lines[0].operations.items()
+        if name != "alu"
+    )
 
 
 def test_a_loop_of_another_kind_has_not_run_more_often() -> None:

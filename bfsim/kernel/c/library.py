@@ -1,5 +1,7 @@
 """What the C library calls its own functions: a kernel of such a name would take its place wherever both are linked."""
 
+import re
+
 _MATH = """acos asin atan atan2 cos sin tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log log10 log1p log2
 logb modf scalbn scalbln cbrt fabs hypot pow sqrt erf erfc lgamma tgamma ceil floor nearbyint rint lrint llrint round lround
 llround trunc fmod remainder remquo copysign nan nextafter nexttoward fdim fmax fmin fma"""
@@ -17,3 +19,10 @@ LIBRARY = frozenset(
     (*_OTHERS.split(), *(f"{name}{kind}" for name in _MATH.split() for kind in ("", "f", "l")))
 )
 """[C99 7.1.3] Of a hosted implementation, but for the functions of wide characters and complex numbers."""
+RESERVED = re.compile("_[_a-z]")
+"""[C99 7.1.3] So begin the names that a program leaves to the compiler's library; those of C++ are of programs (`_Z...`)."""
+
+
+def is_of_library(name: str) -> bool:
+    """Whether a function in C is one of the compiler's library, by its name."""
+    return name in LIBRARY or RESERVED.match(name) is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does
+from bfsim.blackfin.blocks import BRANCHES, CALLS, DIRECT, Code, does
 from bfsim.blackfin.counters import Counter as BlockCounter
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.interlocks import Wait
@@ -71,11 +71,25 @@ def _counter(
 def _charges(
     instructions: Sequence[Instruction], waits: Waits, places: Places, timing: Timing
 ) -> tuple[Charge, ...]:
-    """What instructions cost that wait so long."""
+    """What instructions cost that wait so long. One that goes to a routine of the library has its name."""
     return tuple(
-        Charge(operation_of(each), places.line_of(each.address), timing.of(each), wait.cclk)
+        Charge(
+            operation_of(each),
+            places.line_of(each.address),
+            timing.of(each),
+            wait.cclk,
+            routine=_library_routine(each, places),
+        )
         for each, wait in zip(instructions, waits, strict=True)
     )
+
+
+def _library_routine(instruction: Instruction, places: Places) -> str:
+    """Return the routine of the library that an instruction always goes to from another one; empty where it does not."""
+    if does(instruction) not in DIRECT - BRANCHES:
+        return ""
+    routine = places.library_routine_at(int(instruction.operations[0].operands["t"]))
+    return routine if routine != places.library_routine_at(instruction.address) else ""
 
 
 def calls(

@@ -106,6 +106,14 @@ class Places:
         routine = self._routine(address)
         return self.function_at(address).symbol if routine.address == address else None
 
+    def library_routine_at(self, address: int) -> str:
+        """Return the name of the routine of the compiler's library that has the code at an address; empty where none has."""
+        from bfsim.kernel.c.library import is_of_library  # most starts find all that depends on it
+
+        symbol = self._routine(address).name
+        name = symbol.removeprefix("_")
+        return name if symbol not in self.kernels and is_of_library(name) else ""
+
     def _routine(self, address: int) -> Routine:
         return self.image.routine_at(address) or Routine(f"code_{address:08x}", address, address)
 

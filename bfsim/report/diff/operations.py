@@ -46,7 +46,21 @@ WORDS = {
 }
 """By `Op`; a branch that is taken against what the chip expects costs as much as one that is not."""
 
+ROUTINES = {
+    **dict.fromkeys(("__divsi3", "__udivsi3"), "division"),
+    **dict.fromkeys(("__modsi3", "__umodsi3"), "remainder"),
+    "__addsf3": "float addition",
+    "__subsf3": "float subtraction",
+    "__mulsf3": "float multiplication",
+    "__divsf3": "float division",
+    **dict.fromkeys((f"__{each}sf2" for each in ("eq", "ne", "lt", "le", "gt", "ge", "unord")), "float comparison"),
+    **dict.fromkeys(("__floatsisf", "__floatunsisf"), "conversion to float"),
+    "__fixsfsi": "conversion from float",
+    "sqrtf": "float square root",
+}  # fmt: skip
+"""What GCC's library calls its routines, as estimates do."""
+
 
 def words(name: str) -> str:
     """Return what an operation is called; one that has no entry is a routine of the library."""
-    return WORDS.get(name) or (f"library {name}" if name else "operations")
+    return WORDS.get(name) or (f"library {ROUTINES.get(name, name)}" if name else "operations")

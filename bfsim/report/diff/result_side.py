@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import fields
 
 from bfsim.report.budget import frame_rate_hz
+from bfsim.report.diff.library import with_callers
 from bfsim.report.diff.side import SEPARATOR, Line, Owner, Side, Source, Stall
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.report.result_file import Result
@@ -28,15 +29,16 @@ def result_side(result: Result, chosen: Collection[int]) -> Side:
         elapsed = sum(each.elapsed_cclk[place] for place in places)
         owners[Owner(each.stage, each.owner, each.symbol)] += elapsed - waiting
         waits[each.stage] += waiting
+    owned, sources = with_callers(owners, _sources(run))
     names = dict.fromkeys(name for frame in frames for name in frame.results)
     return Side(
         configuration=identity_words(run.identity),
         cclk_hz=run.identity.cclk_hz,
         frame_ms=1000 / frame_rate_hz(run.frames, run.identity.cclk_hz),
         frames=tuple(each.index for each in frames),
-        owners=owners,
+        owners=owned,
         waits=waits,
-        sources=_sources(run) if len(frames) == len(run.frames) else {},
+        sources=sources if len(frames) == len(run.frames) else {},
         memories={each.buffer: each.memory for each in run.buffers},
         frame_cclk={each.index: _longest_cclk(each) for each in frames},
         results={name: [frame.results.get(name) for frame in frames] for name in names},
