@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import hashlib
 
+from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
 from bfsim.kernel.profile import RUN_AS_COMPILED
 from bfsim.loading import LoadedFirmware, entries_of, kernels_of
+from bfsim.machine.program import Firmware
+from bfsim.once import once
 
 NOTHING_AT_HAND = "estimated, for bfin-elf-gcc is not on the PATH"
 
@@ -18,10 +21,15 @@ def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
     The code of the compiler is kept, or compiled now by the one on the PATH; where there is neither, all is estimated. Raises
     ConfigError with what the compiler says if it refuses.
     """
+    return _build(loaded.firmware, loaded.own, profile)
+
+
+@once
+def _build(firmware: Firmware, own: OwnModules, profile: CompilerProfile) -> Build:
     if profile.name not in RUN_AS_COMPILED:
         return Build(profile)
-    entries = {each for each in entries_of(loaded.firmware) if each.object_code is None}
-    kernels = {each for each in kernels_of(loaded.own) if each.object_code is None} | entries
+    entries = {each for each in entries_of(firmware) if each.object_code is None}
+    kernels = {each for each in kernels_of(own) if each.object_code is None} | entries
     if not kernels:
         return Build(profile)
     from bfsim.compiling.loaded_code import LoadedCode  # most runs need none of it

@@ -18,6 +18,7 @@ from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile, profile_named
 from bfsim.kernel.profile import PROFILES
 from bfsim.loading import Kind, Loaded, Wanted, load_named
+from bfsim.once import once
 
 BOARD = Kind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS))
 PROFILE = Kind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))
@@ -42,6 +43,7 @@ class Found(Generic[Wanted]):
     numbers: tuple[str, ...]
 
 
+@once
 def find_board(
     board: str | BoardSpec, settings: Mapping[str, object] = MappingProxyType({})
 ) -> Found[BoardSpec]:
@@ -70,6 +72,7 @@ def find_board(
     return _found(replace(spec, name=" --set ".join([spec.name, *names])), own, BOARDS)
 
 
+@once
 def find_profile(name: str) -> Found[CompilerProfile]:
     """Return a compiler profile, called NAME or MODULE:NAME. Raises ConfigError, with the field, for one that cannot be."""
     if name in PROFILES:

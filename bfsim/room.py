@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from bfsim.chip.memory_map import Region
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, LinkError
 from bfsim.kernel.build import Build
@@ -13,6 +15,7 @@ from bfsim.linker import LinkerScript, LinkMap, link
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.program import Calibration, Firmware, SourcePixels
 from bfsim.machine.symbols import symbols_of
+from bfsim.once import once
 
 _STEPS = 64
 """Sizes that are looked at: so many, of the shape of the pictures."""
@@ -35,8 +38,16 @@ def place(
     """
 
     def placed(size: FrameSize) -> LinkMap:
-        symbols = symbols_of(firmware.calibrated(_cut(calibration, size)), size, build)
-        return link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
+        return _placed(
+            firmware,
+            calibration,
+            size.width_px,
+            size.height_px,
+            placement,
+            spec.chip.regions,
+            spec.chip.name,
+            build,
+        )
 
     def fits(step: int) -> bool:
         try:
@@ -59,6 +70,22 @@ def place(
             f"{error}; pictures of {size} need more memory than there is, and the largest of this shape that this firmware "
             f"takes with this LDF are {largest}: `bfsim record import --resize {largest}` scales them"
         ) from error
+
+
+@once
+def _placed(
+    firmware: Firmware,
+    calibration: Calibration,
+    width_px: int,
+    height_px: int,
+    placement: LinkerScript,
+    regions: Sequence[Region],
+    chip: str,
+    build: Build,
+) -> LinkMap:
+    size = FrameSize(width_px, height_px)
+    symbols = symbols_of(firmware.calibrated(_cut(calibration, size)), size, build)
+    return link(placement, symbols, regions, chip=chip)
 
 
 def _scaled(size: FrameSize, step: int) -> FrameSize:

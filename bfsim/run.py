@@ -30,12 +30,11 @@ from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import devices_of, makers_of
 from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import require_cores
-from bfsim.recording import RecordingReader
 from bfsim.recording.exchange import ExchangeCheck
 from bfsim.result import Run
 from bfsim.retiming import retimed
 from bfsim.room import place
-from bfsim.run_inputs import calibration_of, read_placement
+from bfsim.run_inputs import calibration_of, opened, read_placement
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
 from bfsim.trace import BoardRecord, BudgetRow, Identity, MemoryRecord, RunWarning
@@ -130,7 +129,7 @@ def simulate(
     placement = read_placement(ldf, spec, defines, include_dirs)
     with (
         loaded.own.named(),
-        RecordingReader(recording or BUILT_IN_RECORDING) as reader,
+        opened(recording or BUILT_IN_RECORDING) as reader,
     ):
         size = FrameSize(reader.width, reader.height)
         calibration = calibration_of(reader)

@@ -11,6 +11,7 @@ from bfsim.errors import LinkError, shown
 from bfsim.linker import LinkerScript, parse_ldf
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.program import Calibration, SourcePixels
+from bfsim.once import once
 from bfsim.recording import RecordingReader
 
 
@@ -27,9 +28,21 @@ def read_placement(
         raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(ldf))}")
     macros = {"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes), **defines}
     folders = (*map(Path, include_dirs), shipped.LDF_FOLDER)
-    return parse_ldf(path, macros, folders, chip=spec.chip.name).with_cores_named()
+    return _script(path, macros, folders, spec.chip.name)
 
 
+@once
+def _script(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path], chip: str) -> LinkerScript:
+    return parse_ldf(path, macros, include_dirs, chip).with_cores_named()
+
+
+@once
+def opened(recording: Path | str) -> RecordingReader:
+    """Open a recording. Of runs that are planned together all but the first get a reader that is closed, and knows what it has read."""
+    return RecordingReader(recording)
+
+
+@once
 def calibration_of(reader: RecordingReader) -> Calibration:
     """Return what a recording knows of its cameras: tables by the cores that take them, and the geometry."""
     tables, geometry = reader.rectification, reader.geometry

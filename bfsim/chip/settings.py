@@ -79,4 +79,5 @@ def _pll_of(board: BoardSpec, clocks: Clocks) -> Pll | None:
 
 
 def _resized(region: Region, sdram_nbytes: int) -> Region:
-    return replace(region, nbytes=sdram_nbytes) if region.memory == "SDRAM" else region
+    is_same = region.memory != "SDRAM" or region.nbytes == sdram_nbytes
+    return region if is_same else replace(region, nbytes=sdram_nbytes)

@@ -11,13 +11,15 @@ from bfsim.linker import LinkMap, Placement, Symbol
 from bfsim.machine.memories import Memories
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Main
+from bfsim.once import once
 from bfsim.trace import CodeRecord
 
 SECTION = "program"  # input section of code, as VisualDSP++ names it
 ALIGN_BYTES = 4
 
 
-def code_symbols(main: Main, processor: str | None, build: Build) -> list[Symbol]:
+@once
+def code_symbols(main: Main, processor: str | None, build: Build) -> Sequence[Symbol]:
     """Return a symbol for every kernel of a core's main loop, callees included, each once.
 
     Library routines (division, floats) and the main loop itself are not counted.
@@ -25,11 +27,11 @@ def code_symbols(main: Main, processor: str | None, build: Build) -> list[Symbol
     nbytes: dict[str, int] = {}
     for kernel in kernels_named(main):
         nbytes.update(build.code_bytes(kernel))
-    return [
+    return tuple(
         Symbol(name, SECTION, size, ALIGN_BYTES, processor, object_file(name))
         for name, size in nbytes.items()
         if size
-    ]
+    )
 
 
 def object_file(name: str) -> str:

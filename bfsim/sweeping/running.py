@@ -16,6 +16,7 @@ from typing import Any
 from bfsim.checking import arguments_of
 from bfsim.errors import BfsimError, ConfigError, RecordingError, WorkError
 from bfsim.identifying import recording_digest
+from bfsim.once import Known, remembering
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.result_file import Result
 from bfsim.report.seen_json import SeenStore
@@ -26,6 +27,9 @@ from bfsim.run import has_view, planned, simulate
 from bfsim.trace import Identity, StallReason
 
 Figures = Mapping[str, int | float]
+
+_plans: dict[str, Known] = {}
+"""What the points of a plan have in common, by the name of the plan: the last one that this process was asked for."""
 
 _one_run = Lock()
 """Firmware is imported under names of the process: of a process's threads only one may run it."""
@@ -69,6 +73,7 @@ def run_point(configuration: Configuration, folder: Path, code: str, work: Work 
     began, has_begun = perf_counter(), Event()
     try:
         with _one_run:
+            _plans.clear()
             arguments = {**arguments_of(configuration, folder), "before": lambda *_: has_begun.set()}
             run, figures = _played(arguments, work) or _recorded(arguments, work) or _simulated(arguments)
     except BfsimError as error:
@@ -154,11 +159,17 @@ def _waits(run: Run) -> float:
     return waits / elapsed if elapsed else 1
 
 
-def plan_point(configuration: Configuration, folder: Path) -> tuple[Identity, int] | str:
-    """Return what a point will run, without the digest of its recording, and how many frames; or in words why it cannot."""
+def plan_point(configuration: Configuration, folder: Path, plan: str) -> tuple[Identity, int] | str:
+    """Return what a point will run, without the digest of its recording, and how many frames; or in words why it cannot.
+
+    What points of the same `plan` have in common is read once in a process: files must not change until all are planned.
+    """
     try:
         with _one_run:
-            return planned(**arguments_of(configuration, folder))
+            if plan not in _plans:
+                _plans.clear()
+            with remembering(_plans.setdefault(plan, {})):
+                return planned(**arguments_of(configuration, folder))
     except BfsimError as error:
         return str(error)
     except OSError as error:

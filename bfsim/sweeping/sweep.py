@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import uuid
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -102,7 +103,8 @@ class Sweep:
         `tell` gets how many are checked, and of how many.
         """
         found: dict[int, tuple[Identity, int] | str] = {}
-        calls = ((each, plan_point, self._call(point)) for each, point in enumerate(self.points))
+        name = uuid.uuid4().hex
+        calls = ((each, plan_point, (*self._call(point), name)) for each, point in enumerate(self.points))
         for number, future in _results(calls, workers):
             found[number] = (
                 "the process that read it died"

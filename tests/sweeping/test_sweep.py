@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from itertools import pairwise
@@ -18,6 +19,7 @@ from bfsim.errors import ConfigError
 from bfsim.report.sweep.table import columns_of
 from bfsim.result import Run
 from bfsim.run import simulate
+from bfsim.shipped import LDF_FOLDER
 from bfsim.sweeping.rows import rows_of
 from bfsim.sweeping.running import Outcome, run_point
 from bfsim.sweeping.sweep import NOT_KEPT
@@ -65,6 +67,33 @@ def test_what_is_new_or_changed_is_run(file: Path) -> None:
     assert swept(file)[1] == []
     record(file.with_name("drive.mcap"), 2, period_ns=50_000_000)  # its first frame is the same
     assert swept(file)[1] == ["nRP=2 frames=2", "nRP=3 frames=2", "nRP=4 frames=2"]
+
+
+def test_what_points_have_in_common_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each LDF with its macros, each board, the recording; the next plan sees what was edited."""
+    mine = tmp_path / "mine.ldf"
+    mine.write_text((LDF_FOLDER / "l2.ldf").read_text())
+    axes = '[axes]\nset.sdram.nRP = [2, 3, 4]\nldf = ["mine.ldf", "sdram"]\nframes = [1, 2]\n'
+    file, calls = home_in(tmp_path, BASE + axes), Counter[str]()
+
+    def counted(place: str) -> None:
+        function = getattr(sys.modules[place.rpartition(".")[0]], name := place.rpartition(".")[2])
+
+        def called(*args: Any, **kwargs: Any) -> Any:
+            calls[name] += 1
+            return function(*args, **kwargs)
+
+        monkeypatch.setattr(place, called)
+
+    for each in ("run_inputs.parse_ldf", "hardware.with_settings", "run_inputs.RecordingReader", "room.link"):
+        counted(f"bfsim.{each}")
+    before = {each.point.name: each.identity for each in planned(file).planned}
+    assert calls == {"parse_ldf": 2, "with_settings": 3, "RecordingReader": 1, "link": 2}
+    mine.write_text(f"{mine.read_text()}\n")
+    after = {each.point.name: each.identity for each in planned(file).planned}
+    changed = {name for name, each in before.items() if each != after[name]}
+    assert changed == {name for name in before if "mine.ldf" in name}
+    assert calls["parse_ldf"] == 4
 
 
 def test_points_that_are_the_same_run_once(tmp_path: Path) -> None:
