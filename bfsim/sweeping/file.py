@@ -14,7 +14,8 @@ from typing import Any
 from bfsim.errors import ConfigError, cut, printable, shown
 from bfsim.file_content import read_bounded
 from bfsim.report.check.baseline import Configuration
-from bfsim.sweeping.options import SCRIPT, Options, configured, flattened, merged, written
+from bfsim.report.check.settings import written
+from bfsim.sweeping.options import SCRIPT, Options, configured, flattened, merged
 
 MOST_POINTS = 100_000
 """More would take years."""

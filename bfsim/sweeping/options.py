@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, cut, shown
 from bfsim.report.check.baseline import Configuration
+from bfsim.report.check.settings import leaves, text_of
 from bfsim.report.save import write_text
 
 Options = Mapping[str, Any]
@@ -40,16 +41,13 @@ def flattened(table: Any, where: str) -> dict[str, Any]:
             raise ConfigError(f"{where}.{cut(key)} must not be there; known keys are {known}")
         if key in TREES and key != SCRIPT and not isinstance(value, dict):
             raise ConfigError(f"{where}.{key} must be a table of names and values, not {shown(value)}")
-    return dict(_leaves(table, ""))
+    return dict(_by_path(table))
 
 
-def _leaves(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, Any]]:
+def _by_path(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     for key, value in table.items():
-        path = above + key
-        if isinstance(value, dict) and path.partition(".")[0] in TREES:
-            yield from _leaves(value, f"{path}.")
-        else:
-            yield path, value
+        is_tree = isinstance(value, dict) and key.partition(".")[0] in TREES
+        yield from leaves({key: value}) if is_tree else [(key, value)]
 
 
 def merged(first: Options, second: Options) -> Options:
@@ -89,19 +87,10 @@ def configured(options: Options, folder: Path, scripts: Path) -> Configuration:
 
 
 def _text(value: object, path: str) -> str:
-    """Return a number of the board, or a macro, as `--set` and `-D` have it."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, int | float | str):
-        return written(value)
-    raise ConfigError(f"{cut(path)} must be a number, text, or true or false, not {shown(value)}")
-
-
-def written(value: object) -> str:
-    """Return a value in words: numbers and text as they are, the rest as JSON."""
-    if isinstance(value, float) and value.is_integer():
-        return str(int(value))
-    return str(value) if isinstance(value, int | float | str) else json.dumps(value, default=str)
+    text = text_of(value)
+    if text is None:
+        raise ConfigError(f"{cut(path)} must be a number, text, or true or false, not {shown(value)}")
+    return text
 
 
 def _script_file(base: object, orders: Options, folder: Path, scripts: Path) -> Path:

@@ -8,9 +8,9 @@ from pathlib import PurePath
 
 from bfsim.errors import ConfigError
 from bfsim.fields import parsed
+from bfsim.report.check.settings import written
 from bfsim.report.sweep.figures import FRAME_RATE, SEEN
 from bfsim.report.sweep.table import Cell, Row
-from bfsim.sweeping.options import written
 from bfsim.sweeping.running import Outcome
 from bfsim.sweeping.sweep import Planned, Sweep
 

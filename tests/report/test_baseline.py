@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import ConfigError
-from bfsim.report.check.baseline import read_baseline
+from bfsim.report.check.baseline import Case, read_baseline
 from bfsim.report.check.figures import Figure, Unit
 from bfsim.report.check.requirement import counts_text, limit_text, parse_requirement
+from bfsim.report.check.update import write_cases
 
 
 @pytest.mark.parametrize(
@@ -124,6 +125,38 @@ def test_a_file_of_windows_is_read(tmp_path: Path) -> None:
     """With its mark at the beginning."""
     (tmp_path / "bfsim.toml").write_text("[[run]]\nname = 'a'\n", encoding="utf-8-sig")
     assert [case.name for case in read_baseline(tmp_path / "bfsim.toml").run] == ["a"]
+
+
+def test_numbers_are_written_as_in_a_sweep(tmp_path: Path) -> None:
+    """In tables or by paths, as numbers or as text: the board is the same, and the file stays as it is written."""
+    path = tmp_path / "bfsim.toml"
+    told = []
+    for text in (
+        """set = {"sdram.nRP" = "3", "clocks.cclk_hz" = "500000000"}\ndefine = {ROWS = "2"}""",
+        """set.sdram.nRP = 3\nset.clocks.cclk_hz = 500e6\ndefine.ROWS = 2""",
+        """[run.set.sdram]\nnRP = 3\n[run.set]\nclocks.cclk_hz = 500e6\n[run.define]\nROWS = 2""",
+    ):
+        path.write_text(f"[[run]]\nname = 'a'\n{text}\n")
+        (case,) = read_baseline(path).run
+        told.append((case.set, case.define))
+        write_cases(path, {"a": case})
+        assert path.read_text() == f"[[run]]\nname = 'a'\n{text}\n"
+    assert told == [({"sdram.nRP": "3", "clocks.cclk_hz": "500000000"}, {"ROWS": "2"})] * 3
+    path.write_text("[[run]]\nname = 'a'\nset.sdram.nRP = [3]\n")
+    assert "run 'a', set.sdram.nRP must be a valid string, not [3]" in refusal(tmp_path, path.read_text())
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_lines_end_as_they_did(tmp_path: Path, end: str) -> None:
+    """Those that are written, too; the lists of limits have lines of their own."""
+    path = tmp_path / "bfsim.toml"
+    path.write_bytes(f"# mine{end}[[run]]{end}name = 'a'{end}".encode())
+    limits = ["missed == 0", "frame_rate >= 1 Hz"]
+    write_cases(path, {"a": Case(name="a", limits=limits), "b": Case(name="b")})
+    written = path.read_bytes().decode()
+    assert written.count("\n") == written.count(end) > 8
+    assert written.startswith(f"# mine{end}")
+    assert read_baseline(path).run[0].limits == limits
 
 
 def test_missing_file_is_told_how_to_make_one(tmp_path: Path) -> None:

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 
 from bfsim.errors import ConfigError, cut, shown
 from bfsim.file_content import read_bounded
 from bfsim.report.check.requirement import Requirement, parse_requirement
+from bfsim.report.check.settings import leaves, text_of
 from bfsim.trace import Identity
 
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
@@ -48,6 +49,15 @@ class Configuration(_Table):
     feed: Literal["demand", "recorded", "cameras"] = "demand"
     script: str = ""
     fidelity: Literal["fast", "detailed"] = "fast"
+
+    @field_validator("set", "define", mode="before")
+    @classmethod
+    def _by_path(cls, given: object) -> object:
+        """Return tables and numbers as text by paths; what can be neither stays as it is, for the error."""
+        if not isinstance(given, Mapping):
+            return given
+        found = ((path, value, text_of(value)) for path, value in leaves(given))
+        return {path: value if text is None else text for path, value, text in found}
 
 
 class MeasuredOn(_Table):

@@ -82,7 +82,8 @@ def write_cases(path: Path, cases: Mapping[str, Case]) -> None:
 
 def _write_cases(path: Path, cases: Mapping[str, Case]) -> None:
     document = parsed(path) if path.exists() else tomlkit.parse(NEW_FILE)
-    validated(document, path)
+    before = {each.name: each for each in validated(document, path).run}
+    is_of_windows = tomlkit.dumps(document).partition("\n")[0].endswith("\r")
     tables = document.setdefault("run", tomlkit.aot())
     assert isinstance(tables, AoT)
     for name, case in cases.items():
@@ -91,10 +92,10 @@ def _write_cases(path: Path, cases: Mapping[str, Case]) -> None:
             table = tomlkit.table()
             tables.append(table)
             table = tables[-1]
-        _fill(table, case)
-    text = tomlkit.dumps(document)
+        _fill(table, case, before.get(name))
+    text = tomlkit.dumps(document).replace("\r\n", "\n")
     validated(tomlkit.parse(text), path)
-    write_text(path, text)
+    write_text(path, text.replace("\n", "\r\n") if is_of_windows else text)
 
 
 def _held(case: Case, result: Result, path: Path) -> Outcome:
@@ -148,12 +149,12 @@ def _number(verdict: Verdict, run: RunRecord) -> str:
     return limit_text(verdict.requirement.name, verdict.measured, run.identity.cclk_hz).rpartition("= ")[2]
 
 
-def _fill(table: Table, case: Case) -> None:
-    """Set in a TOML table what a run has; what is its default is left out, and what is as it was stays as it is written."""
-    plain = case.model_dump(exclude_defaults=True)
+def _fill(table: Table, case: Case, before: Case | None) -> None:
+    """Set in a TOML table what a run has; what is its default is left out, and what is as it was `before` stays as it is written."""
+    plain, old = case.model_dump(exclude_defaults=True), before.model_dump() if before else {}
     for key in ("name", *Case.model_fields):
         if key not in plain:
             if key in table:
                 del table[key]
-        elif key not in table or table[key] != plain[key]:
+        elif key not in table or old.get(key) != plain[key]:
             table[key] = toml_item(plain[key])
