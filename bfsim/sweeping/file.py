@@ -177,7 +177,7 @@ def _tables(tables: object, where: str) -> Iterator[_Choice]:
 
 
 def _files(patterns: Sequence[object], folder: Path) -> list[object]:
-    """Return files for patterns such as drives/*.mcap, sorted, each once; what is no pattern stays as it is."""
+    """Return files for patterns such as drives/*.mcap, sorted, each once by any way to it; what is no pattern stays as it is."""
     files: list[object] = []
     for each in patterns:
         if not isinstance(each, str) or not glob.has_magic(each) or (folder / each).exists():
@@ -187,4 +187,8 @@ def _files(patterns: Sequence[object], folder: Path) -> list[object]:
         if not found:
             raise ConfigError(f"{AXES}.{RECORDING} must match a file, and {shown(each)} matches none")
         files += found
-    return list({repr(each): each for each in files}.values())
+    once: dict[object, object] = {}
+    for each in files:
+        there = folder / each if isinstance(each, str) else None
+        once.setdefault(there.resolve() if there and there.exists() else repr(each), each)
+    return [*once.values()]

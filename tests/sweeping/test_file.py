@@ -66,6 +66,18 @@ def test_recordings_by_pattern(tmp_path: Path) -> None:
     assert [each.name for each in points] == ["a.mcap", "b.mcap", "[c].mcap"]
 
 
+def test_a_recording_is_one_by_any_way_to_it(tmp_path: Path) -> None:
+    """It is called as it was first."""
+    for name in ("a.mcap", "b.mcap"):
+        (tmp_path / name).touch()
+    (tmp_path / "linked.mcap").symlink_to("a.mcap")
+    (tmp_path / "circle").symlink_to("circle")
+    ways = ["a.mcap", f"{tmp_path}/a.mcap", "./b.mcap", "linked.mcap", f"{tmp_path}/?.mcap"]
+    points = points_of(f"axes.recording = {ways}", tmp_path)
+    assert [each.name for each in points] == ["a.mcap", "./b.mcap"]
+    assert len(points_of('axes.recording = ["circle", "no\\u0000name", "a.mcap"]', tmp_path)) == 3
+
+
 def test_scripts_by_their_paths(tmp_path: Path) -> None:
     """Areas times thresholds, in tables and lists that a path makes; points that say the same have the same file."""
     text = """
