@@ -74,6 +74,9 @@ class Rule(StrEnum):
     PARALLEL_COUNTS = "bits that are counted in parallel are counted by an instruction"
     SPILLED_RANGES = "what is reloaded is used least for the places at which it is in the way"
     FINAL_VALUES = "a counter that is wanted behind its loop is what it was compared with"
+    PARTIAL_REDUNDANCIES = (
+        "an operation that changes nothing on one way to it is done on the others alone, with a branch"
+    )
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
@@ -89,6 +92,7 @@ GCC: dict[Rule, str] = {
     Rule.PARALLEL_COUNTS: '"branchless implementations of popcount" in match.pd',
     Rule.SPILLED_RANGES: "allocno_spill_priority in ira-color.cc",
     Rule.FINAL_VALUES: "final_value_replacement_loop in tree-scalar-evolution.cc",
+    Rule.PARTIAL_REDUNDANCIES: "do_pre_regular_insertion in tree-ssa-pre.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -158,5 +162,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.PARALLEL_COUNTS: ("nearest_words",),
     Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
     Rule.FINAL_VALUES: ("two_sums",),
+    Rule.PARTIAL_REDUNDANCIES: (),
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

@@ -91,7 +91,11 @@ class Writer:
             return self.cast(kind, depth)
         if form == 8:
             yes, no = self.value(kind, depth - 1), self.value(kind, depth - 1)
-            return f"({yes} if {self.condition(depth - 1)} else {no})"
+            test = self.condition(depth - 1)
+            operator, nothing = self.pick("+0", "-0", "|0", "^0", "&0", "*0", "*1", "? ")
+            if operator == "?":
+                return f"({yes} if {test} else {no})"
+            return f"({no} {operator} ({yes} if {test} else {nothing}))"
         if form == 9:
             parts = [self.value(kind, depth - 1) for _ in range(self.draw(st.sampled_from((2, 2, 3))))]
             return f"{self.pick('min', 'max')}({', '.join(parts)})"
@@ -181,12 +185,15 @@ class Writer:
             self.loop(margin, depth)
 
     def several(self, margin: str, kind: str, *, alike: bool) -> None:
-        """Write an assignment to two or three targets: of one value to all, or of as many."""
-        count = self.draw(st.integers(2, 3))
+        """Write an assignment to two or three targets: of one value to all, or of as many.
+
+        No target is there twice: CPython up to 3.11.2 gives `q, q = 1, 2` the 1.
+        """
         array = f"{self.pick(*('e' if kind == UNSIGNED else 'abcdf'))}[{self.index(1)}]"
-        targets = [self.pick(*LOCALS[kind], array) for _ in range(count)]
+        some = st.lists(st.sampled_from((*LOCALS[kind], array)), min_size=2, max_size=3, unique=True)
+        targets = self.draw(some)
         calls = [f"mix({self.value(SIGNED, 1)}, a)"] if kind == SIGNED else []
-        values = [self.pick(self.value(kind, 2), *targets, *calls) for _ in range(count)]
+        values = [self.pick(self.value(kind, 2), *targets, *calls) for _ in targets]
         left, right = (" = ".join(targets), values[0]) if alike else (", ".join(targets), ", ".join(values))
         self.rows.append(f"{margin}{left} = {right}")
 

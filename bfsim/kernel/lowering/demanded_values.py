@@ -54,7 +54,7 @@ class DemandedValues(Folding):
         profile: CompilerProfile,
     ) -> None:
         """`calling`: blocks that become calls of the library; `frequency`: how often each block runs."""
-        super().__init__(flow, profile)
+        super().__init__(flow, profile, if_conversion.flags)
         self.evolution, self.if_conversion, self.induction_variables, self.jump_threading = (
             evolution,
             if_conversion,

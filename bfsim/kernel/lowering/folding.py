@@ -18,8 +18,9 @@ HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
 class Folding:
     """What is folded into what, in one routine."""
 
-    def __init__(self, flow: ControlFlow, profile: CompilerProfile) -> None:
-        self.flow, self.profile = flow, profile
+    def __init__(self, flow: ControlFlow, profile: CompilerProfile, flags: frozenset[str | None]) -> None:
+        """`flags`: what is computed from conditions without a branch (`if_conversion`)."""
+        self.flow, self.profile, self.flags = flow, profile, flags
 
     def shift_add(self, each: Instruction) -> tuple[str, str] | None:
         """The value that an addition shifts by 1 or 2 on the way, and the other one."""
@@ -187,6 +188,7 @@ class Folding:
             if (
                 flag is not None
                 and flag.opcode == "phi"
+                and operand not in self.flags
                 and self.users(operand) == [each]
                 and self.flow.defined[operand][0] == self.flow.defined[each.result or ""][0]
                 and "0" in flag.operands

@@ -31,6 +31,11 @@ class ConversionKind(Enum):
     """A conditional move."""
     FLAG = auto()
     """The condition itself as 0 or 1."""
+    SHIFTED_FLAG = auto()
+    """The same as 0 or a power of two, or as 0 or -1."""
+
+
+FLAGS = (ConversionKind.FLAG, ConversionKind.SHIFTED_FLAG)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +66,8 @@ class IfConversion:
                 for arm in clamp.arms & self.by_label.keys():
                     del self.by_label[arm]
                 self.by_label[label] = clamp
+        self.flags = frozenset(each.phi.result for each in self.by_label.values() if each.kind in FLAGS)
+        """What is computed from conditions without a branch."""
         self.gone = frozenset(arm for conversion in self.by_label.values() for arm in conversion.arms)
 
     def _conversion(self, label: str) -> ConvertedIf | None:
@@ -163,6 +170,8 @@ class IfConversion:
             return self._negation(label, arms, phi, work, test)
         if {yes, no} == {"1", "0"}:
             return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
+        if "0" in (yes, no) and is_bit(no if yes == "0" else yes):
+            return ConvertedIf(ConversionKind.SHIFTED_FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in self._bounds(test)}
         if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
             return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
@@ -218,3 +227,11 @@ class IfConversion:
 def _arm_value(phi: Instruction, source: str) -> str:
     values = arms_of(phi)
     return values[source]
+
+
+def is_bit(value: str) -> bool:
+    """Whether a value is a number of a single bit, or of all of them ["a ? powerof2cst : 0" and "a ? -1 : 0" in match.pd]."""
+    if not value.lstrip("-").isdigit():
+        return False
+    number = int(value)
+    return number == -1 or (number > 0 and number & (number - 1) == 0)

@@ -17,6 +17,7 @@ from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.lagging_counters import without_lagging
 from bfsim.kernel.lowering.merged_stores import merge_stores
+from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.short_circuits import split_tests
@@ -31,6 +32,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     split_tests,
     split_loads,
     merge_stores,
+    without_partial_redundancies,
     copy_headers,
     copy_breaks,
     with_preheaders,
@@ -47,6 +49,7 @@ SWITCHES = {
     factor_sums: Rule.FACTORED_SUMS,
     split_tests: Rule.SPLIT_TESTS,
     split_loads: Rule.MERGED_LOADS,
+    without_partial_redundancies: Rule.PARTIAL_REDUNDANCIES,
     without_redundant_loads: Rule.CARRIED_LOADS,
     sink: Rule.SINKING,
     copy_headers: Rule.COPIED_HEADERS,

@@ -265,6 +265,10 @@ class _Selector(Accesses):
             self.append(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
         elif conversion.kind is ConversionKind.FLAG:
             self.append(Op.CC_MOVE, each, result, DATA)
+        elif conversion.kind is ConversionKind.SHIFTED_FLAG:
+            self.append(Op.CC_MOVE, each, f"{result}.flag", DATA)
+            op = Op.ALU if "-1" in conversion.operands else Op.SHIFT
+            self.append(op, each, result, DATA, (f"{result}.flag", DATA))
         else:
             uses = tuple((value, ANY) for value in conversion.operands)
             self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=conversion.operands[1:])
