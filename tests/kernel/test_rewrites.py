@@ -145,3 +145,29 @@ def test_a_moved_operand_does_not_share_the_register_of_the_sum(tmp_path: Path) 
     assert Op.PUSH_MULTIPLE in entry
     root = [each.op for each in import_text(CHAINS, tmp_path).root.counters(GCC_O2)[0].charges]
     assert Op.PUSH_MULTIPLE not in root
+
+
+TWO_LOOPS = """
+@kernel
+def f(x: i32, y: u32) -> u32:
+    p = i32(1)
+    q = x
+    r = x >> 3
+    for k0 in range(-1, (x * (i32(5) if y != 200 else 0)) & 15):
+        if k0 >= r and (x == k0 or y < y):
+            break
+        k1 = i32(0)
+        while k1 < 6 and q > 0:
+            k1 += 1
+        k2 = i32(0)
+        while k2 < 3 and p != x:
+            k2 += 1
+    return y
+"""
+
+
+def test_a_rotation_that_would_cut_values_off_is_left(tmp_path: Path) -> None:
+    """Two loops of two tests in a third one: the kernel is compiled, and computes what it did."""
+    kernel = import_text(TWO_LOOPS, tmp_path).f
+    kernel.compile(GCC_O2)
+    assert kernel(7, 5) == 5

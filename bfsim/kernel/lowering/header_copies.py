@@ -35,8 +35,27 @@ def _copied(routine: Routine, wanted: Callable[[ControlFlow, Loop], bool]) -> Ro
         flow = ControlFlow(routine)
         loop = next((each for each in flow.loops if each.header == header), None)
         if loop is not None and wanted(flow, loop) and _is_copied(flow, loop):
-            routine = _Rotation(flow, loop).routine()
+            rotated = _Rotation(flow, loop).routine()
+            routine = rotated if _reaches_uses(rotated) else routine
     return routine
+
+
+def _reaches_uses(routine: Routine) -> bool:
+    """Whether every value is there where it is used: else the loop is left as it was."""
+    flow = ControlFlow(routine)
+    for block in routine.blocks:
+        for number, each in enumerate(block.instructions):
+            places = (
+                arms_of(each).items() if each.opcode == "phi" else ((block.label, it) for it in each.operands)
+            )
+            for label, value in places:
+                home, made = flow.defined.get(value, (label, None))
+                is_before = any(made is before for before in block.instructions[:number])
+                if home not in flow.dominators[label] or (
+                    home == block.label and each.opcode != "phi" and made is not None and not is_before
+                ):
+                    return False
+    return True
 
 
 def _accesses(flow: ControlFlow, loop: Loop) -> bool:
