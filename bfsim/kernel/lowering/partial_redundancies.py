@@ -75,11 +75,12 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
             for source in before:
                 made = _on_way(flow, block, each, source)
                 value = _value(each.opcode, made[-1].operands) if made else None
-                if value is not None:
-                    values[source] = value
-                else:
+                if value is None:
                     rows[source] = made
-            if values and rows and all(rows.values()) and _chooses(flow, each, choices):
+                elif all(value != row.result for row in made):  # else it is to be converted there first
+                    values[source] = value
+            is_known = len(values) + len(rows) == len(before)
+            if values and is_known and all(rows.values()) and rows and _chooses(flow, each, choices):
                 return _Redundancy(label, each, values, rows)
     return None
 
