@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import io
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from elftools.dwarf.ranges import BaseAddressEntry
 from elftools.elf.constants import SH_FLAGS
@@ -18,6 +18,9 @@ from bfsim.blackfin.objects import damaged
 
 FIRST_VERSION_FROM_0 = 5
 """[DWARF 5] Of line tables: in older ones the first file has the number 1."""
+
+
+Found = TypeVar("Found")
 
 
 class Line(NamedTuple):
@@ -33,6 +36,15 @@ class InlinedCall(NamedTuple):
     begin: int
     end: int
     line: Line
+
+
+class Unit(NamedTuple):
+    """A file that was compiled: its debugging information, its unit there, its line table and the files of that by their numbers."""
+
+    dwarf: Any
+    unit: Any
+    program: Any
+    files: Mapping[int, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,13 +73,7 @@ class LineTable:
 
 def lines_of(image: Image) -> LineTable:
     """Read the lines of an image. Raises KernelError where its debugging information is damaged."""
-    try:
-        elf = ELFFile(io.BytesIO(image.octets))
-        if any(_is_compressed(each) for each in elf.iter_sections()) or not elf.has_dwarf_info():
-            return LineTable(())
-        found = sorted(_rows(elf), key=lambda each: (each.address, each.line is not None))
-    except Exception as error:  # noqa: BLE001  # bytes of others: the parser may fail in any way
-        raise damaged(f"the debugging information of {image.name}", error) from None
+    found = sorted(_read(image, _rows), key=lambda each: (each.address, each.line is not None))
     last = {each.address: each for each in found}
     return LineTable(tuple(last.values()))
 
@@ -77,11 +83,16 @@ def calls_inlined_in(image: Image) -> tuple[InlinedCall, ...]:
 
     Raises KernelError where its debugging information is damaged.
     """
+    return tuple(sorted(_read(image, _inlined), key=lambda each: each.end - each.begin))
+
+
+def _read(image: Image, read: Callable[[Unit], Iterator[Found]]) -> list[Found]:
+    """Return what is read of each unit of an image's debugging information, which may have none."""
     try:
         elf = ELFFile(io.BytesIO(image.octets))
         if any(_is_compressed(each) for each in elf.iter_sections()) or not elf.has_dwarf_info():
-            return ()
-        return tuple(sorted(_inlined(elf), key=lambda each: each.end - each.begin))
+            return []
+        return [each for unit in _units(elf) for each in read(unit)]
     except Exception as error:  # noqa: BLE001  # bytes of others: the parser may fail in any way
         raise damaged(f"the debugging information of {image.name}", error) from None
 
@@ -91,27 +102,25 @@ def _is_compressed(section: Any) -> bool:
     return bool(section["sh_flags"] & SH_FLAGS.SHF_COMPRESSED) or section.name.startswith(".zdebug")
 
 
-def _files(program: Any) -> dict[int, str]:
-    """Return the names of the files of a line table by their numbers."""
-    first = 0 if program["version"] >= FIRST_VERSION_FROM_0 else 1
-    return {
-        number: each.name.decode(errors="replace") for number, each in enumerate(program["file_entry"], first)
-    }
-
-
-def _inlined(elf: ELFFile) -> Iterator[InlinedCall]:
+def _units(elf: ELFFile) -> Iterator[Unit]:
+    """Yield the units that have lines."""
     dwarf = elf.get_dwarf_info(relocate_dwarf_sections=False, follow_links=False)
     for unit in dwarf.iter_CUs():
         program = dwarf.line_program_for_CU(unit)
-        if program is None:
-            continue
-        names = _files(program)
-        for entry in unit.iter_DIEs():
-            if entry.tag == "DW_TAG_inlined_subroutine":
-                values = {name: each.value for name, each in entry.attributes.items()}
-                line = Line(names[values["DW_AT_call_file"]], values["DW_AT_call_line"])
-                for begin, end in _ranges(dwarf, unit, entry, values):
-                    yield InlinedCall(begin, end, line)
+        if program is not None:
+            first = 0 if program["version"] >= FIRST_VERSION_FROM_0 else 1
+            files = enumerate(program["file_entry"], first)
+            names = {number: each.name.decode(errors="replace") for number, each in files}
+            yield Unit(dwarf, unit, program, names)
+
+
+def _inlined(unit: Unit) -> Iterator[InlinedCall]:
+    for entry in unit.unit.iter_DIEs():
+        if entry.tag == "DW_TAG_inlined_subroutine":
+            values = {name: each.value for name, each in entry.attributes.items()}
+            line = Line(unit.files[values["DW_AT_call_file"]], values["DW_AT_call_line"])
+            for begin, end in _ranges(unit.dwarf, unit.unit, entry, values):
+                yield InlinedCall(begin, end, line)
 
 
 def _ranges(dwarf: Any, unit: Any, entry: Any, values: Mapping[str, int]) -> Iterator[tuple[int, int]]:
@@ -130,15 +139,9 @@ def _ranges(dwarf: Any, unit: Any, entry: Any, values: Mapping[str, int]) -> Ite
                 yield start + each.begin_offset, start + each.end_offset
 
 
-def _rows(elf: ELFFile) -> Iterator[Row]:
-    dwarf = elf.get_dwarf_info(relocate_dwarf_sections=False, follow_links=False)
-    for unit in dwarf.iter_CUs():
-        program = dwarf.line_program_for_CU(unit)
-        if program is None:
-            continue
-        names = _files(program)
-        for entry in program.get_entries():
-            state = entry.state
-            if state is not None:
-                line = None if state.end_sequence else Line(names[state.file], state.line)
-                yield Row(state.address, line)
+def _rows(unit: Unit) -> Iterator[Row]:
+    for entry in unit.program.get_entries():
+        state = entry.state
+        if state is not None:
+            line = None if state.end_sequence else Line(unit.files[state.file], state.line)
+            yield Row(state.address, line)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from types import CodeType, FunctionType
@@ -21,10 +20,10 @@ from bfsim.kernel.function import Body, Parameter
 from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
+from bfsim.kernel.signature import SCALARS, named_type, parameters_of, result_type
 from bfsim.kernel.split_assignments import each_alike, together
-from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, f32, i32, u32
+from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i32
 
-SCALARS = (i32, u32, f32)
 STATEMENTS = {
     "try": "tests with if",
     "with": "plain statements",
@@ -51,8 +50,8 @@ def read_definition(source: KernelSource, outer: Mapping[str, object], python: F
         source.refuse(definition, "a kernel must be a plain `def`", "write def, not lambda or async def")
     _check_names(source, definition, python.__code__)
     scope = KernelScope(source, outer, definition.name, python.__code__.co_varnames)
-    parameters = _parameters(scope, definition)
-    reader = _Reader(scope, _result_type(scope, definition))
+    parameters = parameters_of(scope, definition)
+    reader = _Reader(scope, result_type(scope, definition))
     try:
         block = reader.block(_without_docstring(definition.body))
     except RecursionError:
@@ -95,58 +94,6 @@ def _check_names(source: KernelSource, definition: ast.FunctionDef, code: CodeTy
                 f"the name {name} is not ASCII",
                 "use the letters a to z, as a C compiler wants them",
             )
-
-
-def _parameters(scope: KernelScope, definition: ast.FunctionDef) -> tuple[Parameter, ...]:
-    arguments = definition.args
-    if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
-        scope.source.refuse(
-            definition, "a kernel takes plain parameters only", "remove *, ** and default values"
-        )
-    parameters = []
-    for each in [*arguments.posonlyargs, *arguments.args]:
-        kind = _annotation(scope.outer, each.annotation)
-        if not isinstance(kind, ArrayType) and kind not in SCALARS:
-            scope.source.refuse(
-                each,
-                f"the parameter {each.arg} needs a type",
-                "write i32, u32, f32, or an array such as u8[:] or i16[:]",
-            )
-        parameters.append(Parameter(each.arg, kind))
-        if isinstance(kind, ArrayType):
-            scope.arrays[each.arg] = kind
-        else:
-            scope.locals[each.arg] = kind
-            scope.assigned.add(each.arg)
-    return tuple(parameters)
-
-
-def _is_all(index: ast.expr) -> bool:
-    """Whether an index is `:`."""
-    return isinstance(index, ast.Slice) and index.lower is index.upper is index.step is None
-
-
-def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> Number | ArrayType | None:
-    """Type named by an annotation, or None when it names none."""
-    if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        with suppress(SyntaxError):
-            node = ast.parse(node.value, mode="eval").body
-    if isinstance(node, ast.Subscript) and _is_all(node.slice):
-        element = _annotation(outer, node.value)
-        return ArrayType(element) if isinstance(element, (IntType, FloatType)) else None
-    if isinstance(node, ast.Name) and isinstance(named := outer.get(node.id), (IntType, FloatType)):
-        return named
-    return None
-
-
-def _result_type(scope: KernelScope, definition: ast.FunctionDef) -> Number | None:
-    node = definition.returns
-    if node is None or (isinstance(node, ast.Constant) and node.value is None):
-        return None
-    kind = _annotation(scope.outer, node)
-    if isinstance(kind, (IntType, FloatType)) and kind in SCALARS:
-        return kind
-    scope.source.refuse(node, "a kernel returns i32, u32, f32 or nothing", "write -> i32")
 
 
 def _without_docstring(body: list[ast.stmt]) -> list[ast.stmt]:
@@ -232,7 +179,7 @@ class _Reader:
         return found
 
     def _annassign(self, node: ast.AnnAssign) -> list[tree.Stmt]:
-        kind = _annotation(self.scope.outer, node.annotation)
+        kind = named_type(self.scope.outer, node.annotation)
         if kind not in SCALARS or node.value is None:
             self.scope.source.refuse(
                 node,

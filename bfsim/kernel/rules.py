@@ -162,6 +162,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.PARALLEL_COUNTS: ("nearest_words",),
     Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
     Rule.FINAL_VALUES: ("two_sums",),
-    Rule.PARTIAL_REDUNDANCIES: (),
+    Rule.PARTIAL_REDUNDANCIES: (),  # from kernels that are not measured here: tests/kernel/test_partial_redundancies.py
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

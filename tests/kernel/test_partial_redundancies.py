@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2
+from bfsim.kernel import GCC_O2, VDSP_O2, Kernel
 from bfsim.kernel.isa import Op
+from bfsim.kernel.types import ArrayType
 from tests.kernel.modules import import_text
 from tests.kernel.test_lowering import lowered
 
@@ -39,14 +41,15 @@ def f(data: u8[:], out: u32[:], n: i32) -> None:
 """
 
 
-def arguments(kernel: object) -> list[object]:
+def arguments(kernel: Kernel) -> list[Any]:
     """Return numbers by chance, the same each time, and how many of them count."""
     random = np.random.default_rng(3)
-    found: list[object] = []
-    for each in kernel.function.parameters:  # type: ignore[attr-defined]
+    found: list[Any] = []
+    for each in kernel.function.parameters:
         if each.name in ("n", "t"):
             found.append(COUNT if each.name == "n" else LIMIT)
             continue
+        assert isinstance(each.type, ArrayType)
         kind = np.dtype(each.type.element.dtype)
         low, high = (0, 256) if kind.itemsize == 1 else (0 if kind.kind == "u" else -500, 500)
         found.append(random.integers(low, high, 256).astype(kind))
@@ -98,6 +101,5 @@ def test_one_redundancy_makes_others(tmp_path: Path) -> None:
         f"@kernel\n{SUM.format('v = y if y > t else 0; s = s + v * 3').lstrip()}", tmp_path
     ).f
     values = arguments(kernel)[0]
-    assert isinstance(values, np.ndarray)
     kept = values[:COUNT][values[:COUNT] > LIMIT]
     assert kernel(values, COUNT, LIMIT) == 3 * int(kept.sum())

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
+from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
@@ -35,27 +36,8 @@ def _copied(routine: Routine, wanted: Callable[[ControlFlow, Loop], bool]) -> Ro
         flow = ControlFlow(routine)
         loop = next((each for each in flow.loops if each.header == header), None)
         if loop is not None and wanted(flow, loop) and _is_copied(flow, loop):
-            rotated = _Rotation(flow, loop).routine()
-            routine = rotated if _reaches_uses(rotated) else routine
+            routine = _Rotation(flow, loop).routine()
     return routine
-
-
-def _reaches_uses(routine: Routine) -> bool:
-    """Whether every value is there where it is used: else the loop is left as it was."""
-    flow = ControlFlow(routine)
-    for block in routine.blocks:
-        for number, each in enumerate(block.instructions):
-            places = (
-                arms_of(each).items() if each.opcode == "phi" else ((block.label, it) for it in each.operands)
-            )
-            for label, value in places:
-                home, made = flow.defined.get(value, (label, None))
-                is_before = any(made is before for before in block.instructions[:number])
-                if home not in flow.dominators[label] or (
-                    home == block.label and each.opcode != "phi" and made is not None and not is_before
-                ):
-                    return False
-    return True
 
 
 def _accesses(flow: ControlFlow, loop: Loop) -> bool:
@@ -80,8 +62,13 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
         return False
     way_out = next(way for way in header.successors if way not in loop.blocks)
     back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
+    is_entered_once = len(flow.predecessors[loop.header]) == len(back) + 1
     alone = flow.predecessors[inside[0]] == [loop.header] and back == [loop.latch] and not flow.is_split(loop)
-    if not alone or len(header.instructions) > MOST_STATEMENTS or _has_phi(flow.blocks[inside[0]]):
+    if (
+        not (alone and is_entered_once)
+        or len(header.instructions) > MOST_STATEMENTS
+        or _has_phi(flow.blocks[inside[0]])
+    ):
         return False
     return _counts(flow, loop) and _uses_are_near(flow, header, inside[0], way_out)
 
@@ -169,7 +156,7 @@ class _Rotation:
                 blocks.append(self._made(self.copy, self.first, own=True))
                 blocks.append(self._made(block.label, self.last, own=False))
             elif block.label == self.entering:
-                blocks.append(_led(block, self.header.label, self.copy))
+                blocks.append(going_to(block, self.header.label, self.copy))
             else:
                 blocks.append(self._behind(block))
         return replace(self.flow.routine, blocks=tuple(blocks))
@@ -267,13 +254,6 @@ def _renamed(each: Instruction, names: dict[str, str]) -> Instruction:
         return each
     text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
     return replace(each, text=text, operands=tuple(names.get(value, value) for value in each.operands))
-
-
-def _led(block: BasicBlock, old: str, new: str) -> BasicBlock:
-    """A block that goes to another one instead."""
-    *rows, end = block.instructions
-    text = re.sub(rf"label %{re.escape(old)}(?![\w.$-])", f"label %{new}", end.text)
-    return replace(block, instructions=(*rows, replace(end, text=text)))
 
 
 def _type(each: Instruction) -> str:

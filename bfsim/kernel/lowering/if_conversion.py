@@ -170,7 +170,7 @@ class IfConversion:
             return self._negation(label, arms, phi, work, test)
         if {yes, no} == {"1", "0"}:
             return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
-        if "0" in (yes, no) and is_bit(no if yes == "0" else yes):
+        if "0" in (yes, no) and _is_bit(no if yes == "0" else yes):
             return ConvertedIf(ConversionKind.SHIFTED_FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in self._bounds(test)}
         if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
@@ -229,7 +229,7 @@ def _arm_value(phi: Instruction, source: str) -> str:
     return values[source]
 
 
-def is_bit(value: str) -> bool:
+def _is_bit(value: str) -> bool:
     """Whether a value is a number of a single bit, or of all of them ["a ? powerof2cst : 0" and "a ? -1 : 0" in match.pd]."""
     if not value.lstrip("-").isdigit():
         return False

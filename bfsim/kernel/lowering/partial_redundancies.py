@@ -12,25 +12,20 @@ from dataclasses import dataclass, replace
 
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.edges import come_to_from, going_to, put_between
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.profile import GCC_O2
 
 NEUTRAL = {
-    "add": "0",
-    "sub": "0",
-    "or": "0",
-    "xor": "0",
-    "shl": "0",
-    "lshr": "0",
-    "ashr": "0",
-    "mul": "1",
-    "and": "-1",
-}
+    "add": "0", "sub": "0", "or": "0", "xor": "0", "shl": "0", "lshr": "0", "ashr": "0", "mul": "1", "and": "-1",
+}  # fmt: skip
 """On the right of these nothing is changed."""
 COMMUTATIVE = ("add", "or", "xor", "mul", "and")
 ABSORBING = {"mul": "0", "and": "0"}
 """With these nothing else counts."""
 CASTS = ("zext", "sext", "trunc")
+SAME_IN_ALL_WIDTHS = 1 << 7
+"""Numbers from 0 to before it."""
 
 
 def without_partial_redundancies(routine: Routine) -> Routine:
@@ -61,38 +56,41 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
     `converted`: choices of which phiopt has made an operation, or a flag.
     """
     label, before = block.label, flow.predecessors[block.label]
-    phis = [each for each in block.instructions if each.opcode == "phi"]
-    if len(before) < 2 or not phis or any(label in flow.dominators[each] for each in before):
-        return None
-    if not all(flow.blocks[each].terminator.opcode == "br" for each in before):
+    choices = {each.result for each in block.instructions if each.opcode == "phi"} - converted
+    if len(before) < 2 or not choices or any(label in flow.dominators[each] for each in before):
         return None
     if any(_loops(flow, each) != _loops(flow, label) for each in before):
         return None
-    choices = {each.result for each in phis} - converted
+    if any(flow.blocks[each].terminator.opcode != "br" for each in before):
+        return None
     for each in block.instructions:
-        if each.opcode in NEUTRAL and len(each.operands) == 2:
-            values, rows = dict[str, str](), dict[str, list[Instruction]]()
-            for source in before:
-                made = _on_way(flow, block, each, source)
-                value = _value(each.opcode, made[-1].operands) if made else None
-                if value is None:
-                    rows[source] = made
-                elif all(value != row.result for row in made):  # else it is to be converted there first
-                    values[source] = value
-            is_known = len(values) + len(rows) == len(before)
-            if values and is_known and all(rows.values()) and rows and _chooses(flow, each, choices):
-                return _Redundancy(label, each, values, rows)
+        if each.opcode in NEUTRAL and any(_root(flow, operand) in choices for operand in each.operands):
+            found = _redundancy(flow, block, each)
+            if found is not None:
+                return found
     return None
+
+
+def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) -> _Redundancy | None:
+    """Return on which ways an operation is known and on which it has to be done; None unless there are both."""
+    values, rows = dict[str, str](), dict[str, list[Instruction]]()
+    for source in flow.predecessors[block.label]:
+        made = _on_way(flow, block, operation, source)
+        if made is None:
+            return None
+        value = _value(operation.opcode, made[-1].operands)
+        if value is None:
+            rows[source] = made
+        elif any(value == row.result for row in made):
+            return None  # it would have to be converted on this way
+        else:
+            values[source] = value
+    return _Redundancy(block.label, operation, values, rows) if values and rows else None
 
 
 def _loops(flow: ControlFlow, label: str) -> set[str]:
     """The loops around a block, by their headers."""
     return {loop.header for loop in flow.loops_of(label)}
-
-
-def _chooses(flow: ControlFlow, each: Instruction, choices: set[str | None]) -> bool:
-    """Whether an operand is chosen, perhaps in another width."""
-    return any(_root(flow, operand) in choices for operand in each.operands)
 
 
 def _root(flow: ControlFlow, value: str) -> str:
@@ -103,14 +101,14 @@ def _root(flow: ControlFlow, value: str) -> str:
     return value
 
 
-def _on_way(flow: ControlFlow, block: BasicBlock, each: Instruction, source: str) -> list[Instruction]:
-    """Return what an operation is on the way from `source`, behind the conversions that it needs there; nothing if it needs more."""
+def _on_way(flow: ControlFlow, block: BasicBlock, each: Instruction, source: str) -> list[Instruction] | None:
+    """Return what an operation is on the way from `source`, behind the conversions that it needs there; None if it needs more."""
     rows, text = list[Instruction](), each.text
     operands = []
     for operand in each.operands:
         value = _operand_on_way(flow, block, operand, source, rows)
         if value is None:
-            return []
+            return None
         text = _with(text, operand, value)
         operands.append(value)
     made = replace(each, result=f"{each.result}.{source}", text=text, operands=tuple(operands))
@@ -129,18 +127,13 @@ def _operand_on_way(
     if made.opcode not in CASTS:
         return None
     value = _operand_on_way(flow, block, made.operands[0], source, rows)
-    if value is None or _is_number(value):
-        return _converted(made, value)
+    if value is None or (_is_number(value) and not 0 <= int(value) < SAME_IN_ALL_WIDTHS):
+        return None
+    if _is_number(value):
+        return value
     name = f"{made.result}.{source}"
     rows.append(replace(made, result=name, text=_with(made.text, made.operands[0], value), operands=(value,)))
     return name
-
-
-def _converted(cast: Instruction, value: str | None) -> str | None:
-    """Return a number in another width: 0 and small ones are the same."""
-    if value is None:
-        return None
-    return value if 0 <= int(value) < 1 << 7 else None
 
 
 def _is_number(value: str) -> bool:
@@ -174,7 +167,7 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
         home = source
         if flow.blocks[source].successors != (label,):
             home = f"{label}.from.{source}"
-            _split_edge(blocks, source, home, label, rows[-1])
+            put_between(blocks, source, label, home)
         *before, last = blocks[home].instructions
         blocks[home] = replace(blocks[home], instructions=(*before, *rows, last))
         values[home] = rows[-1].result or ""
@@ -188,34 +181,6 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
     return _without_unused(replace(routine, blocks=tuple(blocks.values())))
 
 
-def _split_edge(
-    blocks: dict[str, BasicBlock], source: str, between: str, label: str, like: Instruction
-) -> None:
-    """Put a block on the way from `source` to `label`."""
-    jump = replace(
-        like, result=None, opcode="br", text=f"br label %{label}", operands=(), weights=(), hint=""
-    )
-    after = {each: blocks.pop(each) for each in list(blocks)[list(blocks).index(label) :]}
-    blocks[between] = BasicBlock(between, (jump,))
-    blocks |= after
-    _redirect(blocks, source, label, between)
-    _rename_arm(blocks, label, source, between)
-
-
-def _redirect(blocks: dict[str, BasicBlock], source: str, old: str, new: str) -> None:
-    *rows, last = blocks[source].instructions
-    jump = replace(last, text=_with(last.text, f"%{old}", f"%{new}"))
-    blocks[source] = replace(blocks[source], instructions=(*rows, jump))
-
-
-def _rename_arm(blocks: dict[str, BasicBlock], label: str, old: str, new: str) -> None:
-    rows = [
-        replace(each, text=_with(each.text, f"%{old}", f"%{new}")) if each.opcode == "phi" else each
-        for each in blocks[label].instructions
-    ]
-    blocks[label] = replace(blocks[label], instructions=tuple(rows))
-
-
 def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str, label: str) -> None:
     """Take out a block that only goes on to `label`, if the one before it does not lead there, too."""
     before = flow.predecessors[empty]
@@ -224,8 +189,8 @@ def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str,
     (source,) = before
     if label in blocks[source].successors or blocks[source].terminator.opcode != "br":
         return
-    _redirect(blocks, source, empty, label)
-    _rename_arm(blocks, label, empty, source)
+    blocks[source] = going_to(blocks[source], empty, label)
+    blocks[label] = come_to_from(blocks[label], empty, source)
     del blocks[empty]
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import Routine
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.edges import put_between
 
 
 def preheader_of(loop: Loop) -> str:
@@ -27,22 +27,5 @@ def with_preheaders(routine: Routine) -> Routine:
 def with_preheader(routine: Routine, loop: Loop, before: str) -> Routine:
     """Return `routine` with a preheader between `loop` and block `before`, from which it is entered."""
     blocks = {each.label: each for each in routine.blocks}
-    branch, header, label = blocks[before].terminator, loop.header, preheader_of(loop)
-    text = re.sub(rf"label %{re.escape(header)}(?![\w.$-])", f"label %{label}", branch.text)
-    blocks[before] = replace(
-        blocks[before], instructions=(*blocks[before].instructions[:-1], replace(branch, text=text))
-    )
-    blocks[header] = replace(
-        blocks[header],
-        instructions=tuple(_from(each, before, label) for each in blocks[header].instructions),
-    )
-    jump = Instruction(None, "br", f"br label %{header}", (), branch.line, location=branch.location)
-    blocks[label] = BasicBlock(label, (jump,))
+    put_between(blocks, before, loop.header, preheader_of(loop))
     return replace(routine, blocks=tuple(blocks.values()))
-
-
-def _from(each: Instruction, before: str, label: str) -> Instruction:
-    """Let a phi expect block `label` where it expected `before`."""
-    if each.opcode != "phi":
-        return each
-    return replace(each, text=each.text.replace(f", %{before} ]", f", %{label} ]"))

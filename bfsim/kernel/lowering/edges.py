@@ -1,0 +1,33 @@
+"""Edges of the control flow: a branch that goes elsewhere, phis that come from elsewhere, a block between two."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from bfsim.kernel.ir_text import BasicBlock, Instruction
+
+
+def going_to(block: BasicBlock, old: str, new: str) -> BasicBlock:
+    """Return a block that goes to `new` in place of `old`."""
+    *rows, end = block.instructions
+    text = re.sub(rf"label %{re.escape(old)}(?![\w.$-])", f"label %{new}", end.text)
+    return replace(block, instructions=(*rows, replace(end, text=text)))
+
+
+def come_to_from(block: BasicBlock, old: str, new: str) -> BasicBlock:
+    """Return a block whose phis expect `new` where they expected `old`."""
+    rows = [
+        replace(each, text=each.text.replace(f", %{old} ]", f", %{new} ]")) if each.opcode == "phi" else each
+        for each in block.instructions
+    ]
+    return replace(block, instructions=tuple(rows))
+
+
+def put_between(blocks: dict[str, BasicBlock], source: str, label: str, between: str) -> None:
+    """Put an empty block on the way from block `source` to block `label`."""
+    branch = blocks[source].terminator
+    jump = Instruction(None, "br", f"br label %{label}", (), branch.line, location=branch.location)
+    blocks[source] = going_to(blocks[source], label, between)
+    blocks[label] = come_to_from(blocks[label], source, between)
+    blocks[between] = BasicBlock(between, (jump,))
