@@ -32,24 +32,29 @@ class DigestedFrames:
         self.name = name_of(Path(reader.path))
         self._reader = reader
         self.total = total
-        self._digest = hashlib.sha256()
         self.digests: list[str] = []
         """Of the recording up to each frame that was read."""
         self._expected: Sequence[str] = ()
         self._times_ns: dict[int, dict[str, int]] = {}
 
     def __iter__(self) -> Iterator[StereoFrame]:
-        for frame in read_ahead(self._reader.frames(self.total)):
-            self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
-            self._digest.update(frame.left.tobytes())
-            self._digest.update(frame.right.tobytes())
-            self.digests.append(self._digest.hexdigest())
+        for frame, digest in read_ahead(self._with_digests()):
+            self.digests.append(digest)
             if self._expected and self._expected[frame.index] != self.digests[-1]:
                 raise WorkError(
                     f"{self.name} must be as it was when its run was recorded, and frame {frame.index} is another: record it again"
                 )
             self._times_ns[frame.index] = {"left": frame.left_ns, "right": frame.right_ns}
             yield frame
+
+    def _with_digests(self) -> Iterator[tuple[StereoFrame, str]]:
+        """Yield frames with the digest of the recording up to each."""
+        digest = hashlib.sha256()
+        for frame in self._reader.frames(self.total):
+            digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
+            digest.update(frame.left.tobytes())
+            digest.update(frame.right.tobytes())
+            yield frame, digest.hexdigest()
 
     def expect(self, digests: Sequence[str]) -> None:
         """Compare each frame that is read from now on with what was read before. Raises WorkError for another one."""
@@ -62,7 +67,7 @@ class DigestedFrames:
     @property
     def digest(self) -> str:
         """Digest of the pixels and time stamps read so far."""
-        return self._digest.hexdigest()
+        return self.digests[-1] if self.digests else hashlib.sha256().hexdigest()
 
 
 def recording_digest(recording: Path | str | None, frames: int) -> str:

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from random import Random
+from typing import Any
 
 from bfsim.chip.boards import board_named
 from bfsim.kernel.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
@@ -31,6 +32,14 @@ NOISE = 4096  # bytes from each place on; no walk goes twice as far
 
 # What the state tells of the last access alone: of a run of words it is the first, of single words the last.
 OF_THE_LAST_ACCESS = (w.BEGAN, w.PAGE_CLASS, w.REFRESH_WAIT)
+
+
+def digest_of(words: Any) -> str:
+    """Return a digest of what the words of a bus say when everything is over."""
+    counted = bytearray(words[: w.SUBBANKS_AT])  # which place a transfer had means nothing
+    for word in OF_THE_LAST_ACCESS:
+        counted[8 * word : 8 * (word + 1)] = bytes(8)
+    return hashlib.sha256(counted).hexdigest()
 
 
 class Scene:
@@ -146,15 +155,12 @@ class Scene:
         bus = self.bench.bus
         self.bench.env.process(self._settle(stops))
         self.bench.play()
-        words = bytearray(bus.words[: w.SUBBANKS_AT])  # which place a transfer had means nothing
-        for word in OF_THE_LAST_ACCESS:
-            words[8 * word : 8 * (word + 1)] = bytes(8)
         return {
             "ends": [each.end for each in self.transfers],
             "calls": [
                 [each.end, {str(reason): cclk for reason, cclk in each.stalls.items()}] for each in self.calls
             ],
-            "words": hashlib.sha256(words).hexdigest(),
+            "words": digest_of(bus.words),
             "memory": hashlib.sha256(b"".join(self._touched())).hexdigest(),
         }
 

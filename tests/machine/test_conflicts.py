@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from bfsim.api import Buffer, Core, Frame, i32
@@ -146,3 +148,20 @@ def test_a_stage_that_ends_ahead_of_time_pays_too() -> None:
             yield core.run(total, row)
 
     assert conflicts(play(in_work(work), more=(BANKS, LARGE)))[0] > 0
+
+
+def test_a_profiler_may_watch() -> None:
+    """It keeps the arrays that numpy's methods are called on, so none of these can grow where it is."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        for row in core.rows("banks")[: frame.index + 1]:  # a new group of calls, when there is one already
+            yield core.run(total, row)
+
+    unwatched = play(in_work(work), frames=2, more=(BANKS,))
+    before = sys.getprofile()
+    sys.setprofile(lambda *_: None)
+    try:
+        watched = play(in_work(work), frames=2, more=(BANKS,))
+    finally:
+        sys.setprofile(before)
+    assert watched == unwatched

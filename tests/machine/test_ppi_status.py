@@ -19,7 +19,7 @@ def after_frames(*lines: int) -> PpiStatus:
     status.frame_sync()
     for count in lines:
         for _ in range(count):
-            status.line(LINE_SAMPLES)
+            status.lines(1, LINE_SAMPLES)
         status.frame_sync()
     return status
 
@@ -42,7 +42,7 @@ def test_the_next_frame_is_counted_from_its_start() -> None:
     status = after_frames(1, 4)
     status.read()
     for _ in range(FRAME_LINES):
-        status.line(LINE_SAMPLES)
+        status.lines(1, LINE_SAMPLES)
     status.frame_sync()
     assert status.read() == 0
 
@@ -50,16 +50,16 @@ def test_the_next_frame_is_counted_from_its_start() -> None:
 def test_nothing_is_taken_before_the_first_sync() -> None:
     """The PPI is enabled in the middle of a frame: it waits for the next one, and that is no error."""
     status = PpiStatus("PPI0", FRAME_LINES, LINE_SAMPLES)
-    assert [status.line(LINE_SAMPLES) for _ in range(3)] == [0, 0, 0]
+    assert [status.lines(1, LINE_SAMPLES) for _ in range(3)] == [0, 0, 0]
     status.frame_sync()
     assert status.read() == 0
-    assert status.line(LINE_SAMPLES) == LINE_SAMPLES
+    assert status.lines(1, LINE_SAMPLES) == LINE_SAMPLES
 
 
 def test_lines_beyond_the_frame_are_not_taken() -> None:
     """PPI_FRAME lines a frame, and no more until the next sync."""
     status = after_frames()
-    assert [status.line(LINE_SAMPLES) for _ in range(6)] == [16, 16, 16, 16, 0, 0]
+    assert [status.lines(1, LINE_SAMPLES) for _ in range(6)] == [16, 16, 16, 16, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -68,15 +68,15 @@ def test_lines_beyond_the_frame_are_not_taken() -> None:
 def test_a_line_with_too_few_samples(samples: int, taken: int, word: int) -> None:
     """What a line has beyond PPI_COUNT + 1 is cut off: that is how a part of a picture is taken."""
     status = after_frames()
-    assert status.line(samples) == taken
+    assert status.lines(1, samples) == taken
     assert status.read() == word
 
 
 def test_a_short_line_is_named() -> None:
     """Lines are counted from 0."""
     status = after_frames()
-    status.line(LINE_SAMPLES)
-    status.line(10)
+    status.lines(1, LINE_SAMPLES)
+    status.lines(1, 10)
     assert (
         status.causes[FT_ERR]
         == "PPI1_STATUS FT_ERR: a line must have PPI_COUNT + 1 = 16 samples, not 10 (line 1)"
@@ -110,7 +110,7 @@ def test_an_error_exactly_when_a_frame_was_short(frames: list[int]) -> None:
     """Whatever comes, the PPI never takes more lines than it was told, and reports every short frame."""
     status, taken, short = after_frames(), [], []
     for lines in frames:
-        taken.append(sum(status.line(LINE_SAMPLES) == LINE_SAMPLES for _ in range(lines)))
+        taken.append(status.lines(lines, LINE_SAMPLES) // LINE_SAMPLES)
         status.frame_sync()
         short.append(status.read() == FT_ERR)
     assert taken == [min(lines, FRAME_LINES) for lines in frames]

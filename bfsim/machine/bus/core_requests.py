@@ -17,6 +17,9 @@ from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_access, count_traffic
 
+WHAT_MASK = (1 << log.STAMP_BIT) - 1
+"""Of an entry of the log: kind and offset. In the store buffer the site takes the place of the stamp."""
+
 
 @native
 def bytes_of(state: State, kind: int) -> int:
@@ -35,8 +38,14 @@ def site_of(state: State, core: int) -> int:
 @native
 def charge(state: State, core: int, reason: int, cycles: int) -> None:
     """Charge what the core's present access stalls."""
+    charge_site(state, core, site_of(state, core), reason, cycles)
+
+
+@native
+def charge_site(state: State, core: int, site: int, reason: int, cycles: int) -> None:
+    """Charge what an access of a core's site stalls."""
     state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason] += cycles
-    state[site_at(core, site_of(state, core)) + reason] += cycles
+    state[site_at(core, site) + reason] += cycles
 
 
 @native
@@ -141,11 +150,17 @@ def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: i
 
 
 @native
+def cycles_until(state: State, issued: int, done: int) -> int:
+    """Return for how many cycles an access that was `issued` at a tick stalls a core if it is `done` at another: all but its own one."""
+    return max(0, (done - issued + state[w.CCLK] - 1) // state[w.CCLK] - 1)
+
+
+@native
 def wait(state: State, core: int, done: int) -> int:
-    """Stall the core from its present access until `done`, less that access's own cycle; return the cycles, to be charged."""
-    job, cclk = w.JOBS_AT + core * w.JOB_WORDS, state[w.CCLK]
-    cycles = max(0, (done - state[job + w.ISSUED_AT] + cclk - 1) // cclk - 1)
-    state[job + w.STALLED] += cycles * cclk
+    """Stall the core from its present access until `done`; return the cycles, to be charged."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    cycles = cycles_until(state, state[job + w.ISSUED_AT], done)
+    state[job + w.STALLED] += cycles * state[w.CCLK]
     return cycles
 
 
@@ -171,13 +186,20 @@ def store(state: State, core: int, at: int, entry: int) -> int:
     job = w.JOBS_AT + core * w.JOB_WORDS
     if state[job + w.STORES] >= state[w.STORE_DEPTH]:
         return wait_for_buffer(state, core, w.BUFFER_FULL)
+    put(state, core, at, entry, site_of(state, core))
+    state[job + w.ENTRY] += 1
+    return next_entry(state, core, at)
+
+
+@native
+def put(state: State, core: int, at: int, entry: int, site: int) -> None:
+    """Put a store of a site into the core's buffer, which has room for it, at tick `at`."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
     place = (state[job + w.STORE_HEAD] + state[job + w.STORES]) % w.MAX_STORES
-    state[job + w.STORE_QUEUE + place] = site_of(state, core) << log.STAMP_BIT | entry
+    state[job + w.STORE_QUEUE + place] = site << log.STAMP_BIT | entry & WHAT_MASK
     state[job + w.STORES] += 1
     if state[job + w.STORES] == 1:
         prepare_drain(state, core, at)
-    state[job + w.ENTRY] += 1
-    return next_entry(state, core, at)
 
 
 @native
@@ -189,6 +211,15 @@ def prepare_drain(state: State, core: int, at: int) -> None:
         state[master + w.READY] = w.NEVER
         return
     ask(state, master, state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]] & log.OFFSET_MASK, at)
+
+
+@native
+def take_out(state: State, core: int, at: int) -> None:
+    """Take the oldest store out of a core's buffer; the next one asks for its bus from tick `at` on."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
+    state[job + w.STORES] -= 1
+    prepare_drain(state, core, at)
 
 
 @native
@@ -209,9 +240,7 @@ def serve_stores(state: State, core: int, at: int) -> int:
     else:
         free = hold_l2(state, core, at, nbytes)
     count_traffic(state, w.STORES_A + core, owner, True, nbytes)
-    state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
-    state[job + w.STORES] -= 1
-    prepare_drain(state, core, free)
+    take_out(state, core, free)
     waited = state[job + w.STATE]
     if waited == w.BUFFER_FULL or (waited == w.BUFFER_NOT_EMPTY and state[job + w.STORES] == 0):
         state[job + w.STATE] = w.RUNNING
@@ -241,7 +270,7 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
     entry = state[job + w.PRESENT]
     kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
     if kind in (log.STORE, log.WRITE_BACK):
-        return store(state, core, at, entry & ((1 << log.STAMP_BIT) - 1))
+        return store(state, core, at, entry)
     if is_in_buffer(state, job, offset, bytes_of(state, kind)):
         return wait_for_buffer(state, core, w.BUFFER_NOT_EMPTY)
     if kind == log.TEST_AND_SET:
@@ -291,9 +320,15 @@ def test_and_set(state: State, core: int, at: int, until: int) -> int:
         stall(state, core, at + locked + state[w.CCLK], w.L2_LATENCY)
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
     state[w.L2_FREE] = at + locked
-    for write in (False, True):
-        count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, (1 + more) * w.CORE_WORD_BYTES)
+    count_tries(state, core, 1 + more)
     return at + locked
+
+
+@native
+def count_tries(state: State, core: int, tries: int) -> None:
+    """Count what TESTSETs of a core read and write."""
+    for write in (False, True):
+        count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, tries * w.CORE_WORD_BYTES)
 
 
 @native

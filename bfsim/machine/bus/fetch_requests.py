@@ -9,7 +9,7 @@ from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
-from bfsim.machine.bus.core_requests import charge, hold_l2, next_entry
+from bfsim.machine.bus.core_requests import charge, cycles_until, hold_l2, next_entry
 from bfsim.machine.bus.memory_owners import piece_for
 from bfsim.machine.bus.runs import cores_quiet_until
 from bfsim.machine.bus.state import State
@@ -61,7 +61,7 @@ def words_alone(state: State, core: int, at: int, until: int) -> int:
 @native
 def stall_of_word(state: State) -> int:
     """Return for how many cycles a word stalls a core that has the port to itself."""
-    return max(0, (state[w.L2_READ] + state[w.CCLK] - 1) // state[w.CCLK] - 1)
+    return cycles_until(state, 0, state[w.L2_READ])
 
 
 @native

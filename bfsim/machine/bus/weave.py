@@ -19,6 +19,7 @@ from bfsim.machine.bus.camera_words import take_hits
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
+from bfsim.machine.bus.l2_requests import access_ahead
 from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.runs import l2_left_until
 from bfsim.machine.bus.sdram import hold_up
@@ -132,12 +133,18 @@ def serve_cores(state: State, until: int) -> int:
     while number != w.NONE and at < l2_until:
         if state[w.MASTERS_AT + number + w.USES] == w.SDRAM and (at >= sdram_until or hold_up(state, at)):
             return w.NONE
-        if number < w.CORE_A or not fetch_ahead(state, number - w.CORE_A, at, l2_until):
+        if number < w.CORE_A or not go_ahead(state, number - w.CORE_A, at, l2_until):
             woken = serve_core_or_stores(state, number, at, l2_until)
             if woken != w.NONE:
                 return woken
         number, at = first_request(state, w.STORES_A, l2_until)
     return w.NONE
+
+
+@native
+def go_ahead(state: State, core: int, at: int, until: int) -> bool:
+    """Do at once what a core does from tick `at` on, if that is of a kind; return whether it is. No DMA wants L2 before tick `until`."""
+    return fetch_ahead(state, core, at, until) or access_ahead(state, core, until)
 
 
 @native

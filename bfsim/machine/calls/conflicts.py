@@ -118,7 +118,7 @@ class StageGroups:
         """Return what the calls have accessed since the last time, by what the core's counters, at an address, have counted."""
         if self._new:
             self._spread = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
-            self._before.resize(self._spread.shape[1])  # with zeros
+            self._before = np.pad(self._before, (0, self._spread.shape[1] - len(self._before)))
             self._addresses = self._spread.ctypes.data, self._before.ctypes.data
             self._new = []
         events = np.empty_like(self._before)

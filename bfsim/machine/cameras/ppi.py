@@ -139,8 +139,7 @@ class Ppi:
         picture = self._sent(picture)
         words = picture.shape[1] // self._word_bytes
         self.status.frame_sync()
-        for line in picture:
-            self.status.line(len(line))
+        self.status.lines(*picture.shape)
         outside, other = self._outside
         self._outside = other, outside
         self._memories.bytes_from(outside, picture.nbytes)[:] = picture.reshape(-1)

@@ -41,17 +41,16 @@ class PpiStatus:
             )
         self._lines = 0
 
-    def line(self, samples: int) -> int:
-        """Count a line of `samples` and return how many the PPI takes of it. FT_ERR if they are too few."""
-        if self._lines == self._frame_lines:
-            return 0
-        self._lines += 1
-        if samples < self._line_samples:
+    def lines(self, number: int, samples: int) -> int:
+        """Count `number` lines of so many `samples` and return how many samples the PPI takes of all. FT_ERR if they are too few."""
+        number = min(number, self._frame_lines - self._lines)
+        if number and samples < self._line_samples:
             self._set(
                 PpiStatusBit.FT_ERR,
-                f"a line must have PPI_COUNT + 1 = {self._line_samples} samples, not {samples} (line {self._lines - 1})",
+                f"a line must have PPI_COUNT + 1 = {self._line_samples} samples, not {samples} (line {self._lines})",
             )
-        return min(samples, self._line_samples)
+        self._lines += number
+        return number * min(samples, self._line_samples)
 
     def overrun(self, lost_samples: int) -> None:
         """Set OVR: the FIFO was full and samples are lost, since the DMA did not get its bus in time."""
