@@ -97,8 +97,8 @@ def charge_conflicts(
     return cclk
 
 
-COUNT = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
-CHARGE = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, *[ctypes.c_int64] * 3, ctypes.c_void_p)
+COUNT = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
+CHARGE = ctypes.PYFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, *[ctypes.c_int64] * 3, ctypes.c_void_p)
 
 
 class StageGroups:

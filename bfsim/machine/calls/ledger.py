@@ -79,8 +79,8 @@ def charge_sites(
                 costs[owners[site] * COLUMNS + columns[reason]] += now[at] - before[at]
 
 
-CHARGE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
-CHARGE_SITES = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 4)
+CHARGE = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
+CHARGE_SITES = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 4)
 
 
 def _zeros(count: int) -> Rows:
