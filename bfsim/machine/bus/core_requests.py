@@ -274,10 +274,10 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
     if is_in_buffer(state, job, offset, bytes_of(state, kind)):
         return wait_for_buffer(state, core, w.BUFFER_NOT_EMPTY)
     if kind == log.TEST_AND_SET:
-        done = test_and_set(state, core, at, until)
         if state[job + w.SPIN]:
-            state[w.MASTERS_AT + w.CORE_A + core + w.READY] = done + state[job + w.SPIN]
+            try_lock(state, core, at, cores_quiet_until(state, w.CORE_A + core, until))
             return w.NONE
+        done = test_and_set(state, core, at)
     elif offset < state[w.SDRAM_END]:
         done = read_sdram(state, core, at, kind, offset)
     else:
@@ -304,31 +304,31 @@ def wait_for_l2(state: State, core: int, at: int) -> None:
 
 
 @native
-def test_and_set(state: State, core: int, at: int, until: int) -> int:
-    """Read and write a byte of L2 with the port locked; return when that is done.
-
-    A core that spins on a lock does it again and again: at once as often as nobody else can want the port, no DMA before tick `until`.
-    """
-    job = w.JOBS_AT + core * w.JOB_WORDS
-    locked, more = state[w.L2_READ] + state[w.L2_NEXT], 0
-    if state[job + w.SPIN]:
-        turn = locked + state[job + w.SPIN]
-        more = max(0, (cores_quiet_until(state, w.CORE_A + core, until) - at - 1) // turn)
-        at += more * turn
-    else:
-        wait_for_l2(state, core, at)
-        stall(state, core, at + locked + state[w.CCLK], w.L2_LATENCY)
-    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
-    state[w.L2_FREE] = at + locked
-    count_tries(state, core, 1 + more)
+def test_and_set(state: State, core: int, at: int) -> int:
+    """Read and write a byte of L2 with the port locked; return when that is done."""
+    locked = state[w.L2_READ] + state[w.L2_NEXT]
+    wait_for_l2(state, core, at)
+    stall(state, core, at + locked + state[w.CCLK], w.L2_LATENCY)
+    lock_l2(state, core, at + locked, 1)
     return at + locked
 
 
 @native
-def count_tries(state: State, core: int, tries: int) -> None:
-    """Count what TESTSETs of a core read and write."""
+def try_lock(state: State, core: int, at: int, until: int) -> None:
+    """Let a core that spins try its lock from tick `at` on, as often as nobody else wants the port until a tick."""
+    locked = state[w.L2_READ] + state[w.L2_NEXT]
+    turn, room = locked + state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN], until - at - 1
+    tries = 1 + (room // turn if room >= turn else 0)  # a division takes the host longer than all else here
+    lock_l2(state, core, at + (tries - 1) * turn + locked, tries)
+    state[w.MASTERS_AT + w.CORE_A + core + w.READY] = at + tries * turn
+
+
+@native
+def lock_l2(state: State, core: int, free: int, times: int) -> None:
+    """Let a core have the port of L2 until it is free again at a tick, and count what it has read and written so many times."""
+    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2], state[w.L2_FREE] = core, 0, free
     for write in (False, True):
-        count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, tries * w.CORE_WORD_BYTES)
+        count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, times * w.CORE_WORD_BYTES)
 
 
 @native

@@ -11,12 +11,12 @@ from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_requests import (
     charge_site,
-    count_tries,
     cycles_until,
     hold_l2,
     is_in_buffer,
     put,
     take_out,
+    try_lock,
 )
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.state import State
@@ -121,18 +121,6 @@ def load(state: State, core: int, entry: int, site: int, issued: int, at: int) -
         charge_site(state, core, site, w.L2_PORT, waited)
     charge_site(state, core, site, w.L2_LATENCY, latency)
     return waited + latency
-
-
-@native
-def try_lock(state: State, core: int, at: int, until: int) -> None:
-    """Let a core that spins try its lock at tick `at`, and as often as nobody else wants the port until a tick."""
-    locked = state[w.L2_READ] + state[w.L2_NEXT]
-    turn, room = locked + state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN], until - at - 1
-    tries = 1 + (room // turn if room >= turn else 0)  # a division takes the host longer than all else here
-    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
-    state[w.L2_FREE] = at + (tries - 1) * turn + locked
-    state[w.MASTERS_AT + w.CORE_A + core + w.READY] = at + tries * turn
-    count_tries(state, core, tries)
 
 
 @native
