@@ -36,7 +36,7 @@ ROWS = (
 )
 COLUMNS: Mapping[str, tuple[str, tuple[float, ...]]] = {
     "ball-beside-goal": ("Figure 6.7", (89, 26, 70, 20, 19, 1)),
-    "hidden-ball": ("Figure 6.10, top row", (89, 26, 75, 22, 18, 1)),
+    "ball-beside-robot": ("Figure 6.10, top row", (89, 26, 75, 22, 18, 1)),
     "ball-too-close": ("Figure 6.13", (85, 27, 60, 15, 18, 1)),
 }
 FITTED = "ball-beside-goal"

@@ -27,8 +27,9 @@ LDFS = tuple(sorted(each.stem for each in LDF_FOLDER.glob("*.ldf")))
 
 SCENES_MODULE = "tinyphoon.scenes"
 SCENES = (
-    "soccer", "field-of-circles", "ball-beside-goal", "camera-initialised", "robot-marker", "hidden-ball",
-    "ball-with-seam", "ball-too-close", "goal-sharp-angle", "thesis", "box-distances", "ball-distances",
+    "soccer", "field-of-circles", "ball-beside-goal", "camera-initialised", "robot-marker",
+    "ball-beside-robot", "hidden-ball", "ball-with-seam", "ball-too-close", "goal-sharp-angle", "thesis",
+    "box-distances", "ball-distances",
 )  # fmt: skip
 """Names in that module that `bfsim record render` takes alone. The first one is the scene of RECORDING."""
 

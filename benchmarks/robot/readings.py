@@ -6,6 +6,7 @@ one step of another reading, or today's firmware with another compiler or placem
 
 from __future__ import annotations
 
+import json
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -15,10 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import click
+from PIL import Image
 
 from benchmarks.robot import steps
 from benchmarks.table_6_4 import COLUMNS, FITTED, FRAME, PLAIN, ROWS, Setting, Times, robot_times, times
 from bfsim.api import Firmware
+from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording.planes import YuvPlanes
 from bfsim.report.tables import new_table
 from bfsim.run import PLACEMENTS
 from bfsim.terminal import print_report
@@ -26,9 +30,12 @@ from tinyphoon import thesis, tinyphoon
 from tinyphoon.stages.circle_detection import circle_detection
 from tinyphoon.stages.line_detection import scan_by_labels
 from tinyphoon.stages.rectification import rectification
+from tinyphoon.strategy.models import MODELS, Shape
 from tinyphoon.variants import THESIS, mains
 
 SLOWER = "cm-bf561-500-100"
+LEAST_BLOBS = "ball-too-close"
+"""The column in which the robot's blobs took the least time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +47,8 @@ class Reading:
     setting: Setting = PLAIN
     options: Mapping[str, Any] = field(default_factory=dict)
     scene: str = FITTED
+    recording: Path | None = None
+    """In place of the scene's."""
 
 
 def read_as(title: str, scene: str = FITTED, **step: Any) -> Reading:
@@ -60,7 +69,7 @@ OF_THE_THESIS = (
     read_as("filter 1: eroded straight from SDRAM", circle_detection=steps.circles_by_sdram_erosion),
     read_as(
         "filter 1: eroded for each ball (scene of Figure 6.10)",
-        "hidden-ball",
+        "ball-beside-robot",
         circle_detection=steps.circles_by_an_erosion_each,
     ),
 )
@@ -76,6 +85,36 @@ def other_programs(code_in_l2: Path) -> Iterator[Reading]:
     yield Reading(title="`thesis`, not optimised", firmware=thesis, options={"profile": "gcc-O0"})
     yield Reading(title="`thesis`, the code GCC makes of it", firmware=thesis, options={"profile": "gcc-adi"})
     yield Reading(title="`thesis` at 500/100 MHz", firmware=thesis, setting=Setting(SLOWER, {}))
+
+
+def of_colours(folder: Path, recording: Path) -> Iterator[Reading]:
+    """Yield what the time of blobs hangs on beside the picture: how many colours are sought, each in a pass of its own."""
+    black, no_marks = folder / "black.mcap", folder / "no_marks.json"
+    write_black(recording, black)
+    models = [{"name": each.name} for each in MODELS if each.shape is not Shape.MARKER]
+    no_marks.write_text(json.dumps({"send": [{"models": models}]}))
+    without = {"script": no_marks}
+    yield Reading(title="a black picture", firmware=thesis, recording=black)
+    yield Reading(
+        title="no robots' marks sought, a black picture", firmware=thesis, options=without, recording=black
+    )
+    yield Reading(
+        title="no robots' marks sought (scene of Figure 6.13)",
+        firmware=thesis,
+        options=without,
+        scene=recording.stem,
+    )
+
+
+def write_black(recording: Path, black: Path) -> None:
+    """Write a recording of as many black pictures."""
+    with RecordingReader(recording) as reader:
+        picture = YuvPlanes.from_image(Image.new("RGB", (reader.width, reader.height))).to_uyvy()
+        with RecordingWriter(
+            black, width=reader.width, height=reader.height, geometry=reader.geometry
+        ) as writer:
+            for frame in reader.frames():
+                writer.add(picture, picture, frame.left_ns, frame.right_ns)
 
 
 def write_code_in_l2(folder: Path) -> Path:
@@ -94,8 +133,9 @@ def measured(folder: Path) -> Iterator[tuple[str, Times]]:
     yield f"robot ({COLUMNS[FITTED][0]})", robot_times(COLUMNS[FITTED][1])
     with ExitStack() as stack:
         placements = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        for each in (*OF_THE_THESIS, *other_programs(write_code_in_l2(placements))):
-            recording = folder / f"{each.scene}.mcap"
+        colours = of_colours(placements, folder / f"{LEAST_BLOBS}.mcap")
+        for each in (*OF_THE_THESIS, *colours, *other_programs(write_code_in_l2(placements))):
+            recording = each.recording or folder / f"{each.scene}.mcap"
             yield each.title, times(recording, each.firmware, each.setting, **each.options)
 
 

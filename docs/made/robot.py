@@ -1,6 +1,6 @@
 """Put into the page beside the robot what the scripts of T Table 6.4 find: `python docs/made/robot.py FOLDER`, after a change of any cycle.
 
-FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and half an hour.
+FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and some five minutes.
 """
 
 from __future__ import annotations

@@ -12,13 +12,14 @@ import pytest
 from click.testing import CliRunner
 from numpy.typing import NDArray
 
+from benchmarks.table_6_4 import COLUMNS
 from bfsim.cli.record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, StereoGeometry
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes import SceneAtDistances, Scenes, rendering
 from bfsim.recording.scenes.lens import Lens, Misfit
-from bfsim.recording.scenes.objects import Ball, FieldArc
+from bfsim.recording.scenes.objects import Ball, Box, FieldArc, Robot
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
 from bfsim.recording.scenes.renderer import Renderer
 from bfsim.recording.scenes.scene import Scene
@@ -27,6 +28,7 @@ from bfsim.recording.scenes.truth import disparity, frame_truth
 from tinyphoon.scenes.distances import BALL_DISTANCES, BOX_DISTANCES
 from tinyphoon.scenes.soccer import SOCCER
 from tinyphoon.scenes.thesis import FIGURES
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 
@@ -86,6 +88,30 @@ def test_post_carries_on_the_left_border_of_the_mark() -> None:
     (mark_x, mark_y) = truth["robot"]["mark_edges"]["front left"]["left"]["ends_px"][1]
     (low_x, low_y), (high_x, high_y) = truth["post"]["edges"]["front left"]["left"]["ends_px"]
     assert np.interp(mark_y, [high_y, low_y], [high_x, low_x]) == pytest.approx(mark_x, abs=0.5)
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+def test_the_columns_of_table_6_4_are_timed_on_their_own_figures(name: str) -> None:
+    """A scene says first which figure it is; of Figure 6.10 the table has the top row, where nothing hides the ball (T 6.4)."""
+    assert FIGURES[name].description.startswith(f"T {COLUMNS[name][0]}:")
+
+
+@pytest.mark.parametrize(("name", "least", "most"), [("ball-beside-robot", 0, 0), ("hidden-ball", 0.5, 0.99)])
+def test_a_robot_hides_more_than_half_of_the_ball_in_the_bottom_row_alone(
+    name: str, least: float, most: float
+) -> None:
+    """Rays to the ball's pixels meet a robot before it or they do not, in the left picture of each frame (T 6.4, Figure 6.10)."""
+    scene = FIGURES[name]
+    robots = [each for each in scene.things.values() if isinstance(each, Robot)]
+    for pose in scene.poses:
+        camera, ball = pose.cameras(scene.geometry)["left"], scene.things["ball"]
+        assert isinstance(ball, Ball)
+        ball_mm = sphere_depths(camera, ball.centre_mm, ball.radius_mm)
+        seen = np.isfinite(ball_mm)
+        boxes_mm = np.min(
+            [box_depths(camera, box) for each in robots for box in (each.body, each.mark)], axis=0
+        )
+        assert least <= (boxes_mm[seen] < ball_mm[seen]).mean() <= most
 
 
 @pytest.mark.parametrize("geometry", [None, StereoGeometry(200.0, 60.0, 90.0, 0.0)])
@@ -226,6 +252,23 @@ class TestRendered:
         assert (u[hit] < 118).mean() > 0.9
         assert (u[~hit] < 118).mean() < 0.05
 
+    def test_the_top_of_a_ball_too_close_is_too_bright_and_its_sides_are_not(self, tmp_path: Path) -> None:
+        """So its top has no hue (T Eq. 5.1 and 5.2), though the colour of the ball is a model's (T 6.4, Figure 6.13)."""
+        run("render", "ball-too-close", tmp_path / "a.mcap", "--frames", 1, "--samples", 9)
+        with RecordingReader(tmp_path / "a.mcap") as reader:
+            (frame,) = reader.frames()
+        assert frame.truth is not None
+        ball, camera = frame.truth["ball"], pinhole(frame.truth["cameras"]["left"])
+        rows, columns = np.nonzero(
+            np.isfinite(sphere_depths(camera, np.array(ball["centre_mm"]), ball["radius_mm"]))
+        )
+        planes = YuvPlanes.from_uyvy(frame.left)
+        u, v = (each.astype(float)[rows, columns // 2] - 128 for each in (planes.u, planes.v))
+        brightness = planes.y[rows, columns] - np.hypot(u, v)
+        off_middle, below_rim = np.abs(columns - ball["left"]["centre_px"][0]), rows - rows.min()
+        top = (off_middle < 20) & (below_rim >= 3) & (below_rim < 20)
+        assert brightness[top].mean() > INDOOR_FIELD.edges.eps_white > brightness[off_middle > 50].mean()
+
     def test_a_scene_looks_the_same_each_time(self) -> None:
         """Two lamps alike stay two: what chance does to their order must not be seen."""
         scene = BALL_DISTANCES.scene([400.0])
@@ -265,6 +308,18 @@ def sphere_depths(camera: Pinhole, centre_mm: Vector, radius_mm: float) -> NDArr
     along, square = rays @ off_mm, (rays**2).sum(axis=-1)
     root = along**2 - square * (off_mm @ off_mm - radius_mm**2)
     return np.where(root > 0, (along - np.sqrt(np.maximum(root, 0))) / square, np.inf)
+
+
+def box_depths(camera: Pinhole, box: Box) -> NDArray[np.float64]:
+    """How deep each pixel's ray meets a box, inf where it does not."""
+    into_cube = np.linalg.inv(box.matrix)  # of the box, which then reaches from -1 to 1
+    from_cube = into_cube @ np.append(camera.position_mm, 1)
+    with np.errstate(divide="ignore"):
+        ends = (np.array([-1, 1])[:, None, None, None] - from_cube[:3]) / (
+            camera.rays() @ into_cube[:3, :3].T
+        )
+    entry, leaving = ends.min(axis=0).max(axis=-1), ends.max(axis=0).min(axis=-1)
+    return np.where((entry < leaving) & (entry > 0), entry, np.inf)
 
 
 def test_chessboards_are_taken_by_the_cameras_of_the_scene(

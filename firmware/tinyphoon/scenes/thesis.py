@@ -19,6 +19,7 @@ from tinyphoon.scenes.soccer import (
     GOAL,
     LAMPS,
     LIGHT,
+    RED,
     ROBOT,
     SOCCER,
     WALLS,
@@ -46,8 +47,8 @@ def _still(x_mm: float, y_mm: float, heading_deg: float, speed_mm_per_s: float =
     )
 
 
-# The ball lies next to the goal; half of a circular landmark is in view; a coloured thing stands on the left
-# above the goal, off the field. [T 6.4, Figure 6.7]
+# The ball lies next to the goal; half of a circular landmark is in view; on the left above the goal, off the field, is
+# a blob that no model takes for its shape or dimension, so it has a model's colour. [T 6.4, Figure 6.7]
 BALL_BESIDE_GOAL = replace(
     SOCCER,
     description="T Figure 6.7: the ball beside the goal, a circular landmark half in view, a thing off the field.",
@@ -55,7 +56,7 @@ BALL_BESIDE_GOAL = replace(
         "goal": GOAL,
         **WALLS,
         "ball": replace(BALL, x_mm=705, y_mm=-255),
-        "background": Box(foot_mm=(1150, 330, 120), size_mm=(60, 110, 90), colour=ORANGE),
+        "background": Box(foot_mm=(1150, 330, 120), size_mm=(60, 60, 110), colour=RED),
     },
     floor=replace(FLOOR, arcs=(FieldArc((260, 170), 120, 0, 360, 10),)),
     poses=_still(-140, 0, 0, 300).poses(FRAMES, FRAME_PERIOD_NS),
@@ -105,22 +106,29 @@ ROBOT_MARKER = replace(
     seed=609,
 )
 
-# A robot hides more than half of the ball; at the right border of the other robot's red mark the yellow behind it
-# is just as bright, on the side of the window. [T 6.4, Figures 6.10 and 6.11]
-HIDDEN_BALL = replace(
+# Two robots, the right one with a red mark before yellow that is just as bright at the right border of the mark, on the
+# side of the window. In the top row the ball is detected correctly, in the bottom row a robot hides more than half of
+# it. [T 6.4, Figures 6.10 and 6.11]
+BALL_BESIDE_ROBOT = replace(
     SOCCER,
-    description="T Figure 6.10: the ball half hidden by a robot; a red mark before yellow of the same brightness.",
+    description="T Figure 6.10, top row: the ball in view beside robots; a red mark before yellow of the same brightness.",
     things={
         "goal": replace(GOAL, colour=(0.68, 0.46, 0.026)),  # as bright there as the mark before it
         **WALLS,
-        "ball": replace(BALL, x_mm=455, y_mm=94),
-        "robot_hiding": replace(ROBOT, x_mm=350, y_mm=100, heading_deg=12, mark_colour=CYAN),
+        "ball": replace(BALL, x_mm=300, y_mm=-45),
+        "robot_left": replace(ROBOT, x_mm=350, y_mm=100, heading_deg=12, mark_colour=CYAN),
         "robot_right": replace(ROBOT, x_mm=480, y_mm=-50, heading_deg=350),
     },
     light=replace(LIGHT, lamps=(*LAMPS, Lamp((200, -1300, 1100), (1400, 300), 30.0))),
     poses=_still(0, 0, 0, 200).poses(FRAMES, FRAME_PERIOD_NS),
     samples=SAMPLES,
     seed=610,
+)
+
+HIDDEN_BALL = replace(
+    BALL_BESIDE_ROBOT,
+    description="T Figure 6.10, bottom row: a robot hides more than half of the ball; else as the top row.",
+    things={**BALL_BESIDE_ROBOT.things, "ball": replace(BALL, x_mm=455, y_mm=94)},
 )
 
 # A yellow tennis ball, its seam dividing it in two; white field lines have an edge on each side. All of the ball is
@@ -138,13 +146,13 @@ BALL_WITH_SEAM = replace(
     seed=612,
 )
 
-# Too close to the camera: the top of the ball is over-exposed, its sides keep their colour, and only a part of it is
-# in the picture. [T 6.4, Figure 6.13]
+# Too close to the camera: the top of the ball is too bright to be detected, the rest is a blob, and only a part of
+# it is in the picture. [T 6.4, Figure 6.13]
 BALL_TOO_CLOSE = replace(
     SOCCER,
     description="T Figure 6.13: the ball too close, only a part of it in view, its top over-exposed.",
     things={"goal": GOAL, **WALLS, "ball": replace(BALL, x_mm=148, y_mm=15)},
-    light=replace(LIGHT, lamps=(*LAMPS, Lamp((120, 15, 500), (150, 150), 16.0))),
+    light=replace(LIGHT, lamps=(*LAMPS, Lamp((230, 15, 400), (100, 100), 64.0))),
     poses=_still(0, 0, 0).poses(FRAMES, FRAME_PERIOD_NS),
     samples=SAMPLES,
     seed=613,
@@ -187,6 +195,7 @@ FIGURES: dict[str, Scene] = {
     "ball-beside-goal": BALL_BESIDE_GOAL,
     "camera-initialised": CAMERA_INITIALISED,
     "robot-marker": ROBOT_MARKER,
+    "ball-beside-robot": BALL_BESIDE_ROBOT,
     "hidden-ball": HIDDEN_BALL,
     "ball-with-seam": BALL_WITH_SEAM,
     "ball-too-close": BALL_TOO_CLOSE,
