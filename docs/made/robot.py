@@ -1,27 +1,21 @@
-"""Put into the page beside the robot what the scripts of T Table 6.4 find: `python docs/made/robot.py FOLDER`, after a change of any cycle.
+"""Put into the page beside the robot, and that of the accuracy, what the scripts of T Table 6.4 find: `python docs/made/robot.py FOLDER`, after a change of any cycle.
 
 FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and some five minutes.
 """
 
 from __future__ import annotations
 
-import re
 import sys
-from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+from blocks import DOCS, put, table
 
 from benchmarks.robot.claims import claims
 from benchmarks.robot.readings import measured
 from benchmarks.table_6_4 import FRAME, PREDICTED, ROWS, Column, cells, in_words, measured_columns
 
-PAGE = Path(__file__).parent.parent / "robot.md"
+PAGE, ACCURACY = DOCS / "robot.md", DOCS / "accuracy.md"
 FRAMES = 2
-
-
-def table(titles: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table: names on the left, numbers to the right."""
-    lines = [titles, ["---", *("--:" for _ in titles[1:])], *rows]
-    return "\n".join(f"| {' | '.join(each)} |" for each in lines)
 
 
 def of_column(column: Column) -> str:
@@ -30,23 +24,25 @@ def of_column(column: Column) -> str:
     return f"**{column.title}**\n\n" + table(["row", *PREDICTED], rows)
 
 
-def put(name: str, text: str) -> None:
-    """Put a text into the page, between the comments of this name."""
-    page, block = PAGE.read_text(), f"(<!-- {name}: made by docs/made/robot.py -->\n\n).*?(<!-- end -->)"
-    changed, found = re.subn(block, lambda each: f"{each[1]}{text}\n\n{each[2]}", page, flags=re.DOTALL)
-    assert found == 1
-    PAGE.write_text(changed)
+def of_the_mean(column: Column) -> str:
+    """Return what the page of the accuracy has: the mean of the scenes, nothing fitted and fitted."""
+    rows = (
+        (row, f"{found / column.robot[row]:.2f}", f"{column.fitted[row] / column.robot[row]:.2f}")
+        for row, found in column.default.items()
+    )
+    return table(["mean of three scenes, by the robot's", "nothing fitted", "fitted to one of them"], rows)
 
 
 def main(folder: Path) -> None:
     """Write all tables."""
     short = [row.split()[0] for row in (*ROWS, FRAME)]
     rows = ([title, *(f"{found[row]:.1f}" for row in (*ROWS, FRAME))] for title, found in measured(folder))
-    put("readings", table(["", *short], rows))
+    put(PAGE, "readings", table(["", *short], rows))
     setting, columns = measured_columns(folder, FRAMES)
-    put("scenes", "\n\n".join(map(of_column, columns)))
-    put("fit", f"Fitted to Figure 6.7: {in_words(setting)}.")
-    put("claims", table(["", "robot", "`thesis`"], claims(folder)))
+    put(PAGE, "scenes", "\n\n".join(map(of_column, columns)))
+    put(ACCURACY, "robot", of_the_mean(columns[-1]))
+    put(PAGE, "fit", f"Fitted to Figure 6.7: {in_words(setting)}.")
+    put(PAGE, "claims", table(["", "robot", "`thesis`"], claims(folder)))
 
 
 if __name__ == "__main__":
