@@ -15,7 +15,7 @@ import dataclasses
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 from statistics import fmean
 from time import perf_counter
 
@@ -174,16 +174,20 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=5, help="cases of random traffic")
     parser.add_argument("--json", action="store_true")
     chosen = parser.parse_args()
-    recorded = list(recordings(chosen.frames))
-    by_chance = list(random_traffic(chosen.frames, chosen.seeds))
+    kinds = {
+        "Recordings": recordings(chosen.frames),
+        "Random traffic": random_traffic(chosen.frames, chosen.seeds),
+    }
     if chosen.json:
-        print(json.dumps([dataclasses.asdict(each) for each in (*recorded, *by_chance)], indent=1))
+        print(json.dumps([dataclasses.asdict(each) for each in chain(*kinds.values())], indent=1))
         return
     console = Console()
-    for each in (*recorded, *by_chance):
-        console.print(table_of(each))
-    for kind, comparisons in (("Recordings", recorded), ("Random traffic", by_chance)):
-        for line in verdicts(comparisons) if comparisons else ():
+    for kind, comparisons in kinds.items():
+        done = []
+        for each in comparisons:  # minutes pass between them
+            console.print(table_of(each))
+            done.append(each)
+        for line in verdicts(done) if done else ():
             console.print(f"{kind}, {line}")
 
 
