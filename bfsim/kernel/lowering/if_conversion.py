@@ -12,6 +12,7 @@ from enum import Enum, auto
 from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.bounded_values import bound_of
+from bfsim.kernel.lowering.conditional_moves import is_conditional_move
 from bfsim.kernel.lowering.widths import BYTE, WORD
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -175,7 +176,10 @@ class IfConversion:
         bounds = {self._plain(each) for each in self._bounds(test)}
         if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
             return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
-        return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms)
+        moves = not self.profile.applies(Rule.CONDITIONAL_MOVES) or is_conditional_move(
+            self.flow, phi, (yes, no), frozenset(bounds)
+        )
+        return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms) if moves else None
 
     def _bounds(self, test: Instruction) -> tuple[str, ...]:
         """What a comparison with a constant bounds, by values that are there before it: LLVM writes x <= 255 as x < 256."""

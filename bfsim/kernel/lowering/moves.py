@@ -99,16 +99,26 @@ class Moves:
             kept: list[MachineInstruction] = []
             for instruction in reversed(block):
                 kept.append(instruction)
-                if instruction.overwrites:
-                    lost = [self.find(name) for name in instruction.overwrites]
-                    own = self.find(instruction.result or "")
-                    needed = all((name in alive and name != own) or name.startswith("#") for name in lost)
-                    if needed and not all(name.startswith("#") for name in lost):
-                        kept.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
+                if instruction.overwrites and self._destroys(instruction, label, alive):
+                    kept.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
                 if instruction.result:
                     alive.discard(self.find(instruction.result))
                 alive.update(self.find(name) for name, _ in instruction.uses)
             self.code.of[label] = kept[::-1]
+
+    def _destroys(self, instruction: MachineInstruction, label: str, alive: set[str]) -> bool:
+        """Whether none of the operands that an instruction may overwrite is done with, when `alive` are wanted behind it.
+
+        A conditional move may overwrite a number, which was loaded for it. Not so in a loop: it is loaded before.
+        """
+        own = self.find(instruction.result or "")
+        numbers = [name for name in instruction.overwrites if name.startswith("#")]
+        others = [self.find(name) for name in instruction.overwrites if name not in numbers]
+        if instruction.op is not Op.COND_MOVE:
+            is_kept = bool(others)
+        else:
+            is_kept = not numbers or ("#poison" not in numbers and self.flow.innermost(label) is not None)
+        return is_kept and all(name in alive and name != own for name in others)
 
     def _moves(self) -> None:
         """A move wherever a value is used in the other bank; outside the loop if it does not change there."""

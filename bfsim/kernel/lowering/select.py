@@ -238,7 +238,7 @@ class _Selector(Accesses):
             self._joined(each)
         else:
             yes, no = each.operands[1:3]
-            self.append(Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=(no,))
+            self.append(Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=(yes, no))
 
     def _joined(self, each: Instruction) -> None:
         """`and` or `or` of two conditions: in C, a branch of its own."""
@@ -271,7 +271,7 @@ class _Selector(Accesses):
             self.append(op, each, result, DATA, (f"{result}.flag", DATA))
         else:
             uses = tuple((value, ANY) for value in conversion.operands)
-            self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=conversion.operands[1:])
+            self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=conversion.operands)
 
 
 def _decides(branch: Instruction, test: Instruction) -> bool:

@@ -1,0 +1,93 @@
+"""Which choices become conditional moves: those whose register is not tested, and of which one value is copied at most.
+
+GCC 12 takes an `if` for conditional moves if its arms only copy [cond_move_process_if_block in ifcvt.cc]. It does not if the condition
+uses the register that they copy to [check_cond_move_block], nor if both arms copy from a register. A value that nobody wants behind the
+choice is in the register of the choice already: it is not copied, and if it is tested, so is that register.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.widths import WORD
+
+CASTS = ("trunc", "zext", "sext", "freeze")
+
+
+def is_conditional_move(
+    flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
+) -> bool:
+    """Whether the choice `phi` between two `values` is one, behind a comparison of those in `tested`."""
+    if _is_narrow(flow, phi):
+        tested = frozenset()  # wide, in a register of its own
+    carried = {each for each in _carried(flow, phi) if not _is_wanted_behind(flow, each, phi)}
+    registers = {each for each in values if each.startswith("%")}
+    free = {each for each in registers if not _is_wanted_behind(flow, each, phi)}
+    sharing = sorted(free, key=lambda each: (each not in carried, each in tested))[:1]
+    copied = registers - {*sharing}
+    return len(copied) < 2 and tested.isdisjoint({*sharing} | carried)
+
+
+def _is_narrow(flow: ControlFlow, phi: Instruction) -> bool:
+    """Whether the choice is made between narrow values, and only stored: of `x if test else y`, C converts both sides before it chooses."""
+    users = flow.users.get(phi.result or "", [])
+    narrowed = len(users) == 1 and users[0].opcode == "trunc"
+    if narrowed:
+        users = flow.users.get(users[0].result or "", [])
+    is_statement = any(label.startswith(("%then", "%else")) for _, label in PHI_ARM.findall(phi.text))
+    return (
+        len(users) == 1
+        and users[0].opcode == "store"
+        and users[0].bits < WORD
+        and not (narrowed and is_statement)
+    )
+
+
+def _carried(flow: ControlFlow, phi: Instruction) -> list[str]:
+    """Values that loops carry and that the choice is the next one of."""
+    label, _ = flow.defined[phi.result or ""]
+    headers = {loop.header for loop in flow.loops if label in loop.blocks}
+    return [
+        each.result or ""
+        for each in flow.users.get(phi.result or "", [])
+        if each.opcode == "phi" and flow.defined[each.result or ""][0] in headers
+    ]
+
+
+def _is_wanted_behind(flow: ControlFlow, value: str, phi: Instruction) -> bool:
+    """Whether something behind the choice uses a value, which then cannot share its register."""
+    home, _ = flow.defined[phi.result or ""]
+    places = _places(flow, value, phi)
+    own, _ = flow.defined.get(value, ("", None))
+    seen, waiting = {home}, [home]
+    while waiting:
+        label = waiting.pop()
+        if label in places:
+            return True
+        for way in flow.blocks[label].successors:
+            if way == home != own:
+                return True  # by the choice itself, when it comes round again
+            if way not in seen and way != own:
+                seen.add(way)
+                waiting.append(way)
+    return False
+
+
+def _places(flow: ControlFlow, value: str, phi: Instruction) -> set[str]:
+    """Blocks in which a value is used; a choice between ways uses it where its way comes from."""
+    found = set[str]()
+    for name in (value, *(each.result or "" for each in flow.users.get(value, []) if each.opcode in CASTS)):
+        for user in flow.users.get(name, []):
+            if user is phi or user.opcode in CASTS:
+                continue
+            if user.opcode == "phi":
+                found |= {label[1:] for arm, label in PHI_ARM.findall(user.text) if arm == name}
+            elif user.result in flow.defined:
+                found.add(flow.defined[user.result][0])
+            else:
+                found |= {
+                    label
+                    for label, block in flow.blocks.items()
+                    if any(each is user for each in block.instructions)
+                }
+    return found
