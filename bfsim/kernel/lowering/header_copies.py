@@ -14,6 +14,7 @@ from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
 from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.jump_threading import JumpThreading
+from bfsim.kernel.lowering.short_circuits import SECOND
 
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
@@ -60,6 +61,8 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
         or not ends_below
     ):
         return False
+    if loop.latch.endswith(SECOND):
+        return False  # LLVM had made one test of both, so they are at its end
     way_out = next(way for way in header.successors if way not in loop.blocks)
     back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
     is_entered_once = len(flow.predecessors[loop.header]) == len(back) + 1
