@@ -78,6 +78,7 @@ class Rule(StrEnum):
         "an operation that changes nothing on one way to it is done on the others alone, with a branch"
     )
     CONDITIONAL_MOVES = "a choice is a branch if its register is tested, or if both its values are copied"
+    BUNDLES = "an access shares a bundle with a 32-bit instruction that is issued in the same cycle"
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
@@ -95,6 +96,7 @@ GCC: dict[Rule, str] = {
     Rule.FINAL_VALUES: "final_value_replacement_loop in tree-scalar-evolution.cc",
     Rule.PARTIAL_REDUNDANCIES: "do_pre_regular_insertion in tree-ssa-pre.cc",
     Rule.CONDITIONAL_MOVES: "cond_move_process_if_block in ifcvt.cc",
+    Rule.BUNDLES: "bfin_gen_bundles in bfin.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -166,5 +168,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.FINAL_VALUES: ("two_sums",),
     Rule.PARTIAL_REDUNDANCIES: (),  # from kernels that are not measured here: tests/kernel/test_partial_redundancies.py
     Rule.CONDITIONAL_MOVES: ("ring_put",),
+    Rule.BUNDLES: ("dilate_grey_row",),
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

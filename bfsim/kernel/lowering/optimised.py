@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
+from bfsim.kernel.lowering.bundles import bundled
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
@@ -35,6 +37,8 @@ class _OptimisedLowering:
         self.flow, self.profile = self.context.flow, profile
         self.code = select(self.context)
         self.allocation = allocate(self.context, self.code)
+        bundles = profile.applies(Rule.BUNDLES)
+        self.bundled = bundled(self.context, self.code, self.allocation) if bundles else frozenset()
         empty = set(self.context.replaced) | {label for label in self.flow.blocks if self._is_empty(label)}
         copies = {
             edge: [self._charge(instruction) for instruction in steps]
@@ -146,7 +150,7 @@ class _OptimisedLowering:
         before = len(cost.charges)
         cost.charges += [
             self._charge(instruction, issue)
-            for instruction, issue in zip(instructions, self._issues(instructions), strict=True)
+            for instruction, issue in zip(instructions, self._issues(block.label), strict=True)
         ]
         self._loops(block, cost)
         self._leave_block(block, cost)
@@ -174,10 +178,15 @@ class _OptimisedLowering:
             for value, cclk in parts
         ]
 
-    def _issues(self, instructions: list[MachineInstruction]) -> list[Issue]:
-        if not self.profile.interlocks:
-            return [Issue()] * len(instructions)
-        return issues(instructions, self.allocation.bank.get, parallel=self.profile.parallel_issue)
+    def _issues(self, label: str) -> list[Issue]:
+        instructions = self.code.of[label]
+        found = [ALONE] * len(instructions)
+        if self.profile.interlocks:
+            found = issues(instructions, self.allocation.bank.get, parallel=self.profile.parallel_issue)
+        return [
+            replace(each, paired=True) if (label, number) in self.bundled else each
+            for number, each in enumerate(found)
+        ]
 
     def _charge(self, instruction: MachineInstruction, issue: Issue = ALONE) -> Charge:
         cclk = COSTS[instruction.op].cclk if instruction.cclk is None else instruction.cclk

@@ -21,9 +21,13 @@ from bfsim.kernel.rules import Rule
 
 @dataclass(slots=True)
 class Allocation:
-    """What the registers of one routine cost beside its operations, and the bank of each value."""
+    """What the registers of one routine cost beside its operations, and where each value is."""
 
     bank: dict[str, RegisterBank]
+    register: dict[str, str]
+    """Values that share one, by a name for it."""
+    alive: dict[str, frozenset[str]]
+    """Of each block: the registers that are wanted behind it."""
     on_edges: dict[tuple[str, str], list[MachineInstruction]]
     calls: bool
     entry: list[MachineInstruction] = field(default_factory=list)
@@ -40,6 +44,8 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
     names = (*webs.web, *webs.bank)
     result = Allocation(
         bank={name: webs.bank[webs.find(name)] for name in names if webs.find(name) in webs.bank},
+        register={name: webs.find(name) for name in webs.web},
+        alive={label: frozenset(map(webs.find, out)) for label, out in webs.live.out.items()},
         on_edges=moves.on_edges,
         calls=any(instruction.op is Op.CALL for block in code.of.values() for instruction in block),
     )

@@ -1,0 +1,129 @@
+"""In which order the instructions of one block are issued, and which accesses share a bundle with a 32-bit instruction.
+
+GCC 12 schedules each block behind its register allocation, and bundles what it issues in one cycle [bfin_reorg and bfin_gen_bundles in
+bfin.cc]: a DSP instruction, then an access of 16 bits of code, whose units are free only if the other came first [`absence_set` in
+bfin.md]. All other instructions are issued alone. For this, a move between data registers and a zero are DSP instructions, too
+[`splitting_for_sched`], and a shift whose operand is still wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from bfsim.kernel.isa import COSTS, LOAD_TO_POINTER_STALL, MOVE_TO_POINTER_STALL, Op
+from bfsim.kernel.lowering.local_registers import LocalRegisters, copies_for, used
+from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.lowering.schedule import BARRIERS, LOADS, STORES, TESTS
+
+WIDE = {Op.DSP_ALU, Op.MUL16, Op.MAC}
+SHORT_BYTES = 2
+CHANGES_CC = {Op.COMPARE, Op.BIT_TEST}
+
+
+class BlockSchedule:
+    """The schedule of one block: what has the longest way to its end is issued first. `renews`: of values that a loop carries on, in place of which."""
+
+    def __init__(self, registers: LocalRegisters, renews: Mapping[str, str]) -> None:
+        self.registers, self.renews = registers, renews
+        self.instructions, self.bank_of = registers.instructions, registers.bank_of
+        self.behind: list[dict[int, int]] = [{} for _ in self.instructions]
+        """Of each instruction: those that wait for it, and for how many cycles."""
+        for then in range(len(self.instructions)):
+            for first in range(then):
+                gap = self._gap(first, then)
+                if gap is not None:
+                    self.behind[first][then] = gap
+        self.priority = [0] * len(self.instructions)
+        for number in reversed(range(len(self.instructions))):
+            paths = (gap + self.priority[then] for then, gap in self.behind[number].items())
+            self.priority[number] = max(paths, default=1)
+
+    def paired(self) -> frozenset[int]:
+        """Return the places of the accesses that are issued with a 32-bit instruction."""
+        before = [sum(number in each for each in self.behind) for number in range(len(self.instructions))]
+        earliest = [0] * len(self.instructions)
+        waiting, found, now = {*range(len(self.instructions))}, set[int](), 0
+
+        def issue(among: Callable[[int], bool]) -> int | None:
+            ready = [each for each in waiting if not before[each] and earliest[each] <= now and among(each)]
+            number = min(ready, key=self._rank, default=None)
+            if number is not None:
+                waiting.remove(number)
+                for then, gap in self.behind[number].items():
+                    before[then] -= 1
+                    earliest[then] = max(earliest[then], now + gap)
+            return number
+
+        while waiting:
+            first = issue(lambda _: True)
+            if first is not None and self._is_wide(first):
+                found |= {each for each in [issue(self._is_short_access)] if each is not None}
+            now += 1
+        return frozenset(found)
+
+    def _rank(self, number: int) -> tuple[int, int, int]:
+        return -self.priority[number], -len(self.behind[number]), number
+
+    def _is_wide(self, number: int) -> bool:
+        each = self.instructions[number]
+        if each.op in WIDE:
+            return True
+        data = each.result is not None and self.bank_of(each.result) is RegisterBank.DATA
+        if each.op is Op.IMM:
+            return data and [name for name, _ in each.uses] == ["#0"]
+        if each.op is Op.MOVE:
+            sources = used(self.instructions, number)
+            is_data = data or is_kept(each) or copies_for(each, self.instructions[number + 1 : number + 2])
+            return is_data and all(self.bank_of(name) is RegisterBank.DATA for name in sources)
+        return (
+            each.op is Op.SHIFT
+            and data
+            and len(each.uses) == 1
+            and self.registers.written[number] not in self.registers.read[number]
+        )
+
+    def _is_short_access(self, number: int) -> bool:
+        each = self.instructions[number]
+        is_reload = each.op in LOADS and each.result is None
+        return each.op in LOADS | STORES and each.code_bytes == SHORT_BYTES and not is_reload
+
+    def _gap(self, first: int, then: int) -> int | None:
+        """Cycles from the issue of `first` to that of `then` at the earliest; None if they are independent."""
+        one, other = self.instructions[first], self.instructions[then]
+        if {one.op, other.op} & BARRIERS:
+            return 1
+        result = self.registers.results[first]
+        if result is not None and result in self.registers.uses[then]:
+            return self._latency(one)
+        if then == first + 1 and copies_for(one, [other]):
+            return 1
+        if is_kept(one) and self.renews.get(other.result or "") == one.uses[0][0]:
+            return 0
+        if one.op in CHANGES_CC and other.op in TESTS - CHANGES_CC:
+            return 1
+        if one.op in STORES and other.op in LOADS:
+            return 1
+        written = self.registers.written[then]
+        if written is not None and (
+            written == self.registers.written[first] or written in self.registers.read[first]
+        ):
+            return 0
+        if (one.op in TESTS and other.op in TESTS) or (one.op in LOADS | STORES and other.op in STORES):
+            return 0
+        return None
+
+    def _latency(self, first: MachineInstruction) -> int:
+        cclk = COSTS[first.op].cclk if first.cclk is None else first.cclk
+        if self.bank_of(first.result or "") is not RegisterBank.POINTER:
+            return cclk
+        if first.op in LOADS:
+            return cclk + LOAD_TO_POINTER_STALL
+        from_data = first.op is Op.MOVE and any(
+            self.bank_of(name) is RegisterBank.DATA for name, _ in first.uses
+        )
+        return cclk + (MOVE_TO_POINTER_STALL if from_data else 0)
+
+
+def is_kept(each: MachineInstruction) -> bool:
+    """Whether an instruction copies the old value of what a loop carries, before the new one is there."""
+    return each.op is Op.MOVE and each.result is None and bool(each.uses)
