@@ -25,6 +25,7 @@ from bfsim.kernel.lowering.charges import Access, merged
 from bfsim.kernel.lowering.rewrites import rewritten
 from bfsim.kernel.lowering.rotations import held, released
 from bfsim.kernel.lowering.unrolled import marked
+from bfsim.kernel.narrowed_divisions import with_rounded_names
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -67,7 +68,7 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         module = llvm.parse_assembly(unrolling)
         generic.run(("loop_unroll", *CLEANING), module)
         text = str(module)
-    return rewritten(text, profile)
+    return rewritten(with_rounded_names(text, function), profile)
 
 
 def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
