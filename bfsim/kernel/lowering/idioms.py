@@ -8,6 +8,7 @@ Counting the bits of a word is ONES on the Blackfin: GCC knows the number of ite
 from __future__ import annotations
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.widths import BYTE
@@ -43,6 +44,55 @@ def _counts_bits(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> b
         if not clears and evolution.gain(phi.result or "", loop) is None:
             return False
     return words == 1
+
+
+def counting_ops(flow: ControlFlow, loop: Loop) -> list[Op]:
+    """Return the operations in place of a loop that counts bits: ONES gives a half-word, which is extended where it is wanted as a word.
+
+    The number of iterations is 1 for no bit at all. GCC tests for that once more where the test before the loop is one of other values:
+    of `a ^ b`, a != b [`may_be_zero` of number_of_iterations_popcount in tree-ssa-loop-niter.cc].
+    """
+    starts = [
+        value
+        for each in flow.blocks[loop.header].instructions
+        if each.opcode == "phi"
+        for value, label in PHI_ARM.findall(each.text)
+        if label[1:] != loop.header
+    ]
+    adds = not {"0"} & {*starts}
+    if _tests_others(flow, loop, starts):
+        return [Op.ALU, Op.EXTEND, Op.COMPARE, Op.COND_MOVE, *([Op.ALU] * 3 if adds else [])]
+    return [Op.ALU, *([] if _is_stored_narrow(flow, loop) else [Op.EXTEND]), *([Op.ALU] if adds else [])]
+
+
+def _tests_others(flow: ControlFlow, loop: Loop, words: list[str]) -> bool:
+    """Whether the test that leads to a loop compares what a word of 32 bits is made of."""
+    label = flow.entering(loop)
+    while len(set(flow.blocks[label].successors)) == 1 and len(flow.predecessors[label]) == 1:
+        (label,) = flow.predecessors[label]
+    condition = flow.blocks[label].terminator.operands[:1]
+    test = flow.instruction(condition[0]) if condition else None
+    made = [
+        each for each in map(flow.instruction, words) if each is not None and each.opcode in ("xor", "sub")
+    ]
+    return test is not None and any({*each.operands} == {*test.operands} for each in made)
+
+
+def _is_stored_narrow(flow: ControlFlow, loop: Loop) -> bool:
+    """Whether the count is only stored, in fewer than 32 bits."""
+    own = {each.result: each for each in flow.blocks[loop.header].instructions if each.opcode == "add"}
+    waiting, seen = [name for name in own if name], set[str]()
+    while waiting:
+        name = waiting.pop()
+        seen.add(name)
+        for user in flow.users.get(name, []):
+            if any(user is each for each in flow.blocks[loop.header].instructions):
+                continue
+            if user.opcode == "phi" and user.result and user.result not in seen:
+                waiting.append(user.result)
+            elif user.opcode not in ("phi", "trunc"):
+                return False
+    return True
 
 
 def filling_loops(flow: ControlFlow, evolution: ScalarEvolution) -> dict[str, Loop]:

@@ -14,6 +14,7 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.idioms import counting_ops
 from bfsim.kernel.lowering.if_conversion import ConversionKind
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
@@ -29,7 +30,8 @@ def select(context: Context) -> MachineCode:
     selector = _Selector(context)
     for loop in context.bit_counts.values():
         line = context.flow.blocks[loop.header].instructions[-1].line
-        selector.code.add(context.flow.entering(loop), MachineInstruction(Op.ALU, line, None, DATA))
+        for op in counting_ops(context.flow, loop):
+            selector.code.add(context.flow.entering(loop), MachineInstruction(op, line, None, DATA))
     for loop in context.fills.values():
         selector.fill(loop)
     for label in context.flow.order:
