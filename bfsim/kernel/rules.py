@@ -77,7 +77,7 @@ class Rule(StrEnum):
     PARTIAL_REDUNDANCIES = (
         "an operation that changes nothing on one way to it is done on the others alone, with a branch"
     )
-    CONDITIONAL_MOVES = "a choice is a branch if its register is tested, or if both its values are copied"
+    CONDITIONAL_MOVES = "a choice is a branch if its register is tested or both its values are copied, and overwrites no number of a loop"
     BUNDLES = "an access shares a bundle with a 32-bit instruction that is issued in the same cycle"
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 

@@ -9,6 +9,7 @@ from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
+from bfsim.kernel.rules import Rule
 
 DECLARED = re.compile(r"\.v(\d+)")
 LAST = 1 << 16
@@ -109,15 +110,17 @@ class Moves:
     def _destroys(self, instruction: MachineInstruction, label: str, alive: set[str]) -> bool:
         """Whether none of the operands that an instruction may overwrite is done with, when `alive` are wanted behind it.
 
-        A conditional move may overwrite a number, which was loaded for it. Not so in a loop: it is loaded before.
+        To GCC a conditional move may overwrite either operand, also a number, which was loaded for it. Not so in a loop: it is loaded
+        before.
         """
         own = self.find(instruction.result or "")
+        by_rule = instruction.op is Op.COND_MOVE and self.webs.context.profile.applies(Rule.CONDITIONAL_MOVES)
         numbers = [name for name in instruction.overwrites if name.startswith("#")]
         others = [self.find(name) for name in instruction.overwrites if name not in numbers]
-        if instruction.op is not Op.COND_MOVE:
-            is_kept = bool(others)
-        else:
+        if by_rule:
             is_kept = not numbers or ("#poison" not in numbers and self.flow.innermost(label) is not None)
+        else:
+            is_kept = bool(others)
         return is_kept and all(name in alive and name != own for name in others)
 
     def _moves(self) -> None:

@@ -240,7 +240,9 @@ class _Selector(Accesses):
             self._joined(each)
         else:
             yes, no = each.operands[1:3]
-            self.append(Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=(yes, no))
+            self.append(
+                Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=self._either(yes, no)
+            )
 
     def _joined(self, each: Instruction) -> None:
         """`and` or `or` of two conditions: in C, a branch of its own."""
@@ -273,7 +275,12 @@ class _Selector(Accesses):
             self.append(op, each, result, DATA, (f"{result}.flag", DATA))
         else:
             uses = tuple((value, ANY) for value in conversion.operands)
-            self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=conversion.operands)
+            over = self._either(*conversion.operands)
+            self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=over)
+
+    def _either(self, yes: str, no: str) -> tuple[str, ...]:
+        """What a conditional move may overwrite: to GCC, either operand."""
+        return (yes, no) if self.context.profile.applies(Rule.CONDITIONAL_MOVES) else (no,)
 
 
 def _decides(branch: Instruction, test: Instruction) -> bool:
