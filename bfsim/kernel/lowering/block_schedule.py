@@ -38,11 +38,11 @@ class BlockSchedule:
             paths = (gap + self.priority[then] for then, gap in self.behind[number].items())
             self.priority[number] = max(paths, default=1)
 
-    def paired(self) -> frozenset[int]:
-        """Return the places of the accesses that are issued with a 32-bit instruction."""
+    def paired(self) -> frozenset[tuple[int, int]]:
+        """Return the places of 32-bit instructions and of the accesses that are issued with them."""
         before = [sum(number in each for each in self.behind) for number in range(len(self.instructions))]
         earliest = [0] * len(self.instructions)
-        waiting, found, now = {*range(len(self.instructions))}, set[int](), 0
+        waiting, found, now = {*range(len(self.instructions))}, set[tuple[int, int]](), 0
 
         def issue(among: Callable[[int], bool]) -> int | None:
             ready = [each for each in waiting if not before[each] and earliest[each] <= now and among(each)]
@@ -57,7 +57,7 @@ class BlockSchedule:
         while waiting:
             first = issue(lambda _: True)
             if first is not None and self._is_wide(first):
-                found |= {each for each in [issue(self._is_short_access)] if each is not None}
+                found |= {(first, each) for each in [issue(self._is_short_access)] if each is not None}
             now += 1
         return frozenset(found)
 
@@ -68,6 +68,8 @@ class BlockSchedule:
         each = self.instructions[number]
         if each.op in WIDE:
             return True
+        if not self.registers.are_enough:
+            return False
         data = each.result is not None and self.bank_of(each.result) is RegisterBank.DATA
         if each.op is Op.IMM:
             return data and [name for name, _ in each.uses] == ["#0"]

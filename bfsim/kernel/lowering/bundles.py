@@ -12,7 +12,10 @@ from bfsim.kernel.lowering.registers import Allocation
 
 
 def bundled(context: Context, code: MachineCode, allocation: Allocation) -> frozenset[tuple[str, int]]:
-    """Return the blocks of such accesses, and their places in them."""
+    """Return the blocks of such accesses, and their places in them.
+
+    Blocks between which no branch is left are scheduled as one; what a test stood between is not brought together, for GCC may have kept it.
+    """
     renews = {
         context.name(value): each.result or ""
         for block in context.flow.routine.blocks
@@ -30,7 +33,8 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
             lambda name: allocation.register.get(name, name),
             allocation.alive[labels[-1]],
         )
-        found |= {places[number] for number in BlockSchedule(registers, renews).paired()}
+        pairs = BlockSchedule(registers, renews).paired()
+        found |= {places[other] for wide, other in pairs if places[wide][0] == places[other][0]}
     return frozenset(found)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from bfsim.kernel.isa import Op
+from bfsim.kernel.isa import DATA_REGISTERS, Op
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 
 DESTROYING = {Op.MUL32, Op.SHIFT}
@@ -50,6 +50,12 @@ class LocalRegisters:
             if result is not None:
                 busy[home.get(result, result)] = last[result]
             self.written.append(home.get(result, result) if result is not None else None)
+
+    @property
+    def are_enough(self) -> bool:
+        """Whether the data registers suffice: where they do not, values come from others when they are wanted, and not before."""
+        names = {name for names in (*self.read, self.alive) for name in names} | {*self.written} - {None}
+        return sum(self.bank_of(name or "") is RegisterBank.DATA for name in names) <= DATA_REGISTERS
 
     def _last_uses(self) -> dict[str, int]:
         """Where each value is used last; behind the block if it is wanted there."""
