@@ -167,7 +167,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
     Rule.FINAL_VALUES: ("two_sums",),
     Rule.PARTIAL_REDUNDANCIES: (),  # from kernels that are not measured here: tests/kernel/test_partial_redundancies.py
-    Rule.CONDITIONAL_MOVES: ("ring_put",),
-    Rule.BUNDLES: ("dilate_grey_row",),
+    Rule.CONDITIONAL_MOVES: ("ring_put", "nearest_words"),
+    Rule.BUNDLES: ("dilate_grey_row", "crc16_table"),
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }
