@@ -41,8 +41,8 @@ class LocalRegisters:
         last = self._last_uses()
         own = {each for each in self.results if each is not None} - self.alive
         home: dict[str, str] = {}
+        # of each register: until which instruction its value is wanted
         busy = {name: last[name] for name in sorted(last) if name not in own}
-        """Of each register: until which instruction its value is wanted."""
         for number, result in enumerate(self.results):
             self.read.append({home.get(name, name) for name in self.uses[number]})
             if result in own:
