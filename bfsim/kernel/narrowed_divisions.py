@@ -24,7 +24,6 @@ def with_rounded_names(text: str, function: Function) -> str:
     if not any(NARROWED.match(row) for row in rows):
         return text
     rounded = _rounded_notes(rows, function)
-    names: dict[str, str] = {}
     for start in [number for number, row in enumerate(rows) if DEFINE.match(row)]:
         end = rows.index("}", start)
         found = (NARROWED.match(row) for row in rows[start:end])

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from bfsim.kernel.access_trace import FETCH_LINE, LOAD, STORE
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus import weave
+from bfsim.machine.bus.transfer_plans import TransferPlan
 from tests.machine.rig import Bench, Call, Play, keep_code
 from tests.machine.scenarios import digest_of
 from tests.tiers import tried
@@ -75,7 +76,7 @@ class Port:
         yield self.bench.env.timeout(ticks)
         yield self.bench.bus.cores.stop_spinning(core)
 
-    def _copy(self, plan: object, begin: int) -> Play:
+    def _copy(self, plan: TransferPlan, begin: int) -> Play:
         yield self.bench.env.timeout(begin)
         self.bench.bus.post(plan)
 

@@ -21,7 +21,10 @@ CHANGES_CC = {Op.COMPARE, Op.BIT_TEST}
 
 
 class BlockSchedule:
-    """The schedule of one block: what has the longest way to its end is issued first. `renews`: of values that a loop carries on, in place of which."""
+    """The schedule of one block: what has the longest way to its end is issued first.
+
+    `renews`: the phi that each value becomes the next one of.
+    """
 
     def __init__(self, registers: LocalRegisters, renews: Mapping[str, str]) -> None:
         self.registers, self.renews = registers, renews
@@ -56,8 +59,9 @@ class BlockSchedule:
 
         while waiting:
             first = issue(lambda _: True)
-            if first is not None and self._is_wide(first):
-                found |= {(first, each) for each in [issue(self._is_short_access)] if each is not None}
+            second = issue(self._is_short_access) if first is not None and self._is_wide(first) else None
+            if first is not None and second is not None:
+                found.add((first, second))
             now += 1
         return frozenset(found)
 

@@ -26,6 +26,7 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
     found = set[tuple[str, int]]()
     for labels in _merged(context):
         places = [(label, number) for label in labels for number in range(len(code.of[label]))]
+        # a copy of an old value is noted at the loop's end, and made before the new value is there
         places.sort(key=lambda place: not is_kept(code.of[place[0]][place[1]]))
         registers = LocalRegisters(
             [code.of[label][number] for label, number in places],

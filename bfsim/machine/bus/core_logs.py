@@ -20,6 +20,12 @@ def site_at(core: int, site: int) -> int:
     return w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
 
 
+@native
+def kind_of(entry: int) -> int:
+    """Return of which kind an entry of a log is."""
+    return entry >> log.KIND_BIT & log.KIND_MASK
+
+
 class CoreLogs:
     """The part of the bus's `state` that belongs to the cores' kernels."""
 
@@ -54,7 +60,7 @@ class CoreLogs:
     def accesses(self, core: int, cclk: int, count: int) -> list[tuple[int, int]]:
         """Return the accesses of a call of `cclk` cycles, whose log has `count` entries, in order: an entry for each, and its site."""
         logged = list(zip(*(each.tolist() for each in self.first(core, count)), strict=True))
-        if not logged or logged[-1][0] >> log.KIND_BIT & log.KIND_MASK != log.FETCHES:
+        if not logged or kind_of(logged[-1][0]) != log.FETCHES:
             return logged
         fetches, site = logged.pop()
         number = fetches >> log.STAMP_BIT

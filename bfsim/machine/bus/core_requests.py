@@ -9,7 +9,7 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_logs import site_at
+from bfsim.machine.bus.core_logs import kind_of, site_at
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.runs import cores_quiet_until
@@ -49,6 +49,14 @@ def charge_site(state: State, core: int, site: int, reason: int, cycles: int) ->
 
 
 @native
+def next_fetch(state: State, job: int) -> int:
+    """Return the stamp of the next fetch of a core's code, behind that of all accesses if there is none."""
+    if state[job + w.FETCHED] == state[job + w.FETCHES]:
+        return w.NEVER
+    return state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
+
+
+@native
 def find_present(state: State, core: int) -> bool:
     """Find what the core accesses next, in its log or in code that it fetches; return whether there is anything.
 
@@ -57,15 +65,14 @@ def find_present(state: State, core: int) -> bool:
     job = w.JOBS_AT + core * w.JOB_WORDS
     at = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
     is_logged = state[job + w.ENTRY] < state[job + w.END]
-    if state[job + w.FETCHED] < state[job + w.FETCHES]:
-        stamp = state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
-        if not is_logged or stamp < state[at] >> log.STAMP_BIT:
-            site = state[job + w.SITE] = state[job + w.ROUTINE]
-            code = state[site_at(core, site) + w.CODE]
-            place = code + state[job + w.WORD] * w.FETCH_BYTES
-            state[job + w.PRESENT] = stamp << log.STAMP_BIT | log.FETCH << log.KIND_BIT | place
-            state[job + w.IN_TURN] = 1
-            return True
+    stamp = next_fetch(state, job)
+    if stamp != w.NEVER and (not is_logged or stamp < state[at] >> log.STAMP_BIT):
+        site = state[job + w.SITE] = state[job + w.ROUTINE]
+        code = state[site_at(core, site) + w.CODE]
+        place = code + state[job + w.WORD] * w.FETCH_BYTES
+        state[job + w.PRESENT] = stamp << log.STAMP_BIT | log.FETCH << log.KIND_BIT | place
+        state[job + w.IN_TURN] = 1
+        return True
     state[job + w.IN_TURN] = 0
     if is_logged:
         state[job + w.PRESENT], state[job + w.SITE] = state[at], state[at + w.LOG_ENTRIES]
@@ -99,7 +106,7 @@ def next_entry(state: State, core: int, not_before: int) -> int:
         return w.NONE - 1 - core
     entry = state[job + w.PRESENT]
     issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
-    kind = entry >> log.KIND_BIT & log.KIND_MASK
+    kind = kind_of(entry)
     waits = kind not in (log.STORE, log.WRITE_BACK)
     if waits and state[job + w.LINE_DONE] > issued:  # a core reads one line at a time
         cycles = (state[job + w.LINE_DONE] - issued + cclk - 1) // cclk
@@ -140,7 +147,7 @@ def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: i
     state[job + w.ENTRY], state[job + w.END] = first, end
     state[job + w.FETCHES], state[job + w.FETCHED] = 0, 0
     last = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + end - 1
-    if first < end and state[last] >> log.KIND_BIT & log.KIND_MASK == log.FETCHES:
+    if first < end and kind_of(state[last]) == log.FETCHES:
         state[job + w.END] -= 1
         state[job + w.FETCHES] = state[last] >> log.STAMP_BIT
         state[job + w.ROUTINE], state[job + w.WORD] = state[last + w.LOG_ENTRIES], 0
@@ -227,7 +234,7 @@ def serve_stores(state: State, core: int, at: int) -> int:
     """Write the oldest store of a core's buffer, and let the core go on if it waited for that."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]]
-    offset, nbytes = entry & log.OFFSET_MASK, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK)
+    offset, nbytes = entry & log.OFFSET_MASK, bytes_of(state, kind_of(entry))
     owner = owner_for(state, core, offset, entry >> log.STAMP_BIT)
     if offset < state[w.SDRAM_END]:
         access(state, at, offset, True)
@@ -254,7 +261,7 @@ def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
     """Whether the store buffer has anything of the `nbytes` (a power of two) at `offset`, or a line that holds them."""
     for number in range(state[job + w.STORES]):
         entry = state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES]
-        size = max(nbytes, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK))
+        size = max(nbytes, bytes_of(state, kind_of(entry)))
         if ((entry ^ offset) & log.OFFSET_MASK) // size == 0:
             return True
     return False
@@ -268,7 +275,7 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.PRESENT]
-    kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
+    kind, offset = kind_of(entry), entry & log.OFFSET_MASK
     if kind in (log.STORE, log.WRITE_BACK):
         return store(state, core, at, entry)
     if is_in_buffer(state, job, offset, bytes_of(state, kind)):

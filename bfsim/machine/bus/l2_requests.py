@@ -9,15 +9,18 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import kind_of
 from bfsim.machine.bus.core_requests import (
     charge_site,
     cycles_until,
     hold_l2,
     is_in_buffer,
+    next_fetch,
     put,
     take_out,
     try_lock,
 )
+from bfsim.machine.bus.fetch_requests import stall_of_word
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_traffic
@@ -44,12 +47,6 @@ def access_ahead(state: State, core: int, until: int) -> bool:
 
 
 @native
-def kind_of(entry: int) -> int:
-    """Return of which kind an entry of the log is."""
-    return entry >> log.KIND_BIT & log.KIND_MASK
-
-
-@native
 def is_word_in_l2(state: State, entry: int) -> bool:
     """Whether an entry of the log is a load or a store of a word of L2."""
     return kind_of(entry) in (log.LOAD, log.STORE) and entry & log.OFFSET_MASK >= state[w.SDRAM_END]
@@ -72,14 +69,6 @@ def is_eligible(state: State, core: int, other: int) -> bool:
         if state[job + w.STORE_QUEUE + place] & log.OFFSET_MASK < state[w.SDRAM_END]:
             return False
     return True
-
-
-@native
-def next_fetch(state: State, job: int) -> int:
-    """Return the stamp of the next fetch of a core's code, behind that of all accesses if there is none."""
-    if state[job + w.FETCHED] == state[job + w.FETCHES]:
-        return w.NEVER
-    return state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
 
 
 @native
@@ -115,7 +104,7 @@ def load(state: State, core: int, entry: int, site: int, issued: int, at: int) -
     count_traffic(state, w.CORE_A + core, owner, False, w.CORE_WORD_BYTES)
     hold_l2(state, core, at, w.CORE_WORD_BYTES)
     state[w.JOBS_AT + core * w.JOB_WORDS + w.LINE_DONE] = at + state[w.L2_READ]
-    waited, latency = 0, cycles_until(state, 0, state[w.L2_READ])
+    waited, latency = 0, stall_of_word(state)
     if at > issued:
         waited = cycles_until(state, issued, at + state[w.CCLK])
         charge_site(state, core, site, w.L2_PORT, waited)
