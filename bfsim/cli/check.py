@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import run_and_seen, takes_a_run
 from bfsim.cli.options.sets import takes
 from bfsim.endings import LIMIT_BROKEN
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from bfsim.report.result_file import Result
 
 OUTPUTS = {
-    "json": "every verdict and figure as JSON",
     "junit": "JUnit XML, a test case for each run",
     "markdown": "Markdown, for a pull request",
     "benchmark": "JSON that github-action-benchmark reads as customSmallerIsBetter",
@@ -49,6 +49,7 @@ _OUTPUT_OPTIONS = [
 @click.option("--case", "name", metavar="NAME", help="Check or update the run of that name only.")
 @click.option("--update", is_flag=True, help="Make what is measured the limits; adds the run if it is new.")
 @click.option("--reason", metavar="TEXT", help="Why --update loosens limits: is kept in the file.")
+@json_option("every verdict and figure")
 @takes(_OUTPUT_OPTIONS)
 @click.option(
     "--history",
@@ -62,6 +63,7 @@ def check(
     update: bool,
     reason: str | None,
     history: Path | None,
+    json_path: Path | None,
     sanitize: bool,
     **what: Any,
 ) -> None:
@@ -80,9 +82,12 @@ def check(
     """
     from bfsim.checking import require_comparable
     from bfsim.report.check.history import append_history, read_history
+    from bfsim.report.check.outputs import check_json
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
-    _require_places([path, history, *outputs.values()], [what["recording"], what["script"], what["ldf"]])
+    read = what["recording"], what["script"], what["ldf"]
+    _require_places([path, history, *outputs.values()], read)
+    require_json_place(json_path, (path, history, *outputs.values(), *read))
     cases = _cases(path, _given(what, path.parent), name, update=update)
     if history:
         read_history(history)
@@ -91,12 +96,12 @@ def check(
     with ExitStack() as stack:
         runs = [(case, _run(case, path.parent, stack, sanitize=sanitize)) for case in cases]
         if update:
-            runs = _update(runs, path, reason)
+            runs = _update(runs, path, reason, on_stderr=json_path == STDOUT)
         outcomes = _judged(runs, path)
         _write(outcomes, path, outputs)
         if history:
             append_history(history, outcomes, _commit())
-        _print(outcomes, path, history)  # last: who reads may go away
+        tell(json_path, lambda: [check_json(outcomes)], lambda: _print(outcomes, path, history))
     if not all(each.passed for each in outcomes):
         raise SystemExit(LIMIT_BROKEN)
 
@@ -128,7 +133,9 @@ def _run(case: Case, folder: Path, stack: ExitStack, *, sanitize: bool) -> Resul
     return run_and_seen(stack, sanitize=sanitize, **arguments_of(case.configuration, folder))
 
 
-def _update(runs: Sequence[tuple[Case, Result]], path: Path, reason: str | None) -> list[tuple[Case, Result]]:
+def _update(
+    runs: Sequence[tuple[Case, Result]], path: Path, reason: str | None, *, on_stderr: bool
+) -> list[tuple[Case, Result]]:
     """Return the runs with what was measured as their limits, and write those into the file."""
     from bfsim.report.check.update import loosened, updated, write_cases
 
@@ -143,7 +150,8 @@ def _update(runs: Sequence[tuple[Case, Result]], path: Path, reason: str | None)
     for case, result in done:
         frames = len(result.run.frames)
         click.echo(
-            f"{path}: {case.name}: {len(case.limits)} limits from {frames} frame{'s' if frames > 1 else ''}."
+            f"{path}: {case.name}: {len(case.limits)} limits from {frames} frame{'s' if frames > 1 else ''}.",
+            err=on_stderr,
         )
     return done
 
@@ -184,7 +192,6 @@ def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path |
     from bfsim.report.save import write_text
 
     texts: dict[str, Callable[[], str]] = {
-        "json": lambda: forms.check_json(outcomes),
         "junit": lambda: forms.junit_xml(outcomes, path),
         "markdown": lambda: forms.markdown(outcomes, path),
         "benchmark": lambda: forms.benchmark_json(outcomes),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.errors import ConfigError, shown
 from bfsim.shipped import FIRMWARE, RECORDING
 from bfsim.terminal import print_report
@@ -60,7 +61,7 @@ class _Area(click.ParamType[tuple[int, int, int, int]]):
     type=click.Path(path_type=Path),
     help="Draw the picture and its colours side by side.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
+@json_option("the colours")
 def colours(
     picture: Path | None,
     firmware: str,
@@ -68,7 +69,7 @@ def colours(
     script: Path | None,
     grey: tuple[int, int, int, int] | None,
     out: Path | None,
-    as_json: bool,
+    json_path: Path | None,
 ) -> None:
     """Print what the firmware calls each colour of PICTURE, in degrees of its hue, and how much of the picture has it.
 
@@ -91,10 +92,9 @@ def colours(
             raise ConfigError(f"--out must be a file *.png, not {out}")
         require_place(out)
         require_apart(out, (picture, script))
+    require_json_place(json_path, (picture, script, out))
     done = coloured(picture or RECORDING, firmware=firmware, script=script, frame=frame, grey=grey)
     if out:
         write_bytes(out, [colours_picture(done.picture, done.colours)])
-    if as_json:
-        click.echo(colours_json(done.colours, done.patch_notes), nl=False)
-    else:
-        print_report(colours_report(done.colours, done.patch_notes))
+    told = done.colours, done.patch_notes
+    tell(json_path, lambda: [colours_json(*told)], lambda: print_report(colours_report(*told)))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import run_and_seen, takes_a_run
 from bfsim.terminal import print_report
 from bfsim.watchers import Watchers
@@ -47,7 +48,7 @@ def _run(**what: Any) -> dict[str, Any]:
     show_default=True,
     help="Show the N causes that contribute most.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print all of it as JSON instead.")
+@json_option("all of it")
 @click.option("--markdown", is_flag=True, help="Print it as Markdown, for a comment on a pull request.")
 @click.option(
     "--html",
@@ -55,7 +56,9 @@ def _run(**what: Any) -> dict[str, Any]:
     type=click.Path(path_type=Path),
     help="Write all of it as one HTML page, too; with the pictures of the frames that changed most, of what is run on the spot.",
 )
-def diff(before: str, after: str, top: int, as_json: bool, markdown: bool, html: Path | None) -> None:
+def diff(
+    before: str, after: str, top: int, json_path: Path | None, markdown: bool, html: Path | None
+) -> None:
     """Print what differs between two runs: the configuration, then the cycles by stage, kernel, source line and cause.
 
     BEFORE and AFTER are each a result, FILE.json as `bfsim run --json` writes it; a run of a baseline of `bfsim check`,
@@ -69,14 +72,22 @@ def diff(before: str, after: str, top: int, as_json: bool, markdown: bool, html:
       bfsim diff budget.toml after.json
       bfsim diff "--frames 2 --ldf l2" "--frames 2" --html placement.html
     """
-    if as_json and markdown:
-        raise click.UsageError("--json and --markdown must not be given together: each is all of the output")
+    from bfsim.report.diff.as_json import diff_json
+    from bfsim.report.diff.markdown import diff_markdown
+    from bfsim.report.diff.tables import diff_report
+
+    if json_path == STDOUT and markdown:
+        raise click.UsageError(
+            "--json must have a FILE.json beside --markdown: without one, each is all of the output"
+        )
     with ExitStack() as stack:
         sides = [_asked(text) for text in (before, after)]  # a slip in either is told before anything runs
+        read = [*chain(*map(_read, (before, after), sides))]
+        require_json_place(json_path, (*read, html))
         if html:
             from bfsim.run_page import require_page
 
-            require_page(html, chain(*map(_read, (before, after), sides)))
+            require_page(html, read)
         pictures = [_pictures(stack) if html and isinstance(each, dict) else None for each in sides]
         results = [_result(stack, *each) for each in zip(sides, pictures, strict=True)]
         difference = _difference(*results)
@@ -86,18 +97,15 @@ def diff(before: str, after: str, top: int, as_json: bool, markdown: bool, html:
 
             named = (PagedSide(*each) for each in zip((before, after), pictures, strict=True))
             write_text(html, DiffPage(difference, *named).chunks())
-    if as_json:
-        from bfsim.report.diff.as_json import diff_json
-
-        click.echo(diff_json(difference), nl=False)
-    elif markdown:
-        from bfsim.report.diff.markdown import diff_markdown
-
-        click.echo(diff_markdown(difference, top), nl=False)
-    else:
-        from bfsim.report.diff.tables import diff_report
-
-        print_report(diff_report(difference, top))
+    tell(
+        json_path,
+        lambda: [diff_json(difference)],
+        lambda: (
+            click.echo(diff_markdown(difference, top), nl=False)
+            if markdown
+            else print_report(diff_report(difference, top))
+        ),
+    )
 
 
 def _difference(before: Result | Case, after: Result | Case) -> Difference:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.running import simulated, takes_a_run, warn
 from bfsim.terminal import print_report
 
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 @click.argument("kernel")
 @takes_a_run
 @click.option("--run", "runs", is_flag=True, help="Run the firmware first, and add how often each line ran.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
+@json_option("the lines, or instructions,")
 @click.option(
     "--asm",
     "as_assembly",
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 def explain(
     kernel: str,
     runs: bool,
-    as_json: bool,
+    json_path: Path | None,
     as_assembly: bool,
     **what: Any,
 ) -> None:
@@ -44,13 +46,16 @@ def explain(
       bfsim explain sobel_row --asm --run --frames 2
       bfsim explain my_kernels:convolve --profile gcc-O2 --json
     """
+    from bfsim.report.save import files_of_run
+
+    require_json_place(json_path, files_of_run(what))
     runs = runs or what["recording"] is not None
     explained = _explain_code if as_assembly else _explain_lines
-    if done := explained(kernel, runs=runs, as_json=as_json, **what):
+    if done := explained(kernel, runs=runs, json_path=json_path, **what):
         warn(done)
 
 
-def _explain_lines(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
+def _explain_lines(kernel: str, *, runs: bool, json_path: Path | None, **what: Any) -> RunRecord | None:
     """Print a kernel line by line; return the run, if there was one."""
     from bfsim.explain import explain_named
     from bfsim.report.explain_tables import explain_json, explain_report
@@ -60,14 +65,11 @@ def _explain_lines(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> Ru
     done = simulated(**what) if runs else None
     if done:
         explanation = explain_named(*named, done)
-    if as_json:
-        click.echo(explain_json(explanation), nl=False)
-    else:
-        print_report(explain_report(explanation))
+    tell(json_path, lambda: [explain_json(explanation)], lambda: print_report(explain_report(explanation)))
     return done
 
 
-def _explain_code(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
+def _explain_code(kernel: str, *, runs: bool, json_path: Path | None, **what: Any) -> RunRecord | None:
     """Print the instructions that the profile's compiler makes of a kernel; return the run, if there was one."""
     from bfsim.assembly import Counting, find_code, listed
     from bfsim.compiling.toolchain import blackfin_compiler
@@ -81,8 +83,5 @@ def _explain_code(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> Run
     counting = Counting(code)
     done = simulated(on_call=counting.see, **what) if runs else None
     assembly = listed(code, counting.events() if done else None)
-    if as_json:
-        click.echo(assembly_json(assembly), nl=False)
-    else:
-        print_report(assembly_report(assembly))
+    tell(json_path, lambda: [assembly_json(assembly)], lambda: print_report(assembly_report(assembly)))
     return done

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from bfsim.cli.options.hardware import BOARD_OPTIONS, COMPILER_OPTIONS
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.cli.options.sizes import Size
@@ -40,7 +41,7 @@ from bfsim.terminal import print_report
     type=click.Path(path_type=Path),
     help="Draw the map, too, as FILE.png or FILE.svg.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the tables.")
+@json_option("the memory map")
 def ldf(
     file: Path | None,
     *,
@@ -53,7 +54,7 @@ def ldf(
     include_dirs: tuple[Path, ...],
     symbols: bool,
     picture: Path | None,
-    as_json: bool,
+    json_path: Path | None,
 ) -> None:
     """Link the firmware by FILE and print the memory map: what lies where, what is free, what to look at.
 
@@ -75,6 +76,7 @@ def ldf(
     if picture:
         format_of(picture)
         require_place(picture)
+    require_json_place(json_path, (file, picture))
     found = map_memory(
         file,
         firmware=firmware,
@@ -87,9 +89,10 @@ def ldf(
         include_dirs=include_dirs,
     )
     findings = lint(found)
-    if as_json:
-        click.echo(ldf_json(found, findings), nl=False)
-    else:
-        print_report(ldf_report(found, findings, symbols=symbols))
+    tell(
+        json_path,
+        lambda: [ldf_json(found, findings)],
+        lambda: print_report(ldf_report(found, findings, symbols=symbols)),
+    )
     if picture:
         write_bytes(picture, [picture_bytes(found, picture)])

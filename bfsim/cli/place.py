@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
@@ -33,10 +34,8 @@ if TYPE_CHECKING:
     show_default=True,
     help="Show the N moves that save most.",
 )
-@click.option(
-    "--json", "as_json", is_flag=True, help="Print JSON instead of the tables: every buffer, with why."
-)
-def place(output: Path | None, force: bool, top: int, as_json: bool, **what: Any) -> None:
+@json_option("every buffer, with why it lies where it does,")
+def place(output: Path | None, force: bool, top: int, json_path: Path | None, **what: Any) -> None:
     """Run RECORDING, and find where buffers and code must lie for the shortest frame.
 
     The run tells who accesses what how often, and what waits for it. An integer programme then gives each buffer the
@@ -61,17 +60,19 @@ def place(output: Path | None, force: bool, top: int, as_json: bool, **what: Any
         require_apart(output, files_of_run(what))
         if output.exists() and not force:
             raise ConfigError(f"{output} must not exist yet; --force overwrites it")
+    require_json_place(json_path, (*files_of_run(what), output))
     placed = found_by(simulate=_whole_run, **what)
     if output and placed.ldf:
         write_text(output, placed.ldf)
-    if as_json:
-        click.echo(placed_json(placed), nl=False)
-        return
-    print_report(placed_report(placed, top))
-    if output and placed.ldf:
-        click.echo(f"Written: `bfsim run --ldf {output}` runs it, `bfsim ldf {output}` draws it.")
-    elif output:
-        click.echo(f"{output} was not written: {placed.start} is as good.")
+
+    def show() -> None:
+        print_report(placed_report(placed, top))
+        if output and placed.ldf:
+            click.echo(f"Written: `bfsim run --ldf {output}` runs it, `bfsim ldf {output}` draws it.")
+        elif output:
+            click.echo(f"{output} was not written: {placed.start} is as good.")
+
+    tell(json_path, lambda: [placed_json(placed)], show)
 
 
 def _whole_run(**what: Any) -> RunRecord:

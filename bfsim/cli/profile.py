@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bfsim.cli.options.html import require_told, takes_html, writing_page
-from bfsim.cli.options.json_file import STDOUT, json_option
+from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli.options.timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError, shown
@@ -68,11 +68,9 @@ def profile(
     """
     from bfsim.report.profile.as_json import profile_json
     from bfsim.report.profile.tables import profile_report
-    from bfsim.report.save import files_of_run, require_apart, require_place, write_text
+    from bfsim.report.save import files_of_run
 
-    if json_path and json_path != STDOUT:
-        require_place(json_path)
-        require_apart(json_path, (*files_of_run(what), html, trace, flame))
+    require_json_place(json_path, (*files_of_run(what), html, trace, flame))
     require_told(target, html, is_json_only=json_path == STDOUT)
     if stage is not None:
         _require_stage(stage, what["firmware"])
@@ -82,13 +80,13 @@ def profile(
         timelines(watchers, trace, flame, (*files_of_run(what), html)),
     ):
         done = simulated(watchers=watchers, **what)
+    tell(
+        json_path,
+        lambda: [profile_json(done, core, stage, top)],
+        lambda: print_report(profile_report(done, core, top, by, stage, target)),
+    )
     if json_path == STDOUT:
-        click.echo(profile_json(done, core, stage, top), nl=False)
         warn(done)
-    else:
-        print_report(profile_report(done, core, top, by, stage, target))
-        if json_path:
-            write_text(json_path, [profile_json(done, core, stage, top)])
     exit_if_interrupted(done)
 
 

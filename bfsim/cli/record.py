@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bfsim import shipped
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.sizes import Size
 from bfsim.cli.recorded import info_table, view_text, views_text
 from bfsim.errors import RecordingError, shown
@@ -168,13 +169,13 @@ def import_command(
 
 @record.command(name="info", short_help="Say what is in a recording.")
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
+@json_option("what is in it")
 @click.option(
     "--plot",
     type=click.Path(path_type=Path),
     help="Write the plot of the calibration's residuals to this PNG file.",
 )
-def info_command(path: Path, as_json: bool, plot: Path | None) -> None:
+def info_command(path: Path, json_path: Path | None, plot: Path | None) -> None:
     """Describe RECORDING. Reads all of it, so an answer also says that it is whole.
 
     \b
@@ -186,14 +187,16 @@ def info_command(path: Path, as_json: bool, plot: Path | None) -> None:
     from bfsim.recording import RecordingReader
     from bfsim.recording.info import describe_recording
 
+    require_json_place(json_path, (path, plot))
     with RecordingReader(path) as reader, progress_bar("Reading") as progress:
         info = describe_recording(reader, progress)
         if plot:
             _write(plot, reader.residual_plot())
-    if as_json:
-        click.echo(json.dumps(asdict(info), default=str, indent=2))
-    else:
-        print_report(info_table(info))
+    tell(
+        json_path,
+        lambda: [json.dumps(asdict(info), default=str, indent=2), "\n"],
+        lambda: print_report(info_table(info)),
+    )
 
 
 @record.command(name="calibrate", short_help="Make rectification tables and geometry from chessboards.")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bfsim.cli.options.html import require_told, takes_html, writing_page
-from bfsim.cli.options.json_file import STDOUT, json_option
+from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli.options.seen import stages_named, takes_views, watching
 from bfsim.cli.options.timeline import takes_timelines, timelines
@@ -72,7 +72,7 @@ def run(
       bfsim run drive.mcap --work drive.work --set clocks.cclk_hz=500e6
     """
     from bfsim.report.as_json import json_chunks
-    from bfsim.report.save import files_of_run, require_apart, require_place, write_text
+    from bfsim.report.save import files_of_run, require_apart
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
@@ -81,11 +81,9 @@ def run(
     read = files_of_run(what)
     if what["record_work"]:
         require_apart(what["record_work"], (*read[:-1], mcap, overlay))
-    if json_path and json_path != STDOUT:
-        require_place(json_path)
-        require_apart(json_path, (*read, mcap, overlay))
+    require_json_place(json_path, (*read, mcap, overlay))
     if features and not json_path:
-        raise ConfigError("--features must come with --json FILE, which it adds to")
+        raise ConfigError("--features must come with --json, which it adds to")
     require_told(target, html, is_json_only=json_path == STDOUT)
     is_telling = bool(json_path) and not what["work"] and has_view(what["firmware"])
     if features and not is_telling:
@@ -109,12 +107,11 @@ def run(
             if is_telling:
                 watchers.seen.append(seen.add)
             done = simulated(watchers=watchers, **what)
-        if json_path == STDOUT:
-            for chunk in json_chunks(done, seen):
-                click.echo(chunk, nl=False)
-            warn(done)
-        else:
-            print_report(run_report(done, target) if full else screen(done, target))
-            if json_path:
-                write_text(json_path, json_chunks(done, seen))
+        tell(
+            json_path,
+            lambda: json_chunks(done, seen),
+            lambda: print_report(run_report(done, target) if full else screen(done, target)),
+        )
+    if json_path == STDOUT:
+        warn(done)
     exit_if_interrupted(done)

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from bfsim.cli.options.json_file import STDOUT, json_option
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.running import simulated, takes_a_run
 from bfsim.terminal import print_report
 
@@ -46,13 +46,12 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
     from bfsim.loading import entries_of, kernels_of, load_firmware
-    from bfsim.report.save import require_place, write_text
+    from bfsim.report.save import files_of_run
     from bfsim.report.verification import as_json, verification_report
     from bfsim.verifying import Sampler
     from bfsim.verifying import verify as verified
 
-    if json_path and json_path != STDOUT:
-        require_place(json_path)
+    require_json_place(json_path, files_of_run(what))
     profile = find_profile(what["profile"]).value
     level_of(profile)
     tools = blackfin_compiler()
@@ -62,11 +61,6 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     kernels = kernels_of(loaded.own) | set(sampler.of)
     code = object_code(kernels, entries_of(loaded.firmware) | set(sampler.of), profile, tools)
     found = verified(sampler, len(done.frames), profile, code, tools)
-    if json_path == STDOUT:
-        click.echo(as_json(found))
-    else:
-        print_report(verification_report(found, top))
-        if json_path:
-            write_text(json_path, as_json(found) + "\n")
+    tell(json_path, lambda: [as_json(found), "\n"], lambda: print_report(verification_report(found, top)))
     if found.different or found.unequal:
         raise SystemExit(1)

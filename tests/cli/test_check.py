@@ -156,7 +156,7 @@ def refused(*arguments: object) -> str:
         (["--case", "drove"], "--case must name one of its 2 runs, not 'drove'; the nearest are"),
         (["--case", "drive --firmware fw_eyes.py", "--frames", "2"], "says itself what to run: "),
         (["a\udcff.mcap", "--update"], "recording must have a name that can be written into a baseline file"),
-        (["--json", "limits.toml"], "limits.toml must be a file of its own to be written"),
+        (["--junit", "limits.toml"], "limits.toml must be a file of its own to be written"),
         (["--json", "no/o.json"], "the folder no must exist"),
         (["--history", "fw_eyes.py"], "fw_eyes.py:1 must be a line that `bfsim check --history` wrote"),
     ],

@@ -78,7 +78,8 @@ def test_mistakes_are_told_before_the_run(tmp_path: Path, monkeypatch: pytest.Mo
         "run", "--html", page, "--target", "soon"
     )
     assert "must exist to write a file there" in refused("run", "--html", tmp_path / "no" / "run.html")
-    assert "must be a file of its own" in refused("run", "--html", page, "--json", page)
+    both = tmp_path / "run.json"
+    assert "must be a file of its own" in refused("run", "--html", both, "--json", both)
     monkeypatch.setattr(run_page, "find_spec", lambda name: None if name == "vl_convert" else object())
     assert (
         'needs the package vl_convert; install all that it needs with: pip install "bfsim[html]"'

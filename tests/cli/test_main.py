@@ -182,18 +182,18 @@ def test_what_is_written_takes_the_place_of_nothing_else(
     tmp_path: Path, command: str, written: str, other: str
 ) -> None:
     """A recording that is given twice by a slip is still there afterwards."""
-    file = tmp_path / "drive.mcap"
+    file = tmp_path / "drive.json"
     file.touch()
     option = [] if other == "recording" else [other]
-    result = call(command, *option, str(file), written, str(tmp_path / "." / "drive.mcap"))
+    result = call(command, *option, str(file), written, str(tmp_path / "." / "drive.json"))
     assert result.exit_code == 2
-    assert "drive.mcap must be a file of its own to be written" in result.output
+    assert "drive.json must be a file of its own to be written" in result.output
 
 
 @pytest.mark.parametrize("option", ["--json", "--mcap", "--baseline"])
 def test_links_in_a_circle(tmp_path: Path, option: str) -> None:
     """They are told before anything runs."""
-    loop = tmp_path / "loop"
+    loop = tmp_path / "loop.json"
     loop.symlink_to(loop)
     command = ("check", "--update") if option == "--baseline" else ("run",)
     result = call(*command, option, str(loop))

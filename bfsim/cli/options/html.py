@@ -59,7 +59,9 @@ takes_html = takes(_PARAMETERS)
 def require_told(target: Target | None, html: Path | None, *, is_json_only: bool) -> None:
     """Raise ConfigError for a target that nothing would be said of."""
     if target and is_json_only and not html:
-        raise ConfigError("--target must come with the tables or --html FILE, and --json - prints neither")
+        raise ConfigError(
+            "--target must come with the tables or --html FILE, and --json alone prints neither"
+        )
 
 
 @contextmanager
