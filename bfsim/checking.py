@@ -11,7 +11,8 @@ from bfsim import shipped
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, cut, shown
 from bfsim.identifying import recording_digest
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
-from bfsim.run import Feed, Fidelity, identified
+from bfsim.report.check.judge import require_stages
+from bfsim.run import Feed, Fidelity, cores_of, identified, rows_of
 
 
 def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
@@ -76,18 +77,29 @@ def name_of(configuration: Configuration) -> str:
 
 
 def require_comparable(case: Case, path: Path) -> None:
-    """Read and check all that a run needs. Raises ConfigError if it is not what its limits were measured on, or cannot be at all."""
+    """Read and check all that a run needs.
+
+    Raises ConfigError if it is not what its limits were measured on, has no stage that one is about, or cannot be at all.
+    """
     arguments = arguments_of(case.configuration, path.parent)
-    then = case.measured_on
     try:
         identity, frames = identified(**arguments)
     except (ConfigError, FirmwareError, RecordingError) as error:
         raise type(error)(f"{path}: run {shown(case.name)}: {error}") from error
-    if then is None:
-        return
-    now = measured_on(identity, frames)
-    differences = [*_recording_differences(then, now, arguments.get("recording"))]
-    for key, name in (("board", identity.board), ("compiler", identity.compiler), ("script", case.script)):
+    if case.measured_on:
+        names = {"board": identity.board, "compiler": identity.compiler, "script": case.script}
+        _require_alike(case, path, case.measured_on, measured_on(identity, frames), names)
+    firmware = arguments["firmware"]
+    require_stages(case, path, [each.stage for each in rows_of(firmware)], cores_of(firmware))
+
+
+def _require_alike(
+    case: Case, path: Path, then: MeasuredOn, now: MeasuredOn, names: Mapping[str, str]
+) -> None:
+    """Raise ConfigError that says all in which a run is not what its limits were measured on; `names` of its hardware and script."""
+    recording = arguments_of(case.configuration, path.parent).get("recording")
+    differences = [*_recording_differences(then, now, recording)]
+    for key, name in names.items():
         if then.differs_in(key, now):
             differences.append(f"{key} {name} {_difference(key, then, now)}")
     if then.differs_in("code", now):

@@ -262,6 +262,11 @@ def rows_of(firmware: str) -> tuple[BudgetRow, ...]:
     return load_firmware(firmware).firmware.rows
 
 
+def cores_of(firmware: str) -> tuple[str, ...]:
+    """Return the cores that have a main loop in `firmware`. Raises FirmwareError as `simulate`."""
+    return tuple(load_firmware(firmware).firmware.mains)
+
+
 def _devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Device], str]:
     """Return the devices of the firmware, told by the script if there is one, and the digest of the script."""
     if path is None:

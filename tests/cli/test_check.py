@@ -167,6 +167,32 @@ def test_what_does_not_fit_is_told_before_anything_runs(arguments: list[str], me
 
 
 @pytest.mark.usefixtures("idle_repository")
+@pytest.mark.parametrize(
+    ("key", "text", "named", "advice"),
+    [
+        ("limits", "", "Threshold.A", "; --update --reason TEXT removes it"),
+        ("require", "Threshold.max <= 9 ms", "Threshold", ""),
+        ("require", "Binarize.C.max <= 9 ms", "Binarize.C", ""),
+        ("require", "lateny <= 9 ms", "lateny", ""),
+    ],
+)
+def test_a_stage_that_was_renamed_is_told_before_anything_runs(
+    key: str, text: str, named: str, advice: str
+) -> None:
+    """The firmware says which stages and cores it has; what a person requires is told with --update, too, which leaves it alone."""
+    Path("fw_eyes.py").write_text(FIRMWARE.replace('"Threshold"', '"Binarize"'))
+    if text:
+        limits = re.sub(
+            r"^limits = \[\n(?:.*\n)*?\]\n", "", Path("limits.toml").read_text(), flags=re.MULTILINE
+        )
+        Path("limits.toml").write_text(limits.replace("[[run]]", f"[[run]]\nrequire = ['{text}']", 1))
+    for update in [[], ["--update"]] if key == "require" else [[]]:
+        message = refused("--baseline", "limits.toml", *update)
+        assert f"{named} must be something that the run has; the nearest are " in message
+        assert message.endswith(advice)
+
+
+@pytest.mark.usefixtures("idle_repository")
 def test_a_mistake_in_the_file_is_told_with_its_run() -> None:
     """What a run names and is not there is told as what the file says of it, which may have many runs."""
     text = Path("limits.toml").read_text()

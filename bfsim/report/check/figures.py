@@ -28,6 +28,8 @@ Name = tuple[str, ...]
 """Such as ("frame_rate",), ("Thinning", "A") or ("memory", "L2"); the parts of a dotted key of TOML."""
 
 FRAME_RATE, MISSED, LATENCY, FRAME = ("frame_rate",), ("missed",), ("latency",), ("frame",)
+OF_THE_RUN = FRAME_RATE, MISSED, LATENCY, FRAME
+"""What every run has, whatever its firmware."""
 MEMORY, RESULTS, OBJECTS, DISTANCES = "memory", "results", "objects", "distance_mm"
 SEEN = {OBJECTS, DISTANCES}
 """What the firmware sees: how many of a kind, and how far the nearest of them is."""
@@ -72,6 +74,11 @@ def unit_of(name: Name) -> Unit:
     if name == MISSED or name[0] in COUNTS:
         return Unit.COUNT
     return Unit.BYTES if name[0] == MEMORY else Unit.CCLK
+
+
+def is_of_a_stage(name: Name) -> bool:
+    """Whether the figure of that name is the time of a stage."""
+    return name not in OF_THE_RUN and name[0] not in {MEMORY, *COUNTS}
 
 
 def figures_of(result: Result) -> dict[Name, Figure]:

@@ -5,11 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain, product
 from pathlib import Path
 
 from bfsim.errors import ConfigError
 from bfsim.report.check.baseline import Case, requirements_of
-from bfsim.report.check.figures import COUNTS, OBJECTS, SEEN, Figure, Name, Unit, figures_of
+from bfsim.report.check.figures import (
+    COUNTS,
+    OBJECTS,
+    OF_THE_RUN,
+    SEEN,
+    Figure,
+    Name,
+    Unit,
+    figures_of,
+    is_of_a_stage,
+)
 from bfsim.report.check.requirement import Requirement, dotted, nearest_of, parse_requirement
 from bfsim.report.result_file import Result
 from bfsim.trace import RunRecord
@@ -106,6 +117,14 @@ def judge(case: Case, result: Result, path: Path) -> Outcome:
     return Outcome(case=case, result=result, figures=figures, verdicts=tuple(verdicts))
 
 
+def require_stages(case: Case, path: Path, stages: Sequence[str], cores: Sequence[str]) -> None:
+    """Raise ConfigError for what `path` has on a stage or core that firmware with these does not have: nothing needs to run for that."""
+    known = [*OF_THE_RUN, *((stage,) for stage in stages), *product(stages, cores)]
+    for each in chain(*requirements_of(case, path)):
+        if is_of_a_stage(each.name) and each.name not in known:
+            raise _unknown(each, known, case, path)
+
+
 def _nothing_of(name: Name) -> Requirement:
     """Return that nothing is seen of a kind that there was nothing of when the limits were measured."""
     return parse_requirement(f"{dotted((*name, 'max'))} == 0", "")
@@ -114,12 +133,16 @@ def _nothing_of(name: Name) -> Requirement:
 def _figure(requirement: Requirement, figures: Mapping[Name, Figure], case: Case, path: Path) -> Figure:
     figure = figures.get(requirement.name)
     if figure is None:
-        advice = "; --update --reason TEXT removes it" if requirement.text in case.limits else ""
-        raise ConfigError(
-            f"{path}: run {case.name!r}: {dotted(requirement.name)} must be something that the run has; the nearest are "
-            f"{nearest_of(requirement.name, list(figures))}{advice}"
-        )
+        raise _unknown(requirement, list(figures), case, path)
     return figure
+
+
+def _unknown(requirement: Requirement, known: Sequence[Name], case: Case, path: Path) -> ConfigError:
+    advice = "; --update --reason TEXT removes it" if requirement.text in case.limits else ""
+    return ConfigError(
+        f"{path}: run {case.name!r}: {dotted(requirement.name)} must be something that the run has; the nearest are "
+        f"{nearest_of(requirement.name, known)}{advice}"
+    )
 
 
 def _verdict(
