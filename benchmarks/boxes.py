@@ -5,7 +5,7 @@ Each frame with where the box is, and how far off its middle is that the firmwar
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -99,9 +99,11 @@ def comparison(frames: Sequence[Placed]) -> Table:
 
 def main() -> None:
     """Print the table of a recording."""
-    if len(sys.argv) != 2:
-        sys.exit("usage: python -m benchmarks.boxes RECORDING")
-    print_report(comparison(placed(Path(sys.argv[1]))))
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("recording", type=Path, help="one of a box that stands still")
+    print_report(comparison(placed(parser.parse_args().recording)))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ its variants. Needs a bfin-elf toolchain on PATH; takes a minute, a minute, and 
 
 from __future__ import annotations
 
-import sys
+import argparse
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -120,11 +120,17 @@ def _arguments(number: int) -> Iterator[tuple[Argument, ...]]:
         yield (*arrays_of(number + call).values(), x >> generator.integers(32), y >> generator.integers(32))
 
 
-def main(what: str, count: str = "1000") -> None:
+def main() -> None:
     """Print what was compared, set by set."""
-    sets = {"firmware": firmware, "twins": twins, "random": lambda: random(int(count))}
+    sets = {"firmware": firmware, "twins": twins, "random": lambda: random(given.count)}
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("what", choices=list(sets))
+    parser.add_argument("count", type=int, nargs="?", default=1000, help="of random kernels (default: 1000)")
+    given = parser.parse_args()
     kernels = calls = cycles = bits = 0
-    for name, sampler, code in sets[what]():
+    for name, sampler, code in sets[given.what]():
         ours, judge = translated(sampler, code), simulated(sampler, code, blackfin_toolchain())
         pairs = [both for each in sampler.of for both in zip(ours[each], judge[each], strict=True)]
         other_cycles = sum(one.cclk != other.cclk for one, other in pairs)
@@ -140,4 +146,4 @@ def main(what: str, count: str = "1000") -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

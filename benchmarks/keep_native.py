@@ -8,6 +8,7 @@ It takes half a minute, and writes to `bfsim/kernel/kept`; what is there and no 
 
 from __future__ import annotations
 
+import argparse
 import zlib
 from pathlib import Path
 
@@ -37,6 +38,10 @@ ENTRIES = (
 
 def main() -> None:
     """Make and write what is not there."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     FOLDER.mkdir(exist_ok=True)
     wanted = {each.digest(): each for each in ENTRIES}
     for old in {each.name for each in FOLDER.iterdir()} - wanted.keys():

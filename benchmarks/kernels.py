@@ -9,6 +9,7 @@ least time of a turn counts. Compile times are of a process with an empty kernel
 
 from __future__ import annotations
 
+import argparse
 import math
 import os
 import statistics
@@ -163,6 +164,10 @@ def geometric_mean(values: list[float]) -> float:
 
 def main() -> None:
     """Measure all, and print a table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     os.environ["BFSIM_CACHE_DIR"] = tempfile.mkdtemp()
     from benchmarks.twins.cases import CASES
     from benchmarks.twins.measured import Role, measured

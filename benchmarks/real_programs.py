@@ -9,8 +9,8 @@ simulator's. At the end is how fast both are: simulated cycles a second of the h
 
 from __future__ import annotations
 
+import argparse
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -102,14 +102,18 @@ def simulated(program: Path) -> Run:
     return Run(done.stdout, 0, time.perf_counter() - begin)
 
 
-def main(names: list[str]) -> None:
+def main() -> None:
     """Compare the programs; the last line sums them up."""
+    known = [each.stem.removeprefix("k_") for each in sorted(SOURCES.glob("k_*.c"))]
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME", choices=known, help="of a kernel (default: all)")
+    names = parser.parse_args().names or known
     equal = total = 0
     cclk = there_seconds = here_seconds = 0.0
     with tempfile.TemporaryDirectory() as folder:
-        for source in sorted(SOURCES.glob("k_*.c")):
-            if names and source.stem[2:] not in names:
-                continue
+        for source in (SOURCES / f"k_{name}.c" for name in names):
             for level in ("-O2", "-O0"):
                 program = Path(folder) / source.stem
                 subprocess.run(["bfin-elf-gcc", *FLAGS, level, source, "-o", program], check=True)
@@ -130,4 +134,4 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

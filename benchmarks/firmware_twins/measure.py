@@ -9,8 +9,8 @@ with calls; `c/twin.h` says what the variants are. The simulator charges cycles 
 
 from __future__ import annotations
 
+import argparse
 import json
-import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,8 +91,19 @@ def options_of(variant: str) -> tuple[str, ...]:
     return ("-std=gnu99", each.level, "-w", *meanings)
 
 
-def main(names: list[str]) -> None:
+def main() -> None:
     """Measure the kernels and write their entries."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "names",
+        nargs="*",
+        metavar="NAME",
+        choices=[each.name for each in TWINS],
+        help="of a kernel (default: all)",
+    )
+    names = parser.parse_args().names
     measured: dict[str, Any] = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
         for kernel in TWINS:
@@ -103,4 +114,4 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -10,11 +10,11 @@ lying before it.
 
 from __future__ import annotations
 
+import argparse
 import json
 import random
 import re
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -94,6 +94,15 @@ def compare(path: Path) -> None:
     print(f"{path.name}: {number:,} instructions")
 
 
-if __name__ == "__main__":
-    for each in map(Path, sys.argv[1:]):
+def main() -> None:
+    """Record or compare each file."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="*.json to record, or an archive")
+    for each in parser.parse_args().files:
         record(each) if each.suffix == ".json" else compare(each)
+
+
+if __name__ == "__main__":
+    main()

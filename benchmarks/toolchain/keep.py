@@ -8,6 +8,7 @@ After a change of a kernel of the built-in firmware it must be run again, or `bf
 
 from __future__ import annotations
 
+import argparse
 import json
 import zlib
 from collections.abc import Iterable, Iterator
@@ -47,6 +48,10 @@ def recipes(programs: Iterable[InC]) -> Iterator[Recipe]:
 
 def main() -> None:
     """Compile and write."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     toolchain = blackfin_toolchain()
     assert toolchain.identity == KEPT_COMPILER, toolchain.identity
     FOLDER.mkdir(exist_ok=True)

@@ -9,10 +9,10 @@ GNU simulator 13.1). The simulator charges cycles without memory, cache or inter
 
 from __future__ import annotations
 
+import argparse
 import json
 import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -102,8 +102,19 @@ def _output(*command: str | Path) -> str:
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
-def main(names: list[str]) -> None:
+def main() -> None:
     """Measure the kernels and write their entries; what is kept of a kernel is written once, when it is new."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "names",
+        nargs="*",
+        metavar="NAME",
+        choices=[each.name for each in CASES],
+        help="of a kernel (default: all)",
+    )
+    names = parser.parse_args().names
     if missing := missing_tools():
         raise SystemExit(f"a bfin-elf toolchain must be on PATH; not found: {', '.join(missing)}")
     measured: dict[str, Any] = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
@@ -119,4 +130,4 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
