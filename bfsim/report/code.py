@@ -6,6 +6,8 @@ from bfsim.trace import RunRecord
 
 MODEL_ERROR_PERCENT = 10
 """Of a kernel that the model never saw, on average. [measured] docs/accuracy.md"""
+TRUST = "Trust", "docs/accuracy.md: how far, and what is assumed or not modelled"
+"""What is said beside the code that ran and its timing: the page has the measured errors of both. A line of 80 columns."""
 OF_FILES = "object code of files"
 
 

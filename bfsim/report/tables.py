@@ -24,6 +24,7 @@ from bfsim.report.budget import (
     latency_cclk,
     milliseconds,
 )
+from bfsim.report.code import TRUST
 from bfsim.report.configuration import configuration_of
 from bfsim.report.split_table import SplitTable
 from bfsim.report.start_up import of_one_frame
@@ -291,6 +292,6 @@ def configuration(run: RunRecord) -> Table:
     """Return what was run on what, and the digests of it and of its cycles."""
     table = notes_table()
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
-    for name, text in configuration_of(run):
+    for name, text in (*configuration_of(run), TRUST):
         table.add_row(name, text)
     return table

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bfsim.report.code import code_in_words
+from bfsim.report.code import TRUST, code_in_words
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.units import mhz
 from bfsim.trace import RunRecord
@@ -14,7 +14,7 @@ DIGITS_TOLD = 12
 
 
 def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
-    """Yield whose code it was, the names of what ran, and the digests of that and of its cycles."""
+    """Yield whose code it was, the names of what ran, where its errors are told, and the digests of that and of its cycles."""
     identity = run.identity
     compiler = identity.compiler
     if run.object_share == 1:
@@ -27,5 +27,6 @@ def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
     if identity.fidelity != "fast":
         extras.append(f"fidelity {identity.fidelity}")
     yield "Run", f"{identity.recording} {size}, {identity.firmware}, {board}, {', '.join(extras)}"
+    yield TRUST
     digests = identity_digest(identity), cycle_digest(run.frames)
     yield "Digests", "identity {}, cycles {}".format(*(each[:DIGITS_TOLD] for each in digests))

@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
-from rich.console import Console
+from rich.console import Console, RenderableType
 
 from bfsim.report.bound import Cause, bound_of
 from bfsim.report.budget import budget_of
+from bfsim.report.profile.tables import profile_report
 from bfsim.report.screen import screen
 from bfsim.report.start_up import start_up_cclk, without_start_up
+from bfsim.report.tables import run_report
 from bfsim.report.waits import busy_cclk
+from bfsim.shipped import ACCURACY
 from bfsim.trace import REST, CoreFrame, RunRecord, RunWarning, StallReason, WarningKind
+from tests.pages import ROOT
 from tests.report.records import core_frame, cost, edge_run, frame, run_of, runs
 
 
 def lines_of(run: RunRecord, width: int = 80) -> list[str]:
     """The screen as a pipe gets it."""
+    return printed(screen(run), width)
+
+
+def printed(report: RenderableType, width: int) -> list[str]:
+    """A report as a pipe gets it."""
     console = Console(file=io.StringIO(), width=width, markup=False, emoji=False, highlight=False)
-    console.print(screen(run))
+    console.print(report)
     assert isinstance(console.file, io.StringIO)
     return [line.rstrip() for line in console.file.getvalue().splitlines()]
 
@@ -195,6 +205,14 @@ def test_it_says_where_the_cameras_are() -> None:
         replace(run, geometry="focal length 9 px (of the recording)")
     )
     assert "Cameras" not in words_of(replace(run, geometry=""))
+
+
+@pytest.mark.parametrize("report", [screen, run_report, profile_report])
+def test_it_says_where_its_errors_are_told(report: Callable[[RunRecord], RenderableType]) -> None:
+    """In a line of its own that fits a terminal: the page that comes with bfsim."""
+    [line] = [each for each in printed(report(edge_run(1000, 900)), 80) if each.startswith("Trust ")]
+    named = [word.strip(":") for word in line.split() if word.endswith(".md:")]
+    assert [(ROOT / each).resolve() for each in named] == [ACCURACY]
 
 
 def test_where_to_look_next_depends_on_the_stalls() -> None:
