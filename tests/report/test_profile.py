@@ -10,6 +10,7 @@ import pytest
 from bfsim.report.profile.as_json import SCHEMA, profile_json
 from bfsim.report.profile.buffers import buffers_of, traffic_of
 from bfsim.report.profile.callers import callers_of
+from bfsim.report.profile.cost import sum_of
 from bfsim.report.profile.costs import profile_of
 from bfsim.report.profile.frames import worst_frames
 from bfsim.report.profile.reason_tables import reasons_of
@@ -258,6 +259,85 @@ def test_rows_show_runs_cost_and_share() -> None:
     assert "(1 other) 0.02 0.0 12.5 █" in lines
     assert "10 for x in range(n): 1 95.0 0.10 0.0 59.4 ██████" in lines
     assert "All 0.16 6.2 100.0 ████████░░" in lines
+
+
+def dividing_run() -> RunRecord:
+    """Sobel divides 3 times in line 10 and once in 11, by a routine that takes 40 and calls one of 7; root divides twice."""
+
+    def line(number: int, own_cclk: int, divisions: int, name: str = "__divsi3") -> LineCost:
+        operations = {"alu": (own_cclk, own_cclk), name: (divisions, 5 * divisions)}
+        return LineCost(
+            line=number,
+            executions=1,
+            issue_cclk=own_cclk + 5 * divisions,
+            stall_cclk={},
+            operations=operations,
+        )
+
+    costs = {
+        "sobel": (line(10, 100, 3), line(11, 50, 1)),
+        "root": (line(10, 20, 2),),
+        "__divsi3": (line(10, 240 - 5 * 6, 6, "__udivsi3"),),
+        "__udivsi3": (LineCost(line=10, executions=6, issue_cclk=42, stall_cclk={REASON: 60}),),
+    }
+    kernels = [
+        kernel(EDGES, name, *lines, calls=6 if name.startswith("__") else 1) for name, lines in costs.items()
+    ]
+    owners = tuple(
+        owner(EDGES, each.kernel, each.issue_cclk, sum(each.stall_cclk.values()), calls=each.calls)
+        for each in kernels
+    )
+    core = core_frame("A", 0, cost(EDGES, sum(each.issue_cclk for each in kernels), {REASON: 60}))
+    return replace(run_of([frame(0, replace(core, owners=owners))]), kernels=tuple(kernels))
+
+
+def test_a_routine_of_the_library_is_told_in_the_lines_that_call_it() -> None:
+    """It is no kernel of anybody's; each line has as much of it, and of what that calls, as it has of the calls. The sums stay."""
+    run = dividing_run()
+    profile = profile_of(run)
+    [stage] = profile.stages
+    assert {each.owner: each.calls for each in stage.owners} == {"sobel": 1, "root": 1}
+    sobel, root = stage.owners
+    each_cclk = 5 + 40 + 7 + 10
+    assert [(each.line, each.cost.elapsed_cclk) for each in sobel.lines] == [
+        (10, 100 + 3 * each_cclk),
+        (11, 50 + each_cclk),
+    ]
+    assert sobel.cost.elapsed_cclk == 150 + 4 * each_cclk
+    assert root.cost.elapsed_cclk == 20 + 2 * each_cclk
+    assert root.cost.stall_cclk == {REASON: 20}
+    assert stage.cost == sum_of(each.cost for each in stage.owners)
+    assert stage.cost.elapsed_cclk == profile.whole.elapsed_cclk
+
+
+def test_the_routine_is_named_below_the_line() -> None:
+    """By what it does, with how often, and its work; the sentence is about the line that calls."""
+    lines = [*map(squeezed, printed(profile_report(dividing_run()), 120))]
+    assert not any("divsi3" in each for each in lines)
+    named = [each for each in lines if each.startswith("library division")]
+    assert [each.split()[2:4] for each in named] == [["3", "52.0"], ["1", "52.0"], ["2", "52.0"]]
+    assert "The dearest kernel is sobel (edges.py:10)" in sentences_of(dividing_run())[1]
+    assert "72 % of them in line 10" in sentences_of(dividing_run())[1]
+
+
+def test_a_kernel_that_calls_itself_stays_one() -> None:
+    """Nobody could say whose its cycles are; none is lost."""
+    run = dividing_run()
+    ours = LineCost(
+        line=10, executions=1, issue_cclk=9, stall_cclk={}, operations={"again": (1, 5), "alu": (4, 4)}
+    )
+    again = kernel(EDGES, "again", ours, calls=1)
+    [first] = run.frames
+    [core] = first.cores
+    owners = (*core.owners, owner(EDGES, "again", 9))
+    [stage] = profile_of(
+        replace(
+            run,
+            frames=(replace(first, cores=(replace(core, owners=owners),)),),
+            kernels=(*run.kernels, again),
+        )
+    ).stages
+    assert [each.cost.elapsed_cclk for each in stage.owners if each.owner == "again"] == [9]
 
 
 def test_json_has_every_row() -> None:

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from bfsim.report.diff.difference import Contribution, Kind
-from bfsim.report.diff.operations import words
 from bfsim.report.diff.side import Line, Operations, Stall
+from bfsim.report.operations import words
 from bfsim.report.units import counted
 
 NAMED = 3

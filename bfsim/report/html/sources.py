@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bfsim.report.library import in_callers
 from bfsim.report.profile.cost import Cost
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.trace import KernelRecord, RunRecord
@@ -27,7 +28,7 @@ class SourceLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KernelSource:
-    """A kernel in one stage on all cores, without its callees; `share` is its part of the cycles of all kernels, 0..1."""
+    """A kernel in one stage on all cores, without its callees but with routines of the compiler's library; `share` is its part of the cycles of all kernels, 0..1."""
 
     kernel: str
     stage: str
@@ -41,7 +42,7 @@ class KernelSource:
 def dearest_sources(run: RunRecord, most: int = MOST) -> tuple[KernelSource, ...]:
     """Return the kernels of a run that took most cycles, stalls included, the dearest first."""
     groups: dict[tuple[str, str, str], list[KernelRecord]] = {}
-    for record in run.kernels:
+    for record in in_callers(run.kernels):
         groups.setdefault((record.stage, record.kernel, record.symbol), []).append(record)
     whole_cclk = sum(record.elapsed_cclk for record in run.kernels)
     sources = [_source(records, whole_cclk) for records in groups.values()]

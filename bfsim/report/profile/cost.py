@@ -33,6 +33,11 @@ class Cost:
         self.stall_cclk.update(stall_cclk)
         self.idle_cclk += idle_cclk
 
+    def take(self, issue_cclk: int, stall_cclk: Mapping[StallReason, int]) -> None:
+        """Take cycles of each kind away, of which there are as many."""
+        self.issue_cclk -= issue_cclk
+        self.stall_cclk = self.stall_cclk - Counter(stall_cclk)
+
 
 def sum_of(costs: Iterable[Cost]) -> Cost:
     """Return all costs together."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
 from bfsim.report.budget import budget_rows, stage_names
+from bfsim.report.library import in_callers
 from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.report.start_up import without_start_up
@@ -15,7 +16,10 @@ from bfsim.trace import CoreFrame, KernelRecord, Later, OwnerCost, RunRecord
 
 @dataclass(slots=True, kw_only=True)
 class OwnerProfile:
-    """One owner in one stage: a kernel without its callees, or without a `symbol` what no kernel does. `place` is file:line."""
+    """One owner in one stage: a kernel without its callees, or without a `symbol` what no kernel does. `place` is file:line.
+
+    A kernel has what routines of the compiler's library do for it, in the lines that call them.
+    """
 
     owner: str
     symbol: str
@@ -23,6 +27,10 @@ class OwnerProfile:
     calls: int = 0
     cost: Cost = field(default_factory=Cost)
     lines: Sequence[LineProfile] = ()
+
+
+Owners = dict[tuple[str, str], OwnerProfile]
+"""Those of a stage, by name and symbol."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -76,7 +84,7 @@ def core_frames(run: RunRecord, cores: Sequence[str]) -> Iterator[CoreFrame]:
 def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> Profile:
     """Break a run of at least one frame down, for one core or for all together, and for one stage or all of them."""
     cores, stages = cores_of(run, core), stages_in(run, stage)
-    owners: dict[str, dict[tuple[str, str], OwnerProfile]] = {}
+    owners: dict[str, Owners] = {}
     costs: dict[str, Cost] = {}
     whole = Cost()
     for frame in core_frames(run, cores):
@@ -86,11 +94,7 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
         for owner in frame.owners:
             if owner.stage in stages:
                 _add_owner(owners.setdefault(owner.stage, {}), owner)
-    for (name, kernel, symbol), records in kernel_records(run, cores).items():
-        found = owners.get(name, {}).get((kernel, symbol))
-        if found:
-            found.place = place_of(records[0])
-            found.lines = Later(partial(_lines_that_ran, records))
+    _add_kernels(owners, [each for each in run.kernels if each.core in cores and each.symbol])
     return Profile(
         cores=cores,
         frames=len(run.frames),
@@ -103,24 +107,31 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
     )
 
 
+def _add_kernels(owners: Mapping[str, Owners], kernels: Sequence[KernelRecord]) -> None:
+    """Give the owners that are kernels their lines, and what routines of the library cost to those that call them."""
+    found: dict[tuple[str, str, str], list[KernelRecord]] = {}
+    for alone, told in zip(kernels, in_callers(kernels), strict=True):
+        if mine := owners.get(told.stage, {}).get((told.kernel, told.symbol)):
+            found.setdefault((told.stage, told.kernel, told.symbol), []).append(told)
+            mine.cost.add(told.issue_cclk, told.stall_cclk)
+            mine.cost.take(alone.issue_cclk, alone.stall_cclk)
+    for (stage, kernel, symbol), records in found.items():
+        mine = owners[stage][kernel, symbol]
+        mine.place = place_of(records[0])
+        mine.lines = Later(partial(_lines_that_ran, records))
+        if mine.calls and not mine.cost.elapsed_cclk:
+            del owners[stage][kernel, symbol]  # a routine: all of it is in its callers
+
+
 def _lines_that_ran(records: Sequence[KernelRecord]) -> list[LineProfile]:
     return [each for each in lines_of(records) if each.executions or each.cost.elapsed_cclk]
-
-
-def kernel_records(run: RunRecord, cores: Sequence[str]) -> dict[tuple[str, str, str], list[KernelRecord]]:
-    """Return the records of each kernel in each stage, by stage, name and symbol."""
-    found: dict[tuple[str, str, str], list[KernelRecord]] = {}
-    for each in run.kernels:
-        if each.core in cores and each.symbol:
-            found.setdefault((each.stage, each.kernel, each.symbol), []).append(each)
-    return found
 
 
 def _dearest(owners: Iterable[OwnerProfile]) -> tuple[OwnerProfile, ...]:
     return tuple(sorted(owners, key=lambda each: -each.cost.elapsed_cclk))
 
 
-def _add_owner(owners: dict[tuple[str, str], OwnerProfile], cost: OwnerCost) -> None:
+def _add_owner(owners: Owners, cost: OwnerCost) -> None:
     key = cost.owner, cost.symbol
     found = owners.setdefault(key, OwnerProfile(owner=cost.owner, symbol=cost.symbol))
     found.calls += cost.calls

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from rich.table import Table
 
+from bfsim.report.operations import is_routine, words
 from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.costs import OwnerProfile, Profile, StageProfile
 from bfsim.report.profile.lines import LineProfile
@@ -68,8 +69,18 @@ def _add_owners(table: Table, view: View, stage: StageProfile, shown: set[int]) 
         for line in lines:
             text = f"  {line.line:4} {line.text.strip()}"
             table.add_row(text, *_runs(line.executions, line.cost), *view.cost_cells(line.cost), style="dim")
+            _add_routines(table, view, line)
     if others:
         table.add_row(f"  {others_row(len(others))}", "", "", *view.cost_cells(sum_of(others)))
+
+
+def _add_routines(table: Table, view: View, line: LineProfile) -> None:
+    """Add what the compiler's library works for a line, which is a part of that."""
+    for name, cclk in line.operations_cclk.items():
+        if is_routine(name):
+            cost = Cost(issue_cclk=cclk)
+            text = f"       {words(name)}"
+            table.add_row(text, *_runs(line.operations[name], cost), *view.cost_cells(cost), style="dim")
 
 
 def _name(owner: OwnerProfile) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePath
 
@@ -37,6 +37,18 @@ def lines_of(records: Sequence[KernelRecord]) -> tuple[LineProfile, ...]:
         for name, (count, cclk) in cost.operations.items():
             line.operations[name] += count
             line.operations_cclk[name] += cclk
+    return tuple(found[number] for number in sorted(found))
+
+
+def together(lines: Iterable[LineProfile]) -> tuple[LineProfile, ...]:
+    """Return lines of one kernel, each once with what it costs in all."""
+    found: dict[int, LineProfile] = {}
+    for each in lines:
+        mine = found.setdefault(each.line, LineProfile(line=each.line, text=each.text))
+        mine.executions += each.executions
+        mine.cost.add(each.cost.issue_cclk, each.cost.stall_cclk)
+        mine.operations.update(each.operations)
+        mine.operations_cclk.update(each.operations_cclk)
     return tuple(found[number] for number in sorted(found))
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from bfsim.report.bound import bound_of
 from bfsim.report.budget import budget_of, milliseconds
 from bfsim.report.profile.buffers import buffers_of
-from bfsim.report.profile.cost import Cost
+from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.costs import OwnerProfile, Profile, cores_of, profile_of
-from bfsim.report.profile.lines import lines_of
+from bfsim.report.profile.lines import together
 from bfsim.report.start_up import without_start_up
 from bfsim.report.waits import busy_cclk, other_core_cclk
 from bfsim.trace import REST, RunRecord, StallReason
@@ -43,7 +43,7 @@ def sentences_of(run: RunRecord, core: str | None = None, stage: str | None = No
     profile.whole = profile.cost
     if not profile.whole.elapsed_cclk:
         return first, "No kernel ran in it.", "It waited for nothing."
-    return first, _of_kernels(run, profile), _of_waits(run, profile, name, stage)
+    return first, _of_kernels(profile), _of_waits(run, profile, name, stage)
 
 
 def _busiest(run: RunRecord, stage: str | None) -> str:
@@ -93,24 +93,15 @@ def _of_frame(run: RunRecord, profile: Profile, core: str) -> str:
     return f"{_percent(profile.share(cclk))} of core {core}'s frame ({frame}) is {name}{then}."
 
 
-def _of_kernels(run: RunRecord, profile: Profile) -> str:
-    kernels: dict[str, OwnerProfile] = {}
+def _of_kernels(profile: Profile) -> str:
+    kernels: dict[str, list[OwnerProfile]] = {}
     for each in (owner for stage in profile.stages for owner in stage.owners if owner.symbol):
-        mine = kernels.setdefault(
-            each.symbol, OwnerProfile(owner=each.owner, symbol=each.symbol, place=each.place)
-        )
-        mine.calls += each.calls
-        mine.cost.add(each.cost.issue_cclk, each.cost.stall_cclk)
+        kernels.setdefault(each.symbol, []).append(each)
     if not kernels:
         return "No kernel ran in it."
-    first = max(kernels.values(), key=lambda each: each.cost.elapsed_cclk)
-    stages = {stage.stage for stage in profile.stages}
-    records = [
-        each
-        for each in run.kernels
-        if each.symbol == first.symbol and each.core in profile.cores and each.stage in stages
-    ]
-    first.lines = lines_of(records) if records else ()
+    first = _in_all_stages(
+        max(kernels.values(), key=lambda same: sum(each.cost.elapsed_cclk for each in same))
+    )
     cclk = first.cost.elapsed_cclk
     text = f"The dearest kernel is {first.owner} ({first.place}), {_percent(profile.share(cclk))}"
     if first.calls:
@@ -118,6 +109,18 @@ def _of_kernels(run: RunRecord, profile: Profile) -> str:
         calls = f"{count} {'call' if count == '1' else 'calls'} a frame of {cclk / first.calls:,.0f} cycles"
         text += f": {calls}{_of_lines(first)}"
     return f"{text}."
+
+
+def _in_all_stages(same: Sequence[OwnerProfile]) -> OwnerProfile:
+    """Return what a kernel costs in several stages together."""
+    return OwnerProfile(
+        owner=same[0].owner,
+        symbol=same[0].symbol,
+        place=same[0].place,
+        calls=sum(each.calls for each in same),
+        cost=sum_of(each.cost for each in same),
+        lines=together(line for each in same for line in each.lines),
+    )
 
 
 def _of_lines(kernel: OwnerProfile) -> str:

@@ -61,6 +61,11 @@ ROUTINES = {
 """What GCC's library calls its routines, as estimates do."""
 
 
+def is_routine(name: str) -> bool:
+    """Whether an operation is a routine of the library: it is, where it has a name that no other one has."""
+    return bool(name) and name not in WORDS
+
+
 def words(name: str) -> str:
-    """Return what an operation is called; one that has no entry is a routine of the library."""
-    return WORDS.get(name) or (f"library {ROUTINES.get(name, name)}" if name else "operations")
+    """Return what an operation is called."""
+    return f"library {ROUTINES.get(name, name)}" if is_routine(name) else WORDS.get(name, "operations")
