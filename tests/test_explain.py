@@ -160,6 +160,17 @@ def test_the_command_prints_a_table_and_json() -> None:
     assert {"line", "text", "depth", "operations", "least_cclk", "most_cclk"} <= plain["lines"][0].keys()
 
 
+def test_a_division_is_in_the_total_of_its_line() -> None:
+    """GCC's library divides, in 47 cycles behind the call: a line has them each time it ran, as the profile says."""
+    plain = json.loads(bfsim("explain", "angle8", "--run", "--frames", "1", "--json").stdout)
+    divided = [each for each in plain["lines"] if "//" in each["text"] and each["executions"]]
+    assert len(divided) == 2
+    for each in divided:
+        assert each["most_cclk"] < 47
+        own = each["total_cclk"] - 47 * each["executions"]
+        assert 0.6 * each["most_cclk"] < own / each["executions"] <= each["most_cclk"]
+
+
 def test_a_mistake_ends_with_one_paragraph_and_code_2() -> None:
     """No traceback, and nobody waits for a run."""
     done = bfsim("explain", "no_such_kernel", "--run")

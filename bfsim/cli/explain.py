@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,8 @@ def explain(
     """Print the source of KERNEL with the operations chosen for each line and their cycles.
 
     KERNEL is FILE.py:NAME, PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
-    the firmware runs and each line shows how often it was executed and its cycles in all. With --asm, the same of each instruction.
+    the firmware runs and each line shows how often it was executed and its cycles in all, with those of routines of the compiler's
+    library that it calls, such as a division. With --asm, the same of each instruction.
 
     \b
     Examples:
@@ -59,12 +61,13 @@ def _explain_lines(kernel: str, *, runs: bool, json_path: Path | None, **what: A
     """Print a kernel line by line; return the run, if there was one."""
     from bfsim.explain import explain_named
     from bfsim.report.explain_tables import explain_json, explain_report
+    from bfsim.report.library import in_callers
 
     named = kernel, what["firmware"], what["profile"]
     explanation = explain_named(*named)  # a slip in a name is told before the run
     done = simulated(**what) if runs else None
     if done:
-        explanation = explain_named(*named, done)
+        explanation = explain_named(*named, replace(done, kernels=in_callers(done.kernels)))
     tell(json_path, lambda: [explain_json(explanation)], lambda: print_report(explain_report(explanation)))
     return done
 

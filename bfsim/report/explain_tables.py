@@ -103,5 +103,8 @@ def _legend(explanation: Explanation) -> Text:
         "Operations: how many and which, with their cycles where these are not 1.",
     ]
     if explanation.calls is not None:
-        lines.append(f"Executed, Total, %: in the run, {explanation.calls:,} calls.")
+        lines += [
+            f"Executed, Total, %: in the run, {explanation.calls:,} calls.",
+            "Total: with what the compiler's library does for the line, such as a division.",
+        ]
     return Text("\n".join(lines))
