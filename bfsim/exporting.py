@@ -44,9 +44,11 @@ class Export:
 def export(firmware: str, folder: Path, *, line_directives: bool = False, force: bool = False) -> Export:
     """Write the kernels of `firmware` as C99 to `folder`, with a header and a makefile.
 
-    Raises ConfigError if a file of that name is there and `force` is not set: somebody may have changed it. Raises
-    FirmwareError if the firmware has no kernels.
+    Raises ConfigError if a file of that name is there and `force` is not set: somebody may have changed it; and if `folder` is
+    a file. Raises FirmwareError if the firmware has no kernels.
     """
+    if folder.exists() and not folder.is_dir():
+        raise ConfigError(f"{folder} must be a folder to write the files of C to, not a file")
     kernels = kernels_of(load_firmware(firmware).own)
     if not kernels:
         raise FirmwareError(

@@ -146,7 +146,8 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         advice = (
             _apart(found, place) if found else _nearest(attribute, {each.name for each in kernels_of(own)})
         )
-        raise FirmwareError(f"{cut(name)} must name one kernel, but names {len(found) or 'none'}; {advice}")
+        told = cut(name) or shown(name)  # an empty word would not be seen
+        raise FirmwareError(f"{told} must name one kernel, but names {len(found) or 'none'}; {advice}")
     return found[0]
 
 

@@ -161,7 +161,7 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
             )
     if total != len(recorded.frame_digests):
         raise WorkError(
-            f"{path} has {len(recorded.frame_digests)} frames and must be played for as many, not for {total}: see --frames"
+            f"{path} must be played for as many frames as it has, {len(recorded.frame_digests)}, not for {total}: see --frames"
         )
     if [list(each) for each in recorded.buffers] != [list(each) for each in machine.owners_of_memory]:
         raise WorkError(f"{path} must be recorded with the same buffers: record it again")

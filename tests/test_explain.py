@@ -112,6 +112,7 @@ def test_the_one_kernel_of_a_file_needs_no_name(tmp_path: Path) -> None:
             "Sobel_rwo",
             r"Sobel_rwo must name one kernel, but names none; the nearest of \d+ are sobel_row, \w+, ",
         ),
+        ("", r"^'' must name one kernel, but names none"),
         ("tinyphoon:tinyphoon", r"must name one kernel, but names none; the nearest of \d+ are"),
         (
             "clear_labels",

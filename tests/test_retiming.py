@@ -179,7 +179,7 @@ def test_an_interrupted_run_leaves_the_file_as_it_was(
 @pytest.mark.parametrize(
     ("what", "said"),
     [
-        ({"frames": 1}, r"has 2 frames and must be played for as many, not for 1"),
+        ({"frames": 1}, r"must be played for as many frames as it has, 2, not for 1"),
         ({"profile": "gcc-O2"}, r"must be recorded with the same compiler, gcc-O2, not with gcc-adi"),
     ],
 )

@@ -243,7 +243,7 @@ def test_memory_does_not_grow_with_the_pictures(home: Path) -> None:
         (
             {"board": "cm-bf533"},
             FirmwareError,
-            r"must have main loops for A, not for A, B \(board cm-bf533\)",
+            r"must have main loops for A, not for A, B \(board cm-bf533\); --board takes another",
         ),
         ({"firmware": "fw_missing:fw"}, FirmwareError, "'fw_missing' must be installed or in the folder"),
         ({"recording": Path("missing.mcap")}, RecordingError, "missing.mcap"),

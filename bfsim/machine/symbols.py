@@ -20,7 +20,10 @@ def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
     """Raise FirmwareError unless the firmware is for the cores of the board's chip."""
     if set(firmware.mains) != set(spec.chip.cores):
         cores, known = ", ".join(spec.chip.cores), ", ".join(sorted(firmware.mains))
-        raise FirmwareError(f"firmware must have main loops for {cores}, not for {known} (board {spec.name})")
+        raise FirmwareError(
+            f"firmware must have main loops for {cores}, not for {known} (board {spec.name}); --board takes another board, of "
+            "those that `bfsim boards` lists"
+        )
 
 
 def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) -> list[Symbol]:

@@ -119,10 +119,12 @@ def _images_and_others(source: str) -> tuple[list[Path], list[Path]]:
 
 
 def _matching(pattern: Path) -> list[Path]:
-    """Return the files that a pattern means; folders in it that are there have that name, brackets and all."""
+    """Return the files that a pattern means, in a folder that must be there; folders in it that are there have that name, brackets and all."""
     folder, rest = Path(pattern.anchor), list(pattern.relative_to(pattern.anchor).parts)
     while (folder / rest[0]).exists():
         folder /= rest.pop(0)
+    if not is_pattern(rest[0]):
+        raise RecordingError(f"{pattern}: the folder {folder / rest[0]} must be there, but is not")
     return list(folder.glob(str(Path(*rest))))
 
 

@@ -53,6 +53,15 @@ def test_nothing_is_overwritten_unless_asked(eyes: str, tmp_path: Path) -> None:
     assert (folder / "kernels.h").read_text() != "mine"
 
 
+def test_a_file_is_no_folder(eyes: str, tmp_path: Path) -> None:
+    """It said that the file must be writable, which it was."""
+    (tmp_path / "c").write_text("mine")
+    code, output = ran(eyes, tmp_path / "c")
+    assert code == 2
+    assert "c must be a folder to write the files of C to, not a file" in output
+    assert (tmp_path / "c").read_text() == "mine"
+
+
 @pytest.mark.parametrize("wrong", ["nosuch", "nosuch.py:firmware"])
 def test_firmware_that_is_not_there_is_named(wrong: str, tmp_path: Path) -> None:
     """The mistake is told, and no folder is made."""

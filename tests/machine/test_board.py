@@ -216,7 +216,7 @@ def camera_of(*camera: Buffer) -> Any:
     [
         (
             firmware(camera="kamera"),
-            "camera buffer 'kamera' of each core must have a multiple of 8 rows of 32 bytes",
+            "camera buffer 'kamera' of each core must have a multiple of 8 rows of 32 bytes; there is none of that name for A, B",
         ),
         (
             firmware(buffers=camera_of(Buffer("camera", u8, 32, "L1_data_a", rows=7))),

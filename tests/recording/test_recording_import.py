@@ -438,6 +438,7 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["empty"], {"mono": True}, r"empty: source must hold images \(\.bmp, .*none of its 0 files"),
         (["texts"], {"mono": True}, r"none of its 2 files is one: a\.txt, cam0/$"),
         (["two/*.jpg"], {"mono": True}, "none of its 0 files"),
+        (["nowhere/left*"], {"mono": True}, r"nowhere/left\*: the folder nowhere must be there, but is not"),
         (["nowhere"], {"mono": True}, "nowhere: source .* is not there"),
         (["nowhere.png"], {"mono": True}, r"nowhere\.png: source must be .* is not there"),
         (["nowhere.uyvy"], {"mono": True, "size": (8, 4)}, "must be a readable file: No such file"),
