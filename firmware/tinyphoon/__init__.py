@@ -29,7 +29,7 @@ from tinyphoon.view.view import view
 
 TABLE_6_4 = Reference(
     name="thesis",
-    about="average ms of a frame of 320x240 on the robot (Table 6.4 of the thesis).",
+    about="average ms of a frame of 320x240 on the robot (thesis, Table 6.4).",
 )
 
 STAGES = (
