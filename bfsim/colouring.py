@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -51,12 +52,13 @@ def coloured(
             f"{loaded.name} must have `colours` to say what it calls them, but has none; give its Firmware a "
             "colours=..., a function from a picture to a bfsim.api.PictureColours"
         )
-    told = read_script(script)[0] if script else {}
+    ask = partial(
+        _named, loaded, told=read_script(script)[0] if script else {}, script=script, frame=frame or 0
+    )
     picture = _picture(path, frame)
     patch = None if grey is None else _patch(picture, grey)
-    colours = _named(loaded, picture, told, frame or 0)
-    patch_notes = () if patch is None else _named(loaded, patch, told, frame or 0).notes
-    return Coloured(picture=picture, colours=colours, patch_notes=patch_notes)
+    colours = ask(picture)
+    return Coloured(picture=picture, colours=colours, patch_notes=() if patch is None else ask(patch).notes)
 
 
 def _picture(path: Path, frame: int | None) -> NDArray[np.uint8]:
@@ -88,13 +90,22 @@ def _patch(picture: NDArray[np.uint8], area: Area) -> NDArray[np.uint8]:
     return picture[top:bottom, left // 2 * 4 : -(-right // 2) * 4]
 
 
-def _named(loaded: LoadedFirmware, picture: NDArray[np.uint8], told: Script, frame: int) -> PictureColours:
-    """Return what the firmware makes of a picture. Raises FirmwareError where it fails, or where that cannot be drawn."""
+def _named(
+    loaded: LoadedFirmware, picture: NDArray[np.uint8], *, told: Script, script: Path | None, frame: int
+) -> PictureColours:
+    """Return what the firmware makes of a picture; `told` stands in the file `script`, if there is one.
+
+    Raises FirmwareError where it fails, or where that cannot be drawn, and ConfigError for what it says against the script.
+    """
     ask = loaded.firmware.colours
     assert ask is not None
     try:
         with loaded.own.named():
             found: object = ask(picture, told, frame)
+    except FirmwareError as error:
+        if script is None:
+            raise
+        raise ConfigError(f"{script}: {error}") from error
     except BfsimError:
         raise
     except (Exception, SystemExit) as error:

@@ -107,10 +107,11 @@ def test_a_mode_changes_what_colours_are_called(thirds: Path, tmp_path: Path) ->
 
 
 def test_an_order_that_the_chip_would_refuse_is_told(thirds: Path, tmp_path: Path) -> None:
-    """By the word, and what it may be."""
+    """By the file, the word, and what it may be."""
     script = tmp_path / "bad.json"
     script.write_text('{"send": [{"mode": {"edges": {"red_gain": 300}}}]}')
-    assert "edges.red_gain must be 16 to 255, not 300" in refused(thirds, "--script", script)
+    told = "bad.json: edges.red_gain must be 16 to 255, not 300"
+    assert told in refused(thirds, "--script", script)
 
 
 def test_the_gains_of_a_grey_patch_make_it_grey(tmp_path: Path) -> None:

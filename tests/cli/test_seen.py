@@ -161,6 +161,9 @@ def test_layers_are_some_of_what_is_drawn(tmp_path: Path) -> None:
     assert unknown.exit_code == 2
     assert "must be some of edges, blobs" in unknown.stderr
     assert "--layers must come with --overlay" in refused("--layers", "edges")
+    both = tmp_path / "seen.gif"
+    assert "seen.gif must be a file of its own" in refused("--overlay", both, "--mcap", both)
+    assert not both.exists()
 
 
 @pytest.mark.exhaustive

@@ -93,12 +93,16 @@ def watching(
 ) -> Iterator[None]:
     """Have `watchers` write the files; these are there on a clean exit, or not at all.
 
-    Raises a BfsimError for a place that cannot be written, and for layers of which nothing is drawn.
+    Raises a BfsimError for a place that cannot be written, for two files in one place, and for layers of which nothing is drawn.
     """
     if layers and not (show or overlay):
         raise ConfigError("--layers must come with --overlay DIR|FILE or --show, which draw them")
     if heat and not (show or overlay or mcap):
         raise ConfigError("--heat must come with --overlay DIR|FILE, --show or --mcap FILE, which show it")
+    if mcap:
+        from bfsim.report.save import require_apart
+
+        require_apart(mcap, (overlay,))
     with ExitStack() as stack:
         tell: list[Callable[[SeenFrame], None]] = []
         if mcap:
