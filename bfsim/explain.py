@@ -180,21 +180,22 @@ def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
 
 def _operations(line: int, counters: Sequence[Counter]) -> tuple[ExplainedOperation, ...]:
     """The operations of a line, those of both sides of its tests; a branch once for each way."""
-    counts: Tally[Op] = Tally()
+    counts: Tally[tuple[Op, int]] = Tally()
     for counter in counters:
         for each in counter.charges:
             if each.line.line == line and (each.times > 0 or counter.value is None):
-                counts[each.op] = (
-                    max(counts[each.op], each.times) if counter.value else counts[each.op] + each.times
-                )
-    cycles = {each.op: each.issue_cclk for counter in counters for each in counter.charges}
+                kind = (
+                    each.op,
+                    each.issue_cclk,
+                )  # an access that shares a bundle takes no cycle, others of the line do
+                counts[kind] = max(counts[kind], each.times) if counter.value else counts[kind] + each.times
     return tuple(
         ExplainedOperation(
             operation=op.value,
             mnemonic=MNEMONICS[op],
             count=count,
-            cclk=cycles[op],
+            cclk=cclk,
             conditional=op in BRANCHES,
         )
-        for op, count in counts.items()
+        for (op, cclk), count in counts.items()
     )
