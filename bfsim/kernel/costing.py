@@ -22,7 +22,7 @@ from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
 from bfsim.kernel.lowering.charges import Access, merged
-from bfsim.kernel.lowering.rewrites import rewritten
+from bfsim.kernel.lowering.rewrites import rewritten, rewritten_early
 from bfsim.kernel.lowering.rotations import held, released
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.narrowed_divisions import with_rounded_names
@@ -33,8 +33,9 @@ UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones firs
 CLEANING = (
     "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce", "simplify_cfg",
 )  # fmt: skip
+FIRST_PASSES = ("sroa", "simplify_cfg")
 PASSES = (
-    "sroa", "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
+    "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
     "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
 )  # fmt: skip
 LATER_PASSES = ("jump_threading", *CLEANING)
@@ -58,6 +59,8 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         return str(module)
     if inlined:
         _inline(module, function)
+    generic.run(FIRST_PASSES, module)
+    module = llvm.parse_assembly(rewritten_early(str(module), profile))
     generic.run(PASSES, module)
     module = _rotated(module, profile)
     generic.run(LATER_PASSES, module)

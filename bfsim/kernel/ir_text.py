@@ -7,8 +7,8 @@ the text that they leave. Of the notes behind an instruction, its source line an
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from bfsim.kernel.intrinsics import BY_NAME, PREFIX, Intrinsic
@@ -307,6 +307,14 @@ def _is_constant(word: str) -> bool:
 def arms_of(phi: Instruction) -> dict[str, str]:
     """Return the values of a phi by the labels of the blocks that they come from."""
     return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+
+
+def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
+    """Return an instruction that reads what `names` has in place of the values named there."""
+    if not any(name in names for name in each.operands):
+        return each
+    text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
+    return replace(each, text=text, operands=tuple(names.get(name, name) for name in each.operands))
 
 
 def predicate(compare: Instruction) -> str:

@@ -44,8 +44,6 @@ class Rule(StrEnum):
     ELIMINATED_COUNTERS = "beside neighbours, a pointer stands for a counter that only some iterations want"
     CARRIED_LOADS = "a load that the choice of an index in a loop makes redundant goes along in a register"
     SINKING = "what only the rarer side of a test needs is computed there"
-    HANDED_ON = "a minimum is one, too, where another way leads to what only hands its result on"
-    BOUNDED_VALUES = "a minimum is one, too, where LLVM tests what its value is made of"
     MERGED_LOADS = "a load from an address that several ways choose is a load on each of them"
     NEIGHBOURS = "a test for one of two neighbouring numbers is one test"
     ADDED_FLAGS = "a flag that is added is added where it is set"
@@ -79,6 +77,11 @@ class Rule(StrEnum):
     )
     CONDITIONAL_MOVES = "a choice is a branch if its register is tested or both its values are copied, and overwrites no number of a loop"
     BUNDLES = "an access shares a bundle with a 32-bit instruction that is issued in the same cycle"
+    EXTREMES = "a minimum is found before what is done with it is moved to the ways on which its values come"
+    SUNK_STORES = "stores to one place on all ways to a block are one store of a choice"
+    NARROW_CHOICES = (
+        "of a conditional expression that is stored as narrow, both sides are converted before one is chosen"
+    )
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
@@ -97,6 +100,9 @@ GCC: dict[Rule, str] = {
     Rule.PARTIAL_REDUNDANCIES: "do_pre_regular_insertion in tree-ssa-pre.cc",
     Rule.CONDITIONAL_MOVES: "cond_move_process_if_block in ifcvt.cc",
     Rule.BUNDLES: "bfin_gen_bundles in bfin.cc",
+    Rule.EXTREMES: "minmax_replacement in tree-ssa-phiopt.cc",
+    Rule.SUNK_STORES: "sink_common_stores_to_bb in tree-ssa-sink.cc",
+    Rule.NARROW_CHOICES: "factor_out_conditional_conversion in tree-ssa-phiopt.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -107,7 +113,6 @@ GCC: dict[Rule, str] = {
     Rule.EVALUATED_LOOPS: "loop_niter_by_eval in tree-ssa-loop-niter.cc",
     Rule.THREADED_EXITS: "tree-ssa-threadbackward.cc",
     Rule.ELIMINATED_COUNTERS: "may_eliminate_iv in tree-ssa-loop-ivopts.cc",
-    Rule.BOUNDED_VALUES: "minmax_replacement in tree-ssa-phiopt.cc",
     Rule.SINKING: "tree-ssa-sink.cc",
     Rule.NEIGHBOURS: "fold_range_test in fold-const.cc",
     Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
@@ -142,8 +147,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.ELIMINATED_COUNTERS: ("cocktail_sort",),
     Rule.CARRIED_LOADS: ("selection_sort",),
     Rule.SINKING: ("fill_xy",),
-    Rule.HANDED_ON: ("fir_decimate",),
-    Rule.BOUNDED_VALUES: ("brighten_corners",),
     Rule.MERGED_LOADS: ("nms_row",),
     Rule.NEIGHBOURS: ("contrast_lut",),
     Rule.ADDED_FLAGS: ("count_words",),
@@ -169,5 +172,8 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.PARTIAL_REDUNDANCIES: (),  # from kernels that are not measured here: tests/kernel/test_partial_redundancies.py
     Rule.CONDITIONAL_MOVES: ("ring_put", "nearest_words"),
     Rule.BUNDLES: ("dilate_grey_row", "crc16_table"),
+    Rule.EXTREMES: (),  # from kernels that are not measured here: tests/kernel/test_extremes.py
+    Rule.SUNK_STORES: (),
+    Rule.NARROW_CHOICES: (),
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

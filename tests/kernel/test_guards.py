@@ -53,6 +53,17 @@ def store_one_of_two(row: i32[:], i: i32):
 
 
 @kernel
+def store_one_of_three(row: i32[:], i: i32):
+    n = row[i - 1]
+    if n > 4:
+        row[i] = 4
+    elif n < 0:
+        row[i] = 0
+    else:
+        row[i] = n
+
+
+@kernel
 def put_one(row: i32[:], i: i32):
     row[i] = 1
 
@@ -222,6 +233,10 @@ def test_accesses_that_the_compiler_merges_are_told_apart_as_far_as_can_be(how: 
     number = int(place(store_one_of_two, "row[i] = 1").rsplit(":", 1)[1])
     assert f":{number}: index 8 is outside of row in kernel store_one_of_two" in message
     assert ("; or line " in message) == (how == "checked")
+    message = fails(how, store_one_of_three, row_of(np.int32), 8)
+    assert "index 8 is outside of row in kernel store_one_of_three" in message
+    first = int(place(store_one_of_three, "row[i] = 4").rsplit(":", 1)[1])
+    assert how == "sanitized" or all(str(first + line) in message for line in (0, 2, 4))
     row = row_of(np.uint8)
     arrays = "other" if how == "sanitized" else "row or other"
     assert f"index 9 is outside of {arrays} in kernel either" in fails(

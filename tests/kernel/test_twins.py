@@ -71,16 +71,7 @@ def _kind(kernel: Measured) -> Role | str:
         (Role.REFERENCE, "O0", 0.1, 1),
         (Role.FIT, "O0", 1, 15),
         (Role.HELD_OUT, "O0", 2, 15),
-        pytest.param(
-            Role.REFERENCE,
-            "O2",
-            2,
-            7,
-            marks=pytest.mark.xfail(
-                strict=True,
-                reason="label_row is 7.04 % off: its branches are GCC's now, and no longer make up for moves that are missing",
-            ),
-        ),
+        (Role.REFERENCE, "O2", 2, 7),
         (Role.FIT, "O2", 6, 37),
         (Role.HELD_OUT, "O2", 5, 25),
         ("ff3cdd1", "O0", 2, 10),

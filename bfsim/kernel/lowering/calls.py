@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from bfsim.kernel import isa
-from bfsim.kernel.divisions import FLOOR
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
@@ -71,8 +71,7 @@ class Calls:
         elif "@llvm.bitreverse" in each.text or "@llvm.bswap" in each.text:
             self._swap_bits(each)
         elif "@llvm.umin" in each.text or "@llvm.umax" in each.text:
-            self.append(Op.COMPARE, each, None, DATA, *values)
-            self.append(Op.COND_MOVE, each, each.result, DATA, *values, overwrites=(each.operands[0],))
+            self._unsigned_extreme(each, values)
         elif "@llvm.fsh" in each.text:
             self.append(Op.SHIFT, each, f"{each.result}.half", DATA, values[0])
             self.append(Op.SHIFT, each, f"{each.result}.half2", DATA, values[0])
@@ -81,6 +80,15 @@ class Calls:
             )
         else:
             self.append(Op.DSP_ALU, each, each.result, DATA, *values)
+
+    def _unsigned_extreme(self, each: Instruction, values: tuple[tuple[str, RegisterBank], ...]) -> None:
+        """A comparison and a conditional move, which overwrites either operand."""
+        (left, _), (right, _) = values
+        if right.lstrip("-").isdigit() and int(right) not in isa.COMPARE_UNSIGNED_IMMEDIATE:
+            self.code.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
+            right = f"{each.result}.bound"
+        self.append(Op.COMPARE, each, None, DATA, (left, DATA), (right, DATA))
+        self.append(Op.COND_MOVE, each, each.result, DATA, *values, overwrites=(left, values[1][0]))
 
     def _instructions(self, each: Instruction, ops: tuple[Op, ...]) -> None:
         """The instructions of an intrinsic, all of which are told to need its operands."""
@@ -174,7 +182,7 @@ class Calls:
         if not self.context.demanded.divides_by_call(each):
             self._divide_by_constant(each)
             return
-        if FLOOR in (each.result or "") and self.context.demanded.has_quotient(each):
+        if self.context.demanded.rounds_down(each):
             self.append(Op.MUL32, each, f"{each.result}.back", DATA, (each.operands[1], DATA))
             self.append(
                 Op.ALU, each, each.result, DATA, (each.operands[0], DATA), (f"{each.result}.back", DATA)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.narrow_choices import is_computed_narrow, stored_bits
 from bfsim.kernel.lowering.widths import WORD
 
 CASTS = ("trunc", "zext", "sext", "freeze")
@@ -18,7 +19,7 @@ def is_conditional_move(
     flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
 ) -> bool:
     """Whether the choice `phi` between two `values` is one, behind a comparison of those in `tested`."""
-    if _is_narrow(flow, phi):
+    if _is_narrow(flow, phi) and not (tested.issuperset(values) and _is_left(flow, phi, values)):
         tested = frozenset()  # wide, in a register of its own
     carried = {each for each in _carried(flow, phi) if not _is_wanted_behind(flow, each, phi)}
     registers = {each for each in values if each.startswith("%")}
@@ -26,6 +27,14 @@ def is_conditional_move(
     sharing = sorted(free, key=lambda each: (each not in carried, each in tested))[:1]
     copied = registers - {*sharing}
     return len(copied) < 2 and tested.isdisjoint({*sharing} | carried)
+
+
+def _is_left(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
+    """Whether a narrow minimum or maximum is left a branch: of two values, or of one that a side computes as narrow."""
+    found = [flow.instruction(each) for each in values if each.startswith("%")]
+    return len(found) == len(values) or any(
+        each is not None and is_computed_narrow(flow, each, stored_bits(flow, phi)) for each in found
+    )
 
 
 def _is_narrow(flow: ControlFlow, phi: Instruction) -> bool:

@@ -233,6 +233,12 @@ class DemandedValues(Folding):
             for each in block.instructions
         )
 
+    def rounds_down(self, rest: Instruction) -> bool:
+        """Whether a remainder only tells whether a quotient is rounded down; LLVM makes it one with that of `%`, which C calls the library for."""
+        users = self.users(rest.result or "")
+        only_asked = all(each.opcode in ("icmp", "xor", "ashr", "lshr") for each in users)
+        return FLOOR in (rest.result or "") and only_asked and self.has_quotient(rest)
+
     def divides_by_call(self, each: Instruction) -> bool:
         """Whether a division calls the library; the others are products with a reciprocal."""
         if divided_by_power(each):
@@ -333,7 +339,9 @@ class DemandedValues(Folding):
     def _is_raw(self, user: Instruction) -> bool:
         """Whether a use takes the narrow value as it is: a store, its low byte, or arithmetic that is stored as narrow."""
         low_byte = user.opcode == "and" and user.operands[1] == "255" and self.profile.applies(Rule.RAW_BYTE)
-        return user.opcode == "store" or low_byte or self.narrowed(user)
+        chosen = user.opcode == "phi" and user.bits in NARROW and self.profile.applies(Rule.NARROW_CHOICES)
+        stored = chosen and all(each.opcode == "store" for each in self.users(user.result or ""))
+        return user.opcode == "store" or low_byte or stored or self.narrowed(user)
 
     def narrowed(self, each: Instruction) -> bool:
         """Whether a sum is stored as a narrow value and used as a wide one: C compilers compute it twice."""

@@ -11,8 +11,8 @@ from enum import Enum, auto
 
 from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.bounded_values import bound_of
 from bfsim.kernel.lowering.conditional_moves import is_conditional_move
+from bfsim.kernel.lowering.narrow_choices import is_narrowed, stored_bits
 from bfsim.kernel.lowering.widths import BYTE, WORD
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -76,7 +76,7 @@ class IfConversion:
         if block.terminator.opcode != "br" or len(set(block.successors)) != 2:
             return None
         yes, no = block.successors
-        arms = [way for way in (yes, no) if self._is_arm(way, label) or self._only_renames(way)]
+        arms = [way for way in (yes, no) if self._is_arm(way, label)]
         ends = {self.flow.blocks[way].successors[0] if way in arms else way for way in (yes, no)}
         if not arms or len(ends) != 1:
             return None
@@ -85,27 +85,12 @@ class IfConversion:
         phis = [each for each in self.flow.blocks[join].instructions if each.opcode == "phi"]
         choices: list[tuple[Instruction, str, str]] = []
         for each in phis:
-            chosen, other = (self._chosen(each, source, label) for source in sources)
+            chosen, other = (self._plain(_arm_value(each, source), each) for source in sources)
             if chosen != other:
                 choices.append((each, chosen, other))
         if len(choices) != 1:
             return None
-        return self._of_choice(label, frozenset(arm for arm in arms if self._is_arm(arm, label)), *choices[0])
-
-    def _chosen(self, phi: Instruction, source: str, label: str) -> str:
-        """What a phi takes over from `source`, a side of the test in block `label`."""
-        value = self._plain(_arm_value(phi, source), phi)
-        if source == label or self._is_arm(source, label) or self.flow.defined.get(value, ("",))[0] != source:
-            return value
-        return self._plain(_arm_value(self.flow.defined[value][1], label), phi)
-
-    def _only_renames(self, way: str) -> bool:
-        """Whether a block that several ways lead to only hands values on: of the way from the test, it is no block at all."""
-        rows = self.flow.blocks[way].instructions
-        alone = len(set(self.flow.blocks[way].successors)) == 1 and len(self.flow.predecessors[way]) > 1
-        is_header = any(loop.header == way for loop in self.flow.loops)
-        hands_on = alone and not is_header and all(each.opcode in ("phi", *RENAMING) for each in rows[:-1])
-        return hands_on and self.profile.applies(Rule.HANDED_ON)
+        return self._of_choice(label, frozenset(arms), *choices[0])
 
     def _clamp(self, label: str) -> ConvertedIf | None:
         """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""
@@ -174,31 +159,31 @@ class IfConversion:
         if "0" in (yes, no) and _is_bit(no if yes == "0" else yes):
             return ConvertedIf(ConversionKind.SHIFTED_FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in self._bounds(test)}
-        if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
+        of_loads = all(self._is_narrow_load(each) for each in (yes, no))
+        narrows = self.profile.applies(Rule.NARROW_CHOICES)
+        is_extreme = {yes, no} <= bounds and (of_loads or not (narrows and is_narrowed(self.flow, phi)))
+        unsigned = predicate(test)[0] == "u"
+        of_bytes = narrows and of_loads and unsigned
+        if is_extreme and not of_bytes and (predicate(test)[0] == "s" or self._is_positive(test)):
             return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
-        moves = not self.profile.applies(Rule.CONDITIONAL_MOVES) or is_conditional_move(
-            self.flow, phi, (yes, no), frozenset(bounds)
+        is_moved = is_extreme and unsigned and (not of_bytes or stored_bits(self.flow, phi) < WORD)
+        moves = (
+            not self.profile.applies(Rule.CONDITIONAL_MOVES)
+            or is_moved
+            or is_conditional_move(self.flow, phi, (yes, no), frozenset(bounds))
         )
         return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms) if moves else None
+
+    def _is_narrow_load(self, value: str) -> bool:
+        each = self.flow.instruction(value)
+        return each is not None and each.opcode == "load" and each.bits < WORD
 
     def _bounds(self, test: Instruction) -> tuple[str, ...]:
         """What a comparison with a constant bounds, by values that are there before it: LLVM writes x <= 255 as x < 256."""
         tested, bound = test.operands
         if not bound.lstrip("-").isdigit():
             return test.operands
-        found = {tested: int(bound)} | {
-            each.result or "": limit
-            for each in self._bounded(test)
-            if (limit := bound_of(test, each)) is not None
-        }
-        near = {str(limit + beside) for limit in found.values() for beside in (-1, 0, 1)}
-        return (*found, *sorted(near))
-
-    def _bounded(self, test: Instruction) -> list[Instruction]:
-        """Values made of what is tested, in the block of the test."""
-        label, _ = self.flow.defined[test.result or ""]
-        made = self.flow.users[test.operands[0]]
-        return [each for each in made if self.flow.defined.get(each.result or "", ("",))[0] == label]
+        return (tested, *(str(int(bound) + beside) for beside in (-1, 0, 1)))
 
     def _is_positive(self, test: Instruction) -> bool:
         """Whether an unsigned comparison is as good as a signed one: LLVM makes them of values that are never negative."""

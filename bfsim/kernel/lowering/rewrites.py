@@ -8,25 +8,32 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
-from bfsim.kernel.lowering.bounded_values import bound_values
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
+from bfsim.kernel.lowering.extremes import with_extremes
 from bfsim.kernel.lowering.factored_sums import factor_sums
 from bfsim.kernel.lowering.final_values import with_final_values
 from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
+from bfsim.kernel.lowering.known_answers import with_known_answers
 from bfsim.kernel.lowering.lagging_counters import without_lagging
 from bfsim.kernel.lowering.merged_stores import merge_stores
+from bfsim.kernel.lowering.narrow_tests import with_narrow_tests
 from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
+from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
 from bfsim.kernel.lowering.short_circuits import split_tests
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
+from bfsim.kernel.lowering.sunk_stores import with_sunk_stores
+from bfsim.kernel.lowering.wide_extremes import widen_extremes
+from bfsim.kernel.lowering.widths import WORD
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    widen_extremes,
     without_lagging,
     factor_sums,
     split_tests,
@@ -40,7 +47,6 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     carry_over,
     sink,
     hoist_loads,
-    bound_values,
     with_final_values,
 )
 """In this order."""
@@ -54,16 +60,37 @@ SWITCHES = {
     sink: Rule.SINKING,
     copy_headers: Rule.COPIED_HEADERS,
     copy_breaks: Rule.COPIED_BREAKS,
-    bound_values: Rule.BOUNDED_VALUES,
     with_final_values: Rule.FINAL_VALUES,
 }
 """Those that can be left out."""
 
 
+def rewritten_early(text: str, profile: CompilerProfile) -> str:
+    """Return the module `text`, in which variables are registers and nothing else was done yet, after what compilers do first."""
+    text = _each(with_names(text), lambda routine: _rewritten_early(routine, profile))
+    names = (f"i{WORD} @llvm.{sign}{name}.i{WORD}" for sign in "su" for name in ("min", "max"))
+    missing = (f"declare {each}(i{WORD}, i{WORD})" for each in names if f"declare {each}" not in text)
+    return "\n".join((text, *missing))
+
+
+def _rewritten_early(routine: Routine, profile: CompilerProfile) -> Routine:
+    routine = without_repeated_loads(routine)
+    if profile.applies(Rule.NARROW_CHOICES):
+        routine = with_narrow_tests(routine)
+    if profile.applies(Rule.SUNK_STORES):
+        routine = with_sunk_stores(routine)
+    if profile.applies(Rule.EXTREMES):
+        routine = with_extremes(routine, narrows=profile.applies(Rule.NARROW_CHOICES))
+    return with_known_answers(routine)
+
+
 def rewritten(text: str, profile: CompilerProfile) -> str:
     """Return the module `text` after all rewrites of each of its routines that `profile` applies."""
-    text = with_names(text)
-    return write_module(text, [_rewritten(each, profile) for each in read_module(text)])
+    return _each(with_names(text), lambda routine: _rewritten(routine, profile))
+
+
+def _each(text: str, rewrite: Callable[[Routine], Routine]) -> str:
+    return write_module(text, [rewrite(each) for each in read_module(text)])
 
 
 def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:

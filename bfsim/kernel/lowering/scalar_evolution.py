@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import PHI_ARM
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.evaluated_iterations import evaluated_iterations
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
@@ -180,7 +180,19 @@ class ScalarEvolution:
         if gain is None or start is None or not gain.constant or gain.symbolic:
             return None
         distance = self.affine(test.operands[1]).plus(start, -1)
-        return None if distance.terms else max(0, distance.constant // gain.constant) + 1
+        if distance.terms:
+            return None
+        if self._goes_on_at(test, loop):
+            return 1 + (distance.constant == 0)
+        return max(0, distance.constant // gain.constant) + 1
+
+    def _goes_on_at(self, test: Instruction, loop: Loop) -> bool:
+        """Whether `loop` goes on only where the counter equals its bound, as LLVM tests for the first of two iterations."""
+        if predicate(test) not in ("eq", "ne"):
+            return False
+        ends = (self.flow.blocks[label] for label in self.flow.exits(loop))
+        branch = next((each for each in ends if each.terminator.operands[:1] == (test.result,)), None)
+        return branch is not None and (branch.successors[0] in loop.blocks) == (predicate(test) == "eq")
 
     def _evaluated(self, test: str, loop: Loop) -> int | None:
         return evaluated_iterations(self.flow, loop, test) if self.evaluates else None

@@ -1,0 +1,128 @@
+"""A test whose answer an earlier one of the same two values gives on one way is asked on the other alone [pass_thread_jumps of GCC 12].
+
+Behind `if g > most: most = g`, where `most` was r, comes `if g < least: least = g`, where `least` was r, too. LLVM's jump threading knows
+what a phi of constants answers, and no relations: so the answers of both ways are made such a phi.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from bfsim.kernel.ir_text import Instruction, Routine, predicate, renamed
+from bfsim.kernel.loops import ControlFlow
+
+EXTENSIONS = ("sext", "zext")
+EXCLUDED = {"sgt": ("slt", "sle"), "slt": ("sgt", "sge"), "ugt": ("ult", "ule"), "ult": ("ugt", "uge")}
+"""Which relations of two values cannot hold where one does."""
+SWAPPED = {
+    "sgt": "slt",
+    "sge": "sle",
+    "slt": "sgt",
+    "sle": "sge",
+    "ugt": "ult",
+    "uge": "ule",
+    "ult": "ugt",
+    "ule": "uge",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """A `test` that is false on the way from block `asked` by block `arm` to block `join`, and known nowhere else."""
+
+    test: Instruction
+    asked: str
+    arm: str
+    join: str
+
+
+def with_known_answers(routine: Routine) -> Routine:
+    """Return `routine` with a phi of its answers in place of each such test."""
+    while True:
+        flow = ControlFlow(routine)
+        found = next(filter(None, (_known(flow, label) for label in flow.order)), None)
+        if found is None:
+            return routine
+        routine = _answered(flow, found)
+
+
+def _known(flow: ControlFlow, label: str) -> _Known | None:
+    block = flow.blocks[label]
+    first = flow.instruction(block.terminator.operands[0]) if len(set(block.successors)) == 2 else None
+    if first is None or first.opcode != "icmp" or predicate(first) not in EXCLUDED:
+        return None
+    arm, join = block.successors  # where it holds, and where not
+    if (
+        flow.predecessors[arm] != [label]
+        or set(flow.blocks[arm].successors) != {join}
+        or set(flow.predecessors[join]) != {arm, label}
+    ):
+        return None
+    pair = _values(flow, first)
+    for test in _tests_behind(flow, join):
+        relation = predicate(test)
+        if _values(flow, test) == pair[::-1]:
+            relation = SWAPPED.get(relation, relation)
+        elif _values(flow, test) != pair:
+            continue
+        if relation in EXCLUDED[predicate(first)] and all(
+            _is_there(flow, each, label) for each in test.operands
+        ):
+            return _Known(test, label, arm, join)
+    return None
+
+
+def _tests_behind(flow: ControlFlow, join: str) -> Iterator[Instruction]:
+    for label in flow.order:
+        end = flow.blocks[label].terminator
+        test = flow.instruction(end.operands[0]) if join in flow.dominators[label] and end.operands else None
+        if test is not None and test.opcode == "icmp" and flow.users[test.result or ""] == [end]:
+            yield test
+
+
+def _values(flow: ControlFlow, test: Instruction) -> tuple[str, ...]:
+    """What is compared, whatever makes words of it."""
+    found = []
+    for operand in test.operands:
+        each = flow.instruction(operand)
+        found.append(each.text if each is not None and each.opcode in EXTENSIONS else operand)
+    return tuple(found)
+
+
+def _is_there(flow: ControlFlow, value: str, label: str) -> bool:
+    """Whether a value is there at the end of a block, or is made of one that is."""
+    each = flow.instruction(value)
+    if each is not None and each.opcode in EXTENSIONS:
+        value = each.operands[0]
+    home = flow.defined.get(value)
+    return home is None or home[0] in flow.dominators[label]
+
+
+def _answered(flow: ControlFlow, known: _Known) -> Routine:
+    test = known.test
+    name, asked = f"{test.result}.known", f"{test.result}.asked"
+    rows: list[Instruction] = []
+    names = dict[str, str]()
+    for operand in test.operands:
+        each = flow.instruction(operand)
+        if each is not None and each.opcode in EXTENSIONS:
+            names[operand] = f"{operand}.asked"
+            rows.append(replace(each, result=names[operand]))
+    rows.append(replace(renamed(test, names), result=asked))
+    phi = replace(
+        test,
+        result=name,
+        opcode="phi",
+        text=f"phi i1 [ false, %{known.arm} ], [ {asked}, %{known.asked} ]",
+        operands=("false", asked),
+    )
+    blocks = []
+    for block in flow.routine.blocks:
+        own = [renamed(each, {test.result or "": name}) for each in block.instructions if each is not test]
+        if block.label == known.asked:
+            own = [*own[:-1], *rows, own[-1]]
+        elif block.label == known.join:
+            own = [phi, *own]
+        blocks.append(replace(block, instructions=tuple(own)))
+    return replace(flow.routine, blocks=tuple(blocks))
