@@ -9,7 +9,6 @@ simulator's. At the end is how fast both are: simulated cycles a second of the h
 
 from __future__ import annotations
 
-import argparse
 import subprocess
 import tempfile
 import time
@@ -20,6 +19,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.given_names import given_names
 from benchmarks.twins.measure import FLAGS, SOURCES
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.event import Event
@@ -105,11 +105,7 @@ def simulated(program: Path) -> Run:
 def main() -> None:
     """Compare the programs; the last line sums them up."""
     known = [each.stem.removeprefix("k_") for each in sorted(SOURCES.glob("k_*.c"))]
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("names", nargs="*", metavar="NAME", choices=known, help="of a kernel (default: all)")
-    names = parser.parse_args().names or known
+    names = given_names(__doc__, known) or known
     equal = total = 0
     cclk = there_seconds = here_seconds = 0.0
     with tempfile.TemporaryDirectory() as folder:

@@ -179,15 +179,15 @@ def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
 
 
 def _operations(line: int, counters: Sequence[Counter]) -> tuple[ExplainedOperation, ...]:
-    """The operations of a line, those of both sides of its tests; a branch once for each way."""
+    """The operations of a line, those of both sides of its tests; a branch once for each way.
+
+    An access that shares a bundle takes no cycle, so that one operation may have several numbers of them.
+    """
     counts: Tally[tuple[Op, int]] = Tally()
     for counter in counters:
         for each in counter.charges:
             if each.line.line == line and (each.times > 0 or counter.value is None):
-                kind = (
-                    each.op,
-                    each.issue_cclk,
-                )  # an access that shares a bundle takes no cycle, others of the line do
+                kind = each.op, each.issue_cclk
                 counts[kind] = max(counts[kind], each.times) if counter.value else counts[kind] + each.times
     return tuple(
         ExplainedOperation(

@@ -9,7 +9,6 @@ with calls; `c/twin.h` says what the variants are. The simulator charges cycles 
 
 from __future__ import annotations
 
-import argparse
 import json
 import tempfile
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from typing import Any
 from benchmarks.firmware_twins.measured import MEASURED
 from benchmarks.firmware_twins.recorded import recorded
 from benchmarks.firmware_twins.twins import TWINS, of_all
+from benchmarks.given_names import given_names
 from bfsim.api import Kernel
 from bfsim.compiling.toolchain import Toolchain, blackfin_toolchain
 from bfsim.verifying.player import entries_of, write_player
@@ -93,17 +93,7 @@ def options_of(variant: str) -> tuple[str, ...]:
 
 def main() -> None:
     """Measure the kernels and write their entries."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument(
-        "names",
-        nargs="*",
-        metavar="NAME",
-        choices=[each.name for each in TWINS],
-        help="of a kernel (default: all)",
-    )
-    names = parser.parse_args().names
+    names = given_names(__doc__, [each.name for each in TWINS])
     measured: dict[str, Any] = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
         for kernel in TWINS:

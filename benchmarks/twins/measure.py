@@ -9,7 +9,6 @@ GNU simulator 13.1). The simulator charges cycles without memory, cache or inter
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 import subprocess
@@ -17,6 +16,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from benchmarks.given_names import given_names
 from benchmarks.twins.case import Case
 from benchmarks.twins.cases import CASES
 from benchmarks.twins.exported import played
@@ -104,17 +104,7 @@ def _output(*command: str | Path) -> str:
 
 def main() -> None:
     """Measure the kernels and write their entries; what is kept of a kernel is written once, when it is new."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument(
-        "names",
-        nargs="*",
-        metavar="NAME",
-        choices=[each.name for each in CASES],
-        help="of a kernel (default: all)",
-    )
-    names = parser.parse_args().names
+    names = given_names(__doc__, [each.name for each in CASES])
     if missing := missing_tools():
         raise SystemExit(f"a bfin-elf toolchain must be on PATH; not found: {', '.join(missing)}")
     measured: dict[str, Any] = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}

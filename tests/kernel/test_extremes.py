@@ -177,3 +177,11 @@ def test_narrow_choices_are_gccs_alone(tmp_path: Path) -> None:
     text = CASES["the larger byte, added up"][0].lstrip()
     assert lowered(text, tmp_path, VDSP_O2)[Op.DSP_ALU] == 1
     assert lowered(text, tmp_path, GCC_O2)[Op.DSP_ALU] == 0
+
+
+def test_places_of_long_computations_are_compared(tmp_path: Path) -> None:
+    """Each value is numbered once: as an expression, forty squares would be longer than memory."""
+    squares = "    x = x * x\n" * 40
+    text = f"@kernel\ndef f(a: i32[:], n: i32) -> i32:\n    x = n\n{squares}    return a[x & 7] + a[x & 7]\n"
+    kernel = import_text(text, tmp_path).f
+    assert run(kernel, np.arange(8, dtype=np.int32), 3, profile=GCC_O2).value == 2 * (pow(3, 2**40, 8))

@@ -19,7 +19,7 @@ def is_conditional_move(
     flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
 ) -> bool:
     """Whether the choice `phi` between two `values` is one, behind a comparison of those in `tested`."""
-    if _is_narrow(flow, phi) and not (tested.issuperset(values) and _is_left(flow, phi, values)):
+    if _is_narrow(flow, phi) and not (tested.issuperset(values) and _stays_a_branch(flow, phi, values)):
         tested = frozenset()  # wide, in a register of its own
     carried = {each for each in _carried(flow, phi) if not _is_wanted_behind(flow, each, phi)}
     registers = {each for each in values if each.startswith("%")}
@@ -29,8 +29,8 @@ def is_conditional_move(
     return len(copied) < 2 and tested.isdisjoint({*sharing} | carried)
 
 
-def _is_left(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
-    """Whether a narrow minimum or maximum is left a branch: of two values, or of one that a side computes as narrow."""
+def _stays_a_branch(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
+    """Whether a narrow minimum or maximum stays a branch: of two values, or of one that a side computes as narrow."""
     found = [flow.instruction(each) for each in values if each.startswith("%")]
     return len(found) == len(values) or any(
         each is not None and is_computed_narrow(flow, each, stored_bits(flow, phi)) for each in found

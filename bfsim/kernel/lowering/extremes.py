@@ -77,7 +77,7 @@ def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice |
     if len(differing) != 1 or differing[0][0].bits != WORD:
         return None
     phi, yes, no = differing[0]
-    if narrows and _is_left(flow, phi, yes, no):
+    if narrows and _is_none(flow, phi, yes, no):
         return None
     rows = tuple(row for arm in arms for row in flow.blocks[arm].instructions[:-1])
     name = _nested(flow, comparison, yes, no, rows[0]) if rows else _plain(comparison, yes, no)
@@ -121,7 +121,7 @@ def _comparison(test: Instruction) -> _Comparison | None:
     return _Comparison(left, sign, kind, bounds)
 
 
-def _is_left(flow: ControlFlow, phi: Instruction, yes: str, no: str) -> bool:
+def _is_none(flow: ControlFlow, phi: Instruction, yes: str, no: str) -> bool:
     """Whether a choice of narrow values is no extreme, or one of unsigned numbers, of which there is no instruction."""
     unsigned = stored_bits(flow, phi) < WORD and all(_is_unsigned(flow, each) for each in (yes, no))
     return unsigned or (is_narrowed(flow, phi) and not is_narrowed_behind(flow, phi, yes, no))

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate, renamed
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
 from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.jump_threading import JumpThreading
@@ -18,7 +18,6 @@ from bfsim.kernel.lowering.short_circuits import SECOND
 
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
-NAME = re.compile(r"%[\w.$-]+")
 TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
 
 
@@ -169,7 +168,7 @@ class _Rotation:
         rows = []
         for each in self.rows:
             known = {name: value for name, value in values.items() if name != each.result}
-            row = _renamed(each, known)
+            row = renamed(each, known)
             rows.append(replace(row, result=values[each.result]) if own and each.result else row)
         if own and self.is_sure:
             rows[-1] = replace(rows[-1], text=f"br label %{self.inside}", operands=(), weights=(), hint="")
@@ -185,7 +184,7 @@ class _Rotation:
         else:
             names = {}
         rows = [
-            self._phi(each, names, block.label) if each.opcode == "phi" else _renamed(each, names)
+            self._phi(each, names, block.label) if each.opcode == "phi" else renamed(each, names)
             for each in block.instructions
         ]
         if names and block.label in (self.inside, self.way_out):
@@ -250,13 +249,6 @@ def _holds(relation: str, values: list[str]) -> bool | None:
         "gt": left > right,
         "ge": left >= right,
     }[relation[-2:]]
-
-
-def _renamed(each: Instruction, names: dict[str, str]) -> Instruction:
-    if not names.keys() & set(each.operands):
-        return each
-    text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
-    return replace(each, text=text, operands=tuple(names.get(value, value) for value in each.operands))
 
 
 def _type(each: Instruction) -> str:

@@ -166,10 +166,10 @@ class IfConversion:
         of_bytes = narrows and of_loads and unsigned
         if is_extreme and not of_bytes and (predicate(test)[0] == "s" or self._is_positive(test)):
             return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
-        is_moved = is_extreme and unsigned and (not of_bytes or stored_bits(self.flow, phi) < WORD)
+        is_unsigned_extreme = is_extreme and unsigned and (not of_bytes or stored_bits(self.flow, phi) < WORD)
         moves = (
             not self.profile.applies(Rule.CONDITIONAL_MOVES)
-            or is_moved
+            or is_unsigned_extreme
             or is_conditional_move(self.flow, phi, (yes, no), frozenset(bounds))
         )
         return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms) if moves else None

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 from bfsim.kernel.ir_text import Instruction, Routine, predicate, renamed
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.narrow_choices import is_extended
 
-EXTENSIONS = ("sext", "zext")
 EXCLUDED = {"sgt": ("slt", "sle"), "slt": ("sgt", "sge"), "ugt": ("ult", "ule"), "ult": ("ugt", "uge")}
 """Which relations of two values cannot hold where one does."""
 SWAPPED = {
@@ -86,14 +86,14 @@ def _values(flow: ControlFlow, test: Instruction) -> tuple[str, ...]:
     found = []
     for operand in test.operands:
         each = flow.instruction(operand)
-        found.append(each.text if each is not None and each.opcode in EXTENSIONS else operand)
+        found.append(each.text if each is not None and is_extended(each) else operand)
     return tuple(found)
 
 
 def _is_there(flow: ControlFlow, value: str, label: str) -> bool:
     """Whether a value is there at the end of a block, or is made of one that is."""
     each = flow.instruction(value)
-    if each is not None and each.opcode in EXTENSIONS:
+    if each is not None and is_extended(each):
         value = each.operands[0]
     home = flow.defined.get(value)
     return home is None or home[0] in flow.dominators[label]
@@ -106,7 +106,7 @@ def _answered(flow: ControlFlow, known: _Known) -> Routine:
     names = dict[str, str]()
     for operand in test.operands:
         each = flow.instruction(operand)
-        if each is not None and each.opcode in EXTENSIONS:
+        if each is not None and is_extended(each):
             names[operand] = f"{operand}.asked"
             rows.append(replace(each, result=names[operand]))
     rows.append(replace(renamed(test, names), result=asked))

@@ -16,7 +16,7 @@ UNSIGNED = {"sgt": "ugt", "sge": "uge", "slt": "ult", "sle": "ule"}
 
 
 def with_narrow_tests(routine: Routine) -> Routine:
-    """Return `routine` with such comparisons, and without extensions that only hand a value on which is a word already."""
+    """Return `routine` with such comparisons, and without a second extension of what is a word already."""
     flow = ControlFlow(routine)
     return _without_copies(_mapped(routine, lambda each: _narrowed(flow, each)))
 

@@ -11,31 +11,16 @@ from dataclasses import replace
 
 from bfsim.kernel.ir_text import Routine, renamed
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.value_numbers import ValueNumbers
 
-COMPUTED = (
-    "getelementptr",
-    "add",
-    "sub",
-    "mul",
-    "shl",
-    "lshr",
-    "ashr",
-    "and",
-    "or",
-    "xor",
-    "sext",
-    "zext",
-    "trunc",
-)
-"""What a place is computed with."""
-
-Key = tuple[object, ...]
+Loaded = dict[tuple[str, str], str]
+"""What was loaded last, by its kind and its place."""
 
 
 def without_repeated_loads(routine: Routine) -> Routine:
     """Return `routine` with the first of such loads in place of each."""
     flow = ControlFlow(routine)
-    same = _Repeated(flow).found()
+    same = _repeated(flow)
     if not same:
         return routine
     blocks = []
@@ -45,46 +30,29 @@ def without_repeated_loads(routine: Routine) -> Routine:
     return replace(routine, blocks=tuple(blocks))
 
 
-class _Repeated:
-    """Finds loads again that all ways to a block bring; of a way back, none."""
-
-    def __init__(self, flow: ControlFlow) -> None:
-        self.flow = flow
-        self.same: dict[str, str] = {}
-        self.keys: dict[str, Key | str] = {}
-
-    def found(self) -> dict[str, str]:
-        """Return the first load for each other one."""
-        known: dict[str, dict[Key, str]] = {}
-        for label in self.flow.order:
-            here = _in_all([known.get(each, {}) for each in self.flow.predecessors[label]])
-            for each in self.flow.blocks[label].instructions:
-                if each.opcode == "store" or each.is_call:
-                    here = {}
-                elif each.opcode == "load" and each.result:
-                    place = each.text.split(",")[0], self._key(each.operands[0])
-                    first = here.setdefault(place, each.result)
-                    if first != each.result:
-                        self.same[each.result] = first
-            known[label] = here
-        return self.same
-
-    def _key(self, value: str) -> Key | str:
-        """What a value is computed with, the same for all that are."""
-        value = self.same.get(value, value)
-        if value not in self.keys:
-            each = self.flow.instruction(value)
-            key: Key | str = value
-            if each is not None and each.opcode in COMPUTED:
-                kinds = tuple(word for word in each.text.split() if not word.startswith("%"))
-                key = (*kinds, *(self._key(operand) for operand in each.operands))
-            self.keys[value] = key
-        return self.keys[value]
+def _repeated(flow: ControlFlow) -> dict[str, str]:
+    """Return the first load for each other one that all ways to it bring; of a way back, none."""
+    numbers = ValueNumbers()
+    same: dict[str, str] = {}
+    known: dict[str, Loaded] = {}
+    for label in flow.order:
+        here = _in_all([known.get(each, {}) for each in flow.predecessors[label]])
+        for each in flow.blocks[label].instructions:
+            numbers.add(each)
+            if each.opcode == "store" or each.is_call:
+                here = {}
+            elif each.opcode == "load" and each.result:
+                place = each.text.split(",")[0], numbers.of(each.operands[0])
+                first = here.setdefault(place, each.result)
+                if first != each.result:
+                    same[each.result] = first
+                    numbers.equate(each.result, first)
+        known[label] = here
+    return same
 
 
-def _in_all(tables: Sequence[dict[Key, str]]) -> dict[Key, str]:
-    return (
-        {key: value for key, value in tables[0].items() if all(each.get(key) == value for each in tables)}
-        if tables
-        else {}
-    )
+def _in_all(tables: Sequence[Loaded]) -> Loaded:
+    first = tables[0] if tables else {}
+    return {
+        place: value for place, value in first.items() if all(each.get(place) == value for each in tables)
+    }
