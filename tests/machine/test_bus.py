@@ -110,17 +110,17 @@ def test_a_core_at_l2_never_meets_the_bus() -> None:
 # ---- Devices
 
 
-def receive(bench: Bench, nbytes: int = 400) -> Transfer:
+def receive(bench: Bench, nbytes: int = 400, master: int = w.PPI0, word_ticks: int = WORD_TICKS) -> Transfer:
     """Let a camera write a word every 20 cycles to the second bank."""
     words = nbytes // 4
     target = bench.row(OTHER_BANK, nbytes)
     plan = bench.bus.planner.receive(
-        w.PPI0,
+        master,
         Walk(bench.memories.outside, words, 4, 4),
         Walk(target.offset, words, 4, 4),
         words,
         element_bytes=4,
-        pace=Pace(0, words, Fraction(WORD_TICKS), Fraction(words * WORD_TICKS)),
+        pace=Pace(0, words, Fraction(word_ticks), Fraction(words * word_ticks)),
     )
     return bench.bus.post(plan)
 
@@ -138,6 +138,20 @@ def test_the_lower_channel_comes_first() -> None:
     receive(bench)
     assert written_at(bench, WORD_TICKS) == 0
     assert written_at(bench, WORD_TICKS + bench.sclk(1)) == 1
+
+
+def test_an_urgent_camera_comes_before_the_lower_channel() -> None:
+    """A word comes in every cycle, and from the lower channel in every second one: each waits until half of its FIFO is full.
+
+    Without that rule the lower channel would have every second cycle, and fourteen words of the other one would wait.
+    """
+    bench = Bench(outside_nbytes=4096)
+    receive(bench, master=w.PPI0, word_ticks=bench.sclk(2))
+    receive(bench, master=w.PPI1, word_ticks=bench.sclk(1))
+    bench.bus.play_until(bench.sclk(25))
+    lower, upper = (bench.traffic(each).written_bytes // 4 for each in (w.PPI0, w.PPI1))
+    assert 12 - lower == 12 // 2
+    assert 24 - upper == 12 // 2 + 2  # one has just come, and one comes while the other camera has the bus
 
 
 def turned_round(bench: Bench, ticks: int) -> int:

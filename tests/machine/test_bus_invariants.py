@@ -10,7 +10,7 @@ from itertools import pairwise
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.machine.bus import state as w
@@ -42,6 +42,7 @@ def test_runs_of_words_are_a_short_cut_only(examples: int) -> None:
 
     @settings(max_examples=examples)
     @given(seed=chances)
+    @example(seed=1481)  # a copy on the chip, which needs no bus, between words of both cameras
     def holds(seed: int) -> None:
         scene = Scene(Random(seed))
         stops = range(1, 20_000, scene.bench.spec.clocks.cclk_ticks)

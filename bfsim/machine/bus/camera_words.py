@@ -75,6 +75,8 @@ def take_hits(state: State, memory: Memory, limit: int) -> None:
     """Take the words of both PPIs that come before tick `limit`, up to which nobody else wants the bus and no refresh is due."""
     if not state[w.LAST_WRITE] or state[w.DATA_FREE] > state[w.COMMAND_FREE]:
         return
+    if min(state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]) >= limit:
+        return
     left, right = hits_of(state, w.PPI0), hits_of(state, w.PPI1)
     while True:
         left_ready, right_ready = (

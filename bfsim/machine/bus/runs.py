@@ -11,12 +11,11 @@ from bfsim.machine.bus.transfers import after_move, moved, soonest_wake
 
 
 @native
-def alone_until(state: State, number: int, until: int) -> int:
-    """Until when a master has the bus to itself: nobody else asks for it before, or does anything that needs none of it."""
+def alone_until(state: State, until: int) -> int:
+    """Until when a master that asks for nothing just now has the bus to itself: nobody asks for it before, or does anything without it."""
     limit = min(until, state[w.NEXT_REFRESH])
-    for other in range(w.MASTERS):
-        if other != number:
-            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    for master in range(w.MASTERS_AT, w.MASTERS_AT + w.MASTERS):
+        limit = min(limit, state[master + w.READY])
     return limit
 
 
@@ -50,6 +49,9 @@ def cores_quiet_until(state: State, number: int, until: int) -> int:
 @native
 def preferred_until(state: State, number: int, until: int) -> int:
     """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap."""
+    limit = alone_until(state, until)
+    if limit > state[w.BEGAN]:
+        return limit  # nobody waits, which is most often so
     limit = min(until, state[w.NEXT_REFRESH])
     rank = state[w.MASTERS_AT + number + w.RANK]
     for other in range(w.MASTERS):
@@ -78,7 +80,7 @@ def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, 
         room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
         return max(0, min(ahead, (room + ticks - 1) // ticks))
     parts = state[master + w.GAP_DENOMINATOR]
-    room = alone_until(state, number, until) - state[w.COMMAND_FREE]
+    room = alone_until(state, until) - state[w.COMMAND_FREE]
     longest = ticks * parts + state[w.BURST_WORDS] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
     alone = max(0, min(ahead, (room - state[w.BURST_WORDS] * state[w.SCLK]) * parts // longest))
     if alone:
@@ -114,6 +116,7 @@ def take_turn(state: State, master: int, count: int) -> None:
 def move_run(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
     master = w.MASTERS_AT + number
+    state[master + w.READY] = w.NEVER  # until the end of its run
     transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     write = state[transfer + w.MODE] == w.WRITE
     offset, step = state[transfer + w.FROM], state[transfer + w.FROM_X_MODIFY]

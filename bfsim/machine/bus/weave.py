@@ -50,13 +50,17 @@ def rank_of(state: State, number: int, at: int) -> int:
         rank += AGAINST
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
         rank += HAD_ITS_TURN
+    return rank + (URGENT if is_urgent(state, master, at) else 0)
+
+
+@native
+def is_urgent(state: State, master: int, at: int) -> bool:
+    """Whether a device's FIFO is more than half full at tick `at`, or less than half of what it has to send is left."""
     transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     half = state[master + w.FIFO] // 2
-    if state[transfer + w.MODE] == w.PACED_IN and arrival(state, transfer, half) <= at:
-        rank += URGENT  # more than half of the FIFO waits
-    elif state[transfer + w.MODE] == w.PACED_OUT and arrival(state, transfer, -1 - half) <= at:
-        rank += URGENT  # less than half of the FIFO is left
-    return rank
+    if state[transfer + w.MODE] == w.PACED_IN:
+        return arrival(state, transfer, half) <= at
+    return state[transfer + w.MODE] == w.PACED_OUT and arrival(state, transfer, -1 - half) <= at
 
 
 @native
@@ -94,27 +98,64 @@ def first_request(state: State, masters: int, until: int) -> tuple[int, int]:
 
 
 @native
-def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int) -> int:
-    """Serve a PPI, and then the words of both that come before anybody else can want the bus; return who is woken.
+def serve_with_cameras(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Serve a PPI or a memory DMA, and go on while only they can want the bus; return who is woken.
 
     Most requests are theirs; this saves looking at everybody each time.
     """
-    woken = serve_dma(state, memory, number, at, until)
     limit = min(until, state[w.NEXT_REFRESH])
     for other in range(w.PPI1 + 1, w.MASTERS):
-        limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+        if not w.MDMA1_0 <= other <= w.MDMA2_1:
+            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    woken = serve_dma(state, memory, number, at, until)
     while woken == w.NONE:
-        take_hits(state, memory, limit)
-        left, right = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
-        ready, master = min(left, right), w.PPI0 if left <= right else w.PPI1
-        if (
-            ready >= limit
-            or ready < state[w.COMMAND_FREE]
-            or state[w.MASTERS_AT + master + w.USES] != w.SDRAM
-        ):
+        take_hits(state, memory, min(limit, first_copy(state)))
+        number, at = first_with_cameras(state, limit)
+        if number == w.NONE:
             break
-        woken = serve_dma(state, memory, master, ready, until)
+        woken = serve_dma(state, memory, number, at, limit)
     return woken
+
+
+@native
+def first_copy(state: State) -> int:
+    """Return when the first of the memory DMAs asks for its bus."""
+    first = w.NEVER
+    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
+        first = min(first, state[w.MASTERS_AT + number + w.READY])
+    return first
+
+
+@native
+def first_with_cameras(state: State, until: int) -> tuple[int, int]:
+    """Return which of the PPIs and the memory DMAs has the SDRAM bus next, and when; NONE if not before tick `until`.
+
+    They are numbered in the order of their ranks. One that needs no bus comes first, and is left to `grant`.
+    """
+    left, right, free = w.MASTERS_AT + w.PPI0, w.MASTERS_AT + w.PPI1, state[w.COMMAND_FREE]
+    first, at = w.PPI0, max(free, state[left + w.READY])
+    right_at = max(free, state[right + w.READY])
+    if right_at < at or (
+        right_at == at < until and is_urgent(state, right, at) and not is_urgent(state, left, at)
+    ):
+        first, at = w.PPI1, right_at
+    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
+        copy_at = max(free, state[w.MASTERS_AT + number + w.READY])
+        if copy_at < at:
+            first, at = number, copy_at
+    if at >= min(until, needs_nothing_at(state)):
+        return w.NONE, at
+    return first, at
+
+
+@native
+def needs_nothing_at(state: State) -> int:
+    """Return when the first of the PPIs and the memory DMAs goes on that needs no bus, NEVER if none does."""
+    first = w.NEVER
+    for master in range(w.MASTERS_AT, w.MASTERS_AT + w.MDMA2_1 + 1):
+        if state[master + w.USES] != w.SDRAM:
+            first = min(first, state[master + w.READY])
+    return first
 
 
 @native
@@ -156,10 +197,18 @@ def serve_core_or_stores(state: State, number: int, at: int, until: int) -> int:
 
 
 @native
+def is_with_cameras(state: State, number: int) -> bool:
+    """Whether a request is one of those that come in turn with those of the cameras."""
+    if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD] or state[w.MASTERS_AT + number + w.USES] != w.SDRAM:
+        return False
+    return number <= w.PPI1 or w.MDMA1_0 <= number <= w.MDMA2_1
+
+
+@native
 def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Serve the request of a master; return who is woken."""
-    if number <= w.PPI1 and not state[w.DEB_PERIOD]:
-        return serve_cameras(state, memory, number, at, until)
+    if is_with_cameras(state, number):
+        return serve_with_cameras(state, memory, number, at, until)
     if number >= w.STORES_A:
         return serve_core_or_stores(state, number, at, l2_left_until(state, w.NONE, until))
     return serve_dma(state, memory, number, at, until)
