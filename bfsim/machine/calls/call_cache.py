@@ -17,7 +17,7 @@ from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.conflicts import Accesses, StageGroups, SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
 from bfsim.machine.calls.groups import CallGroup
-from bfsim.machine.calls.ledger import Ledger, Snapshot
+from bfsim.machine.calls.ledger import FrameCounts, Ledger
 from bfsim.machine.calls.records import CoreRecords
 from bfsim.machine.memories import Row
 from bfsim.machine.owner_costs import Owner
@@ -191,17 +191,13 @@ class CallCache:
         """The address of these, to be added to, and how many there are."""
         return self._ledger.events_at, self._ledger.event_count
 
-    def snapshot(self) -> Snapshot:
-        """Return what the kernels have counted so far."""
-        return self._ledger.snapshot()
+    def close(self) -> tuple[Sequence[Owner], NDArray[np.int64], FrameCounts]:
+        """Return all kernels, in each stage, what they cost in the frame that ends now, and what they have counted in it."""
+        return self._ledger.close()
 
-    def close(self, now: Snapshot) -> tuple[Sequence[Owner], NDArray[np.int64]]:
-        """Return all kernels, in each stage, and what they cost in the frame that ends with the counts of `now`."""
-        return self._ledger.close(now)
-
-    def report(self, counted: Snapshot) -> None:
-        """Let the counts at the end of a frame be those that are reported."""
-        self._ledger.reported = counted
+    def report(self, counts: FrameCounts) -> None:
+        """Let the counts of the next frame be reported, too."""
+        self._ledger.report(counts)
 
     def records(self) -> CoreRecords:
         """Return the records of what was reported."""

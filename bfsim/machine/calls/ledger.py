@@ -1,6 +1,7 @@
 """What the kernels of one core have counted: events and, site by site, stalls. So each cycle of a call has an owner.
 
-Nothing is added up call by call. At a frame's end all counts are compared with those at the end of the frame before.
+Nothing is added up call by call. At a frame's end all counts are compared with those at the end of the frame before, and kept for the
+next one.
 """
 
 from __future__ import annotations
@@ -23,22 +24,32 @@ from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
 from bfsim.trace import StallReason
 
 SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
-"""What is counted of a site, in the order of a snapshot; the lines that its accesses filled are behind them."""
+"""What is counted of a site, in the order of `Counted`; the lines that its accesses filled are behind them."""
 FILLS = len(SITE_STALLS)
+CONFLICTS = SITE_STALLS.index(StallReason.L1_CONFLICT)
 SITE_COLUMNS = np.array([COLUMN_OF[each] for each in SITE_STALLS])
 INTERLOCKS = COLUMN_OF[StallReason.INTERLOCK]
 
 MAX_EVENTS = 1 << 20
+SITE_COUNTS = w.MAX_SITES * (FILLS + 1)
 NO_ROOM = "firmware must call its kernels in fewer stages, or with fewer different buffers: there are too many to keep apart"
 
 Rows = NDArray[np.int64]
 
 
-class Snapshot(NamedTuple):
-    """The counts at one moment: events of each counter, and of each site its stalls and line fills."""
+class Counted(NamedTuple):
+    """The counts of a whole run: events of each counter, and of each site its stalls and line fills."""
 
     events: Rows
     sites: Rows
+
+
+class FrameCounts(NamedTuple):
+    """The counts of a frame alone: events of each counter; of what was counted at sites, place in the table of these, and how much."""
+
+    events: Rows
+    places: Rows
+    amounts: Rows
 
 
 EVENT, OWNER, OF_CALLS, OF_ISSUE, OF_INTERLOCKS = range(5)
@@ -65,22 +76,46 @@ def charge_events(charges_at: Any, count: int, now_at: Any, before_at: Any, cost
         costs[row + INTERLOCKS] += events * charges[OF_INTERLOCKS * count + number]
 
 
-@native_entry("void", "int64*", "int64", "int64*", "int64*", "int64*", "int64*")
+@native_entry(
+    "int64", "int64*", "int64", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*"
+)
 def charge_sites(
-    owners_at: Any, count: int, columns_at: Any, now_at: Any, before_at: Any, costs_at: Any
-) -> None:
-    """Add to such a table what `count` sites have stalled between two moments: by the owner of each and the column of each reason."""
-    owners, columns = words_at(owners_at), words_at(columns_at)
-    now, before, costs = words_at(now_at), words_at(before_at), words_at(costs_at)
-    for site in range(count):
-        for reason in range(FILLS):
-            at = site * (FILLS + 1) + reason
-            if now[at] != before[at]:
-                costs[owners[site] * COLUMNS + columns[reason]] += now[at] - before[at]
+    owners_at: Any,
+    count: int,
+    columns_at: Any,
+    on_bus_at: Any,
+    conflicts_at: Any,
+    before_at: Any,
+    costs_at: Any,
+    places_at: Any,
+    amounts_at: Any,
+) -> int:
+    """Add to such a table what `count` sites have stalled since the last time: by the owner of each and the column of each reason.
+
+    Rows of the bus, and cycles of conflicts, are compared with the counts of `before`, which are brought up to them. Where these differ
+    is written to `places`, by how much to `amounts`; returns how many do.
+    """
+    owners, columns, costs = words_at(owners_at), words_at(columns_at), words_at(costs_at)
+    on_bus, conflicts, before = words_at(on_bus_at), words_at(conflicts_at), words_at(before_at)
+    places, amounts, found = words_at(places_at), words_at(amounts_at), 0
+    for site in range(w.NO_SITE + 1, count):  # semaphores and locks are no kernel's
+        for column in range(FILLS + 1):
+            now = conflicts[site]
+            if column != CONFLICTS:
+                now = on_bus[site * w.SITE_WORDS + min(column, w.FILLS)]
+            place = site * (FILLS + 1) + column
+            amount = now - before[place]
+            if amount:
+                before[place] = now
+                places[found], amounts[found] = place, amount
+                found += 1
+                if column < FILLS:
+                    costs[owners[site] * COLUMNS + columns[column]] += amount
+    return found
 
 
 CHARGE = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
-CHARGE_SITES = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 4)
+CHARGE_SITES = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 7)
 
 
 def _zeros(count: int) -> Rows:
@@ -106,9 +141,10 @@ class Ledger:
         self._new_charges: list[Rows] = []
         self._site_owners: list[int] = [0] * self._site_count
         self._owners_of_sites = np.zeros(self._site_count, np.int64)  # the same at the end of the last frame
-        self._before = self.snapshot()
-        self.reported = self._before
-        """The counts at the end of the last frame that is on record."""
+        self._events_before, self._sites_before = _zeros(MAX_EVENTS), _zeros(SITE_COUNTS)
+        self._places, self._amounts = _zeros(SITE_COUNTS), _zeros(SITE_COUNTS)  # room for what differs
+        self._reported_events, self._reported_sites = _zeros(MAX_EVENTS), _zeros(SITE_COUNTS)
+        self._reported_count = 0
 
     def room(self, events: int, sites: int) -> tuple[Rows, int, int]:
         """Make room for another group: return where it counts its events, the number of the first, and of the first site."""
@@ -138,42 +174,40 @@ class Ledger:
         """The events that each counter has counted."""
         return self._events[: self.event_count]
 
-    def snapshot(self) -> Snapshot:
-        """Return the counts of now."""
-        count = self._site_count
-        on_bus = self._bus_stalls(count)
-        sites = np.column_stack([on_bus[:, : w.STALLS], self._conflicts[:count], on_bus[:, w.FILLS]])
-        sites[w.NO_SITE] = 0  # semaphores and locks are no kernel's
-        return Snapshot(self._events[: self.event_count].copy(), sites)
-
-    def close(self, now: Snapshot) -> tuple[Sequence[Owner], Rows]:
-        """Return the kernels in each stage, and what they cost since the last time: rows of an `OwnerCosts` table."""
-        before, self._before = self._before, now
-        costs = np.zeros((len(self._owners), COLUMNS), np.int64)
+    def close(self) -> tuple[Sequence[Owner], Rows, FrameCounts]:
+        """Return the kernels in each stage, what they cost since the last time, rows of an `OwnerCosts` table, and all counts of that."""
+        costs, count = np.zeros((len(self._owners), COLUMNS), np.int64), self._site_count
         if self._new_charges:
             self._charges = np.concatenate([self._charges, *self._new_charges], axis=1)
             self._owners_of_sites = np.array(self._site_owners, np.int64)
             self._new_charges = []
-            before = Snapshot(*(_as_long(*each) for each in zip(before, now, strict=True)))
-        charges, site_owners = self._charges, self._owners_of_sites
-        events, sites = zip(now, before, strict=True)
-        _call(CHARGE(charge_events.address()), charges, charges.shape[1], *events, costs)
-        _call(
-            CHARGE_SITES(charge_sites.address()), site_owners, len(site_owners), SITE_COLUMNS, *sites, costs
+        events, before = self.events, self._events_before[: self.event_count]
+        _call(CHARGE(charge_events.address()), self._charges, self._charges.shape[1], events, before, costs)
+        found: int = _call(
+            CHARGE_SITES(charge_sites.address()), self._owners_of_sites, count, SITE_COLUMNS, self._bus_stalls(count),
+            self._conflicts, self._sites_before, costs, self._places, self._amounts,
+        )  # fmt: skip
+        counts = FrameCounts(events - before, self._places[:found].copy(), self._amounts[:found].copy())
+        before[:] = events
+        return tuple(self._owners), costs, counts
+
+    def report(self, counts: FrameCounts) -> None:
+        """Add the counts of the next frame to those that are reported."""
+        self._reported_count = len(counts.events)
+        self._reported_events[: self._reported_count] += counts.events
+        self._reported_sites[counts.places] += counts.amounts
+
+    @property
+    def reported(self) -> Counted:
+        """The counts of all frames that are on record."""
+        return Counted(
+            self._reported_events[: self._reported_count], self._reported_sites.reshape(-1, FILLS + 1)
         )
-        return tuple(self._owners), costs
 
 
-def _call(entry: Callable[..., object], *arguments: Rows | int) -> None:
+def _call(entry: Callable[..., Any], *arguments: Rows | int) -> Any:
     """Call compiled code with arrays and numbers."""
-    entry(*(each if isinstance(each, int) else each.ctypes.data for each in arguments))
-
-
-def _as_long(before: Rows, now: Rows) -> Rows:
-    """Return `before` with zeros behind it, as long as `now`."""
-    padded = np.zeros_like(now)
-    padded[: len(before)] = before
-    return padded
+    return entry(*(each if isinstance(each, int) else each.ctypes.data for each in arguments))
 
 
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:

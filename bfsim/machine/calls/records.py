@@ -15,7 +15,7 @@ from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.machine.calls.groups import CallGroup
-from bfsim.machine.calls.ledger import FILLS, Snapshot, stalls_by_reason
+from bfsim.machine.calls.ledger import FILLS, Counted, stalls_by_reason
 from bfsim.trace import AccessRecord, KernelRecord, LineCost, PathRecord
 
 Stalls = NDArray[np.int64]
@@ -73,7 +73,7 @@ class CoreRecords:
     """
 
     def __init__(
-        self, core: str, groups: Sequence[CallGroup], counted: Snapshot, buffers: Sequence[str]
+        self, core: str, groups: Sequence[CallGroup], counted: Counted, buffers: Sequence[str]
     ) -> None:
         self._core = core
         self._groups = groups
@@ -164,7 +164,7 @@ def _is_object(group: CallGroup) -> bool:
     return not isinstance(group.code, CompiledKernel)
 
 
-def _counted(groups: Iterable[CallGroup], counted: Snapshot) -> Iterator[tuple[CallGroup, NDArray[np.int64]]]:
+def _counted(groups: Iterable[CallGroup], counted: Counted) -> Iterator[tuple[CallGroup, NDArray[np.int64]]]:
     """Yield the groups with the events of their counters. Those that came behind the counted moment are left out."""
     for group in groups:
         if group.first_event < len(counted.events):
@@ -174,7 +174,7 @@ def _counted(groups: Iterable[CallGroup], counted: Snapshot) -> Iterator[tuple[C
 class _Sums:
     """What adds up over the groups: `kernels` by stage and symbol, `paths` by stage and symbols."""
 
-    def __init__(self, groups: Iterable[CallGroup], counted: Snapshot) -> None:
+    def __init__(self, groups: Iterable[CallGroup], counted: Counted) -> None:
         self.kernels: dict[tuple[str, str], _Kernel] = {}
         self.paths: dict[tuple[str, tuple[str, ...]], _Path] = defaultdict(_Path)
         for group, events in _counted(groups, counted):

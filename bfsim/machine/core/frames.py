@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from bfsim.machine.calls.ledger import Snapshot
+from bfsim.machine.calls.ledger import FrameCounts
 from bfsim.machine.memories import Row
 from bfsim.seen import Seen
 from bfsim.trace import CoreFrame
@@ -23,12 +23,12 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FinishedFrame:
-    """What one core reports at the end of a frame. `counted`: what its kernels have counted since the run began."""
+    """What one core reports at the end of a frame. `counts`: what its kernels have counted in it."""
 
     index: int
     full_at_cclk: int
     cycles: CoreFrame
-    counted: Snapshot
+    counts: FrameCounts
     results: Mapping[str, int]
     remarks: tuple[str, ...]
     seen: Seen | None

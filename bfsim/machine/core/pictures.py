@@ -119,13 +119,13 @@ class Pictures:
         cclk = self._clock.cclk
         if self._clock.timeline:
             self._clock.timeline.end_frame(self._frame.index, cclk)
-        snapshot = self._calls.snapshot()
+        kernels, costs, counts = self._calls.close()
         self.finished.append(
             FinishedFrame(
                 index=self._frame.index,
                 full_at_cclk=self._full_at_cclk,
-                cycles=self._clock.accounts.close(cclk, *self._calls.close(snapshot)),
-                counted=snapshot,
+                cycles=self._clock.accounts.close(cclk, kernels, costs),
+                counts=counts,
                 results=self._results,
                 remarks=tuple(self._remarks),
                 seen=self._seen(self._frame),
