@@ -113,8 +113,8 @@ class _Reader:
     scope: KernelScope
     result: Number | None
     ended: bool = False
-    breaks: list[bool] = field(default_factory=list)
-    """Of each open loop: whether a `break` leaves it."""
+    breaks: list[list[set[str]]] = field(default_factory=list)
+    """Of each open loop: the locals that hold a value at each `break` that leaves it."""
     hidden: set[str] = field(default_factory=set)
     """Names of the locals that only the compiled code has."""
 
@@ -259,11 +259,12 @@ class _Reader:
     def _while(self, node: ast.While) -> list[tree.Stmt]:
         self._no_else(node)
         test = self.scope.condition(node.test)
-        endless = isinstance(node.test, ast.Constant) and node.test.value is True
+        endless = isinstance(node.test, ast.Constant) and bool(node.test.value)
         before = set(self.scope.assigned)
         body = self._loop_body(node.body)
-        self.scope.assigned = before
-        self.ended = not self.breaks.pop() and endless
+        breaks = self.breaks.pop()
+        self.scope.assigned = set.intersection(*breaks) if endless and breaks else before
+        self.ended = endless and not breaks
         return [tree.While(test, body, node.lineno)]
 
     def _for(self, node: ast.For) -> list[tree.Stmt]:
@@ -338,11 +339,11 @@ class _Reader:
             self.scope.source.refuse(node.orelse[0], "a loop cannot have an else", "use a flag")
 
     def _loop_body(self, body: list[ast.stmt]) -> tuple[tree.Stmt, ...]:
-        self.breaks.append(False)
+        self.breaks.append([])
         return self.block(body)
 
     def _break(self, node: ast.Break) -> list[tree.Stmt]:
-        self.breaks[-1] = True
+        self.breaks[-1].append(set(self.scope.assigned))
         self.ended = True
         return [tree.Break(node.lineno)]
 

@@ -124,8 +124,9 @@ def choices(a: i32, b: i32, wanted: i32) -> i32:
         result = 2 if a < 0 else (3 if b < 0 else 4)
     else:
         result = 5
-    while True:
+    while 1:
+        before = result
         result += 1
         if result > (b & 3):
             break
-    return result << 2 | result & 3 ^ result
+    return before << 2 | result & 3 ^ before
