@@ -73,6 +73,8 @@ class _Statements:
     def __init__(self, flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> None:
         self.flow, self.evolution, self.loop = flow, evolution, loop
         self.kept = self.folded = 0
+        self.places = set[tuple[str, ...]]()
+        """Indices that are summed and scaled already, behind the bytes of an element."""
         self.sets_constants = False
         """Whether a constant comes of an operation that no counter is followed through: GCC takes one statement less for it."""
 
@@ -115,8 +117,11 @@ class _Statements:
         summed = base is not None and base.opcode == "getelementptr"
         indices = [*(base.operands[1:] if base is not None and summed else ()), *each.operands[1:]]
         self._add(1, folds=False)
-        scaled = any(pointee_nbytes(one) > 1 for one in (each, *([base] if base is not None else [])))
-        self._add(summed + scaled, folds=self._are_constant(indices))
+        nbytes = max(pointee_nbytes(one) for one in (each, *([base] if base is not None else [])))
+        place = (str(nbytes), *indices)
+        if place not in self.places:  # what is computed already is not computed again
+            self.places.add(place)
+            self._add(summed + (nbytes > 1), folds=self._are_constant(indices))
 
     def _add(self, number: int, *, folds: bool) -> None:
         self.kept += number * (not folds)

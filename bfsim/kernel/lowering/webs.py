@@ -70,19 +70,31 @@ class Webs:
             apart[phi].discard(value)
             apart[value].discard(phi)
         members = {name: {name} for name in apart}
-        copies = [
-            (self.frequency[label], phi, value)
-            for phi, arms in self.phis.items()
-            for value, label in arms
-            if not value.startswith("#")
-        ]
-        for _, phi, value in sorted(copies, key=lambda copy: -copy[0]):
+        copies = self._copies()
+        for phi, value in sorted(copies, key=lambda copy: -copies[copy]):
             one, other = self.find(phi), self.find(value)
             mine, theirs = members.setdefault(one, {one}), members.setdefault(other, {other})
             if one == other or any(not apart[name].isdisjoint(theirs) for name in mine):
                 continue
             self.web[other] = one
             mine |= theirs
+
+    def _copies(self) -> dict[tuple[str, str], float]:
+        """What copying a value to a phi costs, of all ways together; twice where it needs a block [coalesce_cost_edge in tree-ssa-coalesce.cc].
+
+        GCC 12 decides before an `if` becomes branchless, so that the ways through one count, too.
+        """
+        found: defaultdict[tuple[str, str], float] = defaultdict(float)
+        taken, before = self.context.likelihood.taken, self.flow.predecessors
+        for phi, arms in self.phis.items():
+            home, each = self.flow.defined[phi]
+            known = [(self.context.name(value), label) for value, label in self.context.arms(each)]
+            for value, label in dict.fromkeys((*arms, *known)):
+                if value.startswith("#") or (label, home) not in taken:
+                    continue
+                is_critical = len(set(self.flow.blocks[label].successors)) > 1 and len(before[home]) > 1
+                found[phi, value] += self.frequency[label] * taken[label, home] * (2 if is_critical else 1)
+        return found
 
     def _stepped(self) -> list[tuple[str, str]]:
         """Counters of loops and their next values, which only the next iteration wants: they are stepped last, in place."""
