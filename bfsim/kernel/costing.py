@@ -24,6 +24,8 @@ from bfsim.kernel.lowering import unoptimised
 from bfsim.kernel.lowering.charges import Access, merged
 from bfsim.kernel.lowering.rewrites import rewritten, rewritten_early
 from bfsim.kernel.lowering.rotations import held, released
+from bfsim.kernel.lowering.skipped_iterations import with_skipped_iterations
+from bfsim.kernel.lowering.threaded_hints import with_threaded_hints
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.narrowed_divisions import with_rounded_names
 from bfsim.kernel.profile import CompilerProfile
@@ -33,7 +35,6 @@ UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones firs
 CLEANING = (
     "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce", "simplify_cfg",
 )  # fmt: skip
-FIRST_PASSES = ("sroa", "simplify_cfg")
 PASSES = (
     "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
     "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
@@ -59,12 +60,17 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         return str(module)
     if inlined:
         _inline(module, function)
-    generic.run(FIRST_PASSES, module)
+    generic.run(("sroa",), module)
+    if inlined and profile.applies(Rule.THREADED_HINTS):
+        module = llvm.parse_assembly(with_threaded_hints(str(module)))
+    generic.run(("simplify_cfg",), module)
     module = llvm.parse_assembly(rewritten_early(str(module), profile))
     generic.run(PASSES, module)
     module = _rotated(module, profile)
     generic.run(LATER_PASSES, module)
     text = str(module)
+    if profile.applies(Rule.SKIPPED_ITERATIONS):
+        text = with_skipped_iterations(with_rounded_names(text, function))
     for _ in range(UNROLLED_NESTING):
         if (unrolling := marked(text)) is None:
             break

@@ -216,8 +216,14 @@ def placed_rows(text: str) -> Iterator[tuple[str, str, str]]:
 
 
 def with_names(text: str) -> str:
-    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change."""
-    return NUMBERED.sub(lambda found: f"%.n{found[1]}" if found[1] else f".n{found[2]}", text)
+    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change.
+
+    The names are other ones than those of an earlier time.
+    """
+    mark = ".n"
+    while f"%{mark}" in text:
+        mark += "n"
+    return NUMBERED.sub(lambda found: f"%{mark}{found[1]}" if found[1] else f"{mark}{found[2]}", text)
 
 
 def write_module(text: str, routines: Sequence[Routine]) -> str:

@@ -82,6 +82,8 @@ class Rule(StrEnum):
     NARROW_CHOICES = (
         "of a conditional expression that is stored as narrow, both sides are converted before one is chosen"
     )
+    SKIPPED_ITERATIONS = "an iteration that a `continue` skips at one value of its counter is none: the counter is the next one"
+    THREADED_HINTS = "a `continue` makes each way to it unlikely, also those that jumps of an inlined kernel were threaded to"
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
@@ -103,6 +105,8 @@ GCC: dict[Rule, str] = {
     Rule.EXTREMES: "minmax_replacement in tree-ssa-phiopt.cc",
     Rule.SUNK_STORES: "sink_common_stores_to_bb in tree-ssa-sink.cc",
     Rule.NARROW_CHOICES: "factor_out_conditional_conversion in tree-ssa-phiopt.cc",
+    Rule.SKIPPED_ITERATIONS: "tree-ssa-threadbackward.cc",
+    Rule.THREADED_HINTS: "predict_paths_leading_to in predict.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -175,5 +179,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.EXTREMES: (),  # from kernels that are not measured here: tests/kernel/test_extremes.py
     Rule.SUNK_STORES: (),
     Rule.NARROW_CHOICES: (),
+    Rule.SKIPPED_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_threaded_jumps.py
+    Rule.THREADED_HINTS: (),
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }
