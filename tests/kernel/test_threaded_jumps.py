@@ -114,6 +114,7 @@ def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_
     kernel = kernel_of(CASES[name][0] if name in CASES else OTHERS[name], tmp_path)
     given = arguments(kernel)
     plain = [each.tolist() if isinstance(each, np.ndarray) else each for each in given]
+    assert kernel.python is not None
     assert run(kernel, *given, profile=profile).value == kernel.python(*plain)
 
 
