@@ -28,6 +28,9 @@ from bfsim.report.check.update import write_cases
         ("latency <= 200", "the unit of latency must be cycles or s or ms or us, not ''"),
         ('"Edge detection".max <= 80 sec', "the unit of the stage Edge detection must be cycles or s or ms or us, not 'sec'"),
         ("memory.L2 <= 100 kB", "the unit of memory.L2 must be B or KB or MB or %, not 'kB'"),
+        ("missed == -1", "after == must come a number that is not negative"),
+        ("objects.ball == 0 -1", "after == must come a number that is not negative"),
+        ("results.drift <= -", "after <= must come a number"),
         ("missed == 0 frames", "the unit of missed must be none, not 'frames'"),
         ("memory <= 1 KB", "memory must be followed by a name"),
         ("results >= 1", "results must be followed by a name"),
@@ -70,7 +73,7 @@ def test_a_frame_rate_keeps_its_own_limit(hz: float) -> None:
     assert hz - 1e-6 <= parse_requirement(limit_text(("frame_rate",), hz, 1e6), "f").limit(figure, 1e6) <= hz
 
 
-@given(st.lists(st.integers(0, 10**6), min_size=1, max_size=40))
+@given(st.lists(st.integers(-(10**6), 10**6), min_size=1, max_size=40))
 def test_counts_are_read_as_they_were_written(values: list[int]) -> None:
     """Repeated ones are written once."""
     assert parse_requirement(counts_text(("results", "a b"), values), "f").numbers == tuple(

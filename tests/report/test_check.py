@@ -236,6 +236,33 @@ def test_results_that_change_often_are_kept_as_totals(tmp_path: Path) -> None:
     assert broken(hold(with_results(run, *counts), path)) == ["results.edges.total", "results.balls"]
 
 
+def test_what_is_published_may_be_negative(tmp_path: Path) -> None:
+    """A tolerance is of the size of the number, whatever its sign."""
+    path = tmp_path / "bfsim.toml"
+    run = edge_run(950, 1050)
+    measured(path, with_results(run, {"drift": -100}, {"drift": 100}), results_tolerance_percent=10)
+    assert read_baseline(path).run[0].limits[-1] == "results.drift == -100 100"
+    assert hold(with_results(run, {"drift": -90}, {"drift": 110}), path).passed
+    outcome = hold(with_results(run, {"drift": -111}, {"drift": 100}), path)
+    assert list(broken_lines(outcome)) == ["results.drift in frame 0 must be == -100, not -111 (-11.00 %)"]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "holds"),
+    [
+        ("results.drift >= -4", True),
+        ("results.drift >= -3", False),
+        ("results.drift.max <= -1", True),
+        ("results.drift == -4 -1", True),
+        ("results.drift.total == -5", True),
+    ],
+)
+def test_a_person_may_require_negative_numbers(sentence: str, holds: bool) -> None:
+    """Of what is published."""
+    run = with_results(edge_run(950, 1050), {"drift": -4}, {"drift": -1})
+    assert required(run, sentence) == ([] if holds else [sentence])
+
+
 def owned(edges: int, **lines: LineCost) -> RunRecord:
     """A run of one frame in which a kernel of `edges` cycles is all that core A does."""
     record = kernel("Edge detection", "gauss", *lines.values())

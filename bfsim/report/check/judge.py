@@ -58,8 +58,8 @@ class Verdict:
 
     @property
     def by_percent(self) -> float:
-        """How much was measured over the limit, in percent of it."""
-        return 100 * (self.measured - self.limit) / self.limit if self.limit else 0.0
+        """How much was measured over the limit, in percent of its size."""
+        return 100 * (self.measured - self.limit) / abs(self.limit) if self.limit else 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,7 +158,7 @@ def _verdict(
         return _frame_by_frame(requirement, figure, run, share, is_persons=is_persons)
     limit = requirement.limit(figure, run.identity.cclk_hz)
     base = max(limit, floor) if figure.unit is Unit.CCLK else limit
-    slack = float(share * Fraction(base))
+    slack = float(share * Fraction(abs(base)))
     measured = requirement.measured(figure)
     below, above = measured < limit - slack, measured > limit + slack
     broken = {"<=": above, ">=": below, "==": above or below}[requirement.comparison]
@@ -182,7 +182,7 @@ def _frame_by_frame(
     requirement: Requirement, figure: Figure, run: RunRecord, share: Fraction, *, is_persons: bool
 ) -> Verdict:
     pairs = list(zip(requirement.numbers, figure.values, strict=False))
-    off = [index for index, (want, got) in enumerate(pairs) if abs(Fraction(got) - want) > share * want]
+    off = [index for index, (want, got) in enumerate(pairs) if abs(Fraction(got) - want) > share * abs(want)]
     are_as_many = len(requirement.numbers) == len(figure.values)
     limit, measured, frame = float(sum(requirement.numbers)), sum(figure.values), None
     if off and are_as_many:

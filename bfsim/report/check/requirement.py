@@ -3,7 +3,7 @@
     NAME [.min | .median | .max | .total]  <= | >= | ==  NUMBER [UNIT]
 
 NAME is a dotted key as in TOML. Without a statistic the sentence is about every frame. After `==` there may be a number for
-each frame, with repeated ones as `0*5`.
+each frame, with repeated ones as `0*5`. Only what firmware publishes may be negative.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from bfsim.report.check.figures import (
     LATENCY,
     MEMORY,
     MISSED,
+    RESULTS,
     STATISTICS,
     Figure,
     Name,
@@ -50,8 +51,9 @@ MS_DIGITS = 6
 
 _PART = re.compile(r'\s*(?:"([^"\n]*)"|([\w-]+))\s*')
 _COMPARISON = re.compile(r"\s*(<=|>=|==)\s*")
-_NUMBER = re.compile(r"(\d[\d_]*(?:\.\d+)?)\s*")
-_COUNTS = re.compile(r"\d[\d_]*(?:\*[1-9]\d{0,6})?(?:\s+\d[\d_]*(?:\*[1-9]\d{0,6})?)*\s*")
+_NUMBER = re.compile(r"(-?\d[\d_]*(?:\.\d+)?)\s*")
+_COUNT = r"-?\d[\d_]*(?:\*[1-9]\d{0,6})?"
+_COUNTS = re.compile(rf"{_COUNT}(?:\s+{_COUNT})*\s*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,7 +99,9 @@ def parse_requirement(text: str, where: str) -> Requirement:
     if not found:
         _fail("after the name must come <=, >= or ==", text, at, where)
     comparison, at = found[1], found.end()
-    unit = unit_of(name)
+    unit, is_published = unit_of(name), name[0] == RESULTS
+    wanted = f"after {comparison} must come a number{'' if is_published else ' that is not negative'}"
+    begin = at
     counts = _COUNTS.fullmatch(text, at)
     if counts and unit is Unit.COUNT:
         numbers, named = _counted(counts[0]), ""
@@ -106,13 +110,15 @@ def parse_requirement(text: str, where: str) -> Requirement:
     else:
         number = _NUMBER.match(text, at)
         if not number:
-            _fail(f"after {comparison} must come a number that is not negative", text, at, where)
+            _fail(wanted, text, at, where)
         numbers, at = (Fraction(number[1].replace("_", "")),), number.end()
         named = text[at:].strip()
         if named not in UNITS[unit]:
             known = " or ".join(each or "none" for each in UNITS[unit])
             what = "the stage " if unit is Unit.CCLK and name not in {LATENCY, FRAME} else ""
             _fail(f"the unit of {what}{'.'.join(name)} must be {known}, not {shown(named)}", text, at, where)
+    if min(numbers) < 0 and not is_published:
+        _fail(wanted, text, begin, where)
     return Requirement(
         name=name, statistic=stands_for, comparison=comparison, numbers=numbers, unit=named, text=text
     )
