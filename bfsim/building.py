@@ -8,7 +8,7 @@ from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
 from bfsim.kernel.profile import RUN_AS_COMPILED
-from bfsim.loading import LoadedFirmware, entries_of, kernels_of
+from bfsim.loading import LoadedFirmware, entries_of, kernels_of, written_in_python
 from bfsim.machine.program import Firmware
 from bfsim.once import once
 
@@ -28,8 +28,8 @@ def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
 def _build(firmware: Firmware, own: OwnModules, profile: CompilerProfile) -> Build:
     if profile.name not in RUN_AS_COMPILED:
         return Build(profile)
-    entries = {each for each in entries_of(firmware) if each.object_code is None}
-    kernels = {each for each in kernels_of(own) if each.object_code is None} | entries
+    entries = written_in_python(entries_of(firmware))
+    kernels = written_in_python(kernels_of(own)) | entries
     if not kernels:
         return Build(profile)
     from bfsim.compiling.loaded_code import LoadedCode  # most runs need none of it

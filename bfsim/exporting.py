@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bfsim.errors import ConfigError, FirmwareError
 from bfsim.kernel.c import CProgram, c_program, in_python
-from bfsim.loading import kernels_of, load_firmware
+from bfsim.loading import kernels_of, load_firmware, written_in_python
 from bfsim.report.save import write_text, writing
 
 MAKEFILE = """\
@@ -33,12 +33,13 @@ clean:
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """What was written to `folder`: files by name, how many kernels, and how many lines of C."""
+    """What was written to `folder`: files by name, how many kernels, and how many lines of C; `left` are kernels of other languages."""
 
     folder: Path
     files: tuple[str, ...]
     kernels: int
     lines: int
+    left: tuple[str, ...]
 
 
 def export(firmware: str, folder: Path, *, line_directives: bool = False, force: bool = False) -> Export:
@@ -49,10 +50,11 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
     """
     if folder.exists() and not folder.is_dir():
         raise ConfigError(f"{folder} must be a folder to write the files of C to, not a file")
-    kernels = kernels_of(load_firmware(firmware).own)
+    own = kernels_of(load_firmware(firmware).own)
+    kernels = written_in_python(own)
     if not kernels:
         raise FirmwareError(
-            f"{firmware} must have kernels to be exported, but has none; see `bfsim explain --help`"
+            f"{firmware} must have kernels in Python to be exported, but has none; see `bfsim explain --help`"
         )
     program = c_program((each.function for each in kernels), place=in_python if line_directives else None)
     files = {**program.files, "Makefile": _makefile(program)}
@@ -65,7 +67,8 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
     for name, text in files.items():
         write_text(folder / name, text)
     lines = sum(text.count("\n") for name, text in program.files.items() if name.endswith(".c"))
-    return Export(folder, tuple(files), len(program.names), lines)
+    left = sorted(f"{each.name} ({Path(each.function.file).name})" for each in own - kernels)
+    return Export(folder, tuple(files), len(program.names), lines, tuple(left))
 
 
 def _makefile(program: CProgram) -> str:

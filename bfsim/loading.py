@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -161,6 +161,11 @@ def kernels_of(own: OwnModules) -> set[Kernel]:
 def entries_of(firmware: Firmware) -> set[Kernel]:
     """Return every kernel that a main loop of `firmware` names, itself or through its functions."""
     return {each for main in firmware.mains.values() for each in kernels_named(main)}
+
+
+def written_in_python(kernels: Iterable[Kernel]) -> set[Kernel]:
+    """Return the kernels that become C. The others, by `kernel_from`, are code for the Blackfin as they stand."""
+    return {each for each in kernels if each.object_code is None}
 
 
 def _apart(kernels: list[Kernel], place: str) -> str:

@@ -18,6 +18,8 @@ from bfsim.kernel import GCC_O2
 from bfsim.loading import load_firmware, load_kernel
 from bfsim.machine.memories import Row
 from bfsim.trace.assembly import Assembly
+from tests.test_kernel_from import SUMS
+from tests.test_run import FIRMWARE
 
 DATA = Path(__file__).parent / "blackfin" / "data"
 CALLS = 3
@@ -155,6 +157,15 @@ def test_code_that_nobody_has_is_asked_for(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
     with pytest.raises(ConfigError, match=r"bfin-elf-gcc must be on the PATH, .*; CONTRIBUTING.md says how"):
         find_code(_alone, load_firmware("tinyphoon"), GCC_O2, None)
+
+
+def test_a_kernel_beside_object_code_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels of the same firmware that are object code are not compiled with it."""
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
+    (tmp_path / "fw_beside.py").write_text(f"{FIRMWARE}\n{SUMS}")
+    name = f"{tmp_path}/fw_beside.py:eyes"
+    with pytest.raises(ConfigError, match=r"bfin-elf-gcc must be on the PATH"):
+        find_code(load_kernel("fw_beside:threshold", name), load_firmware(name), GCC_O2, None)
 
 
 @pytest.mark.parametrize(

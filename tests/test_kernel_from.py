@@ -22,6 +22,12 @@ from bfsim.kernel import GCC_O2
 from bfsim.machine.memories import Memories
 
 DATA = Path(__file__).parent / "blackfin" / "data"
+SUMS = f"""
+from bfsim.api import i32, kernel_from
+
+sums = kernel_from({str(DATA / "sums.o")!r}, "sums", row=u8[:], out=i32[:], n=i32, first=i32, result=i32)
+"""
+"""For the end of firmware of a test: a kernel that is object code."""
 ROW = np.arange(0, 96, 3, dtype=np.uint8)
 
 

@@ -27,6 +27,7 @@ from bfsim.verifying.verify import compared
 from tests.kernel import c_kernels
 from tests.kernel.host_c import COMPILER, needs_compiler
 from tests.kernel.test_c import drawn
+from tests.test_kernel_from import SUMS, sums
 from tests.test_run import FIRMWARE, record
 
 WITHOUT_OVERFLOW = ("last_of_loop", "moving_stop", "left_first", "sometimes", "floats", "choices", "unsigned")
@@ -55,6 +56,13 @@ def test_a_sample_is_spread_evenly_and_bounded() -> None:
     (sample,) = sampler.of.values()
     assert sample.seen == 100
     assert [number for (number,) in sample.kept] == list(range(0, 100, 16))
+
+
+def test_object_code_is_not_sampled() -> None:
+    """It has no estimate, and is not written as C."""
+    sampler = Sampler(7)
+    sampler.see(sums(), ())
+    assert not sampler.of
 
 
 def test_a_sample_is_taken_before_the_call() -> None:
@@ -159,12 +167,12 @@ def test_a_missing_toolchain_is_told_before_the_run(command: str, tmp_path: Path
 
 @needs_compiler
 def test_the_command_compares_the_kernels_of_a_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a firmware of one kernel; this machine's compiler stands in for the Blackfin's, and takes no cycles."""
+    """Of a firmware of one kernel, and one that is object code; this machine's compiler stands in for the Blackfin's, and takes no cycles."""
     tools = Toolchain((COMPILER or "",))
     monkeypatch.setattr("bfsim.compiling.toolchain.blackfin_compiler", lambda: tools)
     module = importlib.import_module("bfsim.verifying.verify")
     monkeypatch.setattr(module, "translated", lambda sampler, code: simulated(sampler, code, tools))
-    (tmp_path / "fw_eyes.py").write_text(FIRMWARE)
+    (tmp_path / "fw_eyes.py").write_text(f"{FIRMWARE}\n{SUMS}")
     what = ["verify", str(record(tmp_path / "drive.mcap", 2)), "--firmware", f"{tmp_path}/fw_eyes.py:eyes"]
     result = CliRunner().invoke(main, [*what, "--calls", "5", "--json", str(tmp_path / "found.json")])
     assert result.exit_code == 0, result.output

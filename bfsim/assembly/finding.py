@@ -18,7 +18,7 @@ from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.places import Places
 from bfsim.kernel.objects.timing import timing_of
-from bfsim.loading import LoadedFirmware, entries_of, kernels_of
+from bfsim.loading import LoadedFirmware, entries_of, kernels_of, written_in_python
 
 AS_IT_IS = "as compiled"
 """In place of a compiler's name, where nothing is known of it."""
@@ -85,8 +85,8 @@ def find_code(
     timing = timing_of(profile)
     if kernel.object_code is not None:
         return KernelCode(kernel, AS_IT_IS, timing, None)
-    entries = entries_of(firmware.firmware)
-    kernels: Collection[Kernel] = kernels_of(firmware.own) | entries
+    entries = written_in_python(entries_of(firmware.firmware))
+    kernels: Collection[Kernel] = written_in_python(kernels_of(firmware.own)) | entries
     if kernel not in kernels:
         kernels, entries = [kernel], {kernel}
     code = object_code(kernels, entries, profile, toolchain)

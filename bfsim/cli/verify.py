@@ -45,7 +45,7 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     from bfsim.compiling.object_code import level_of, object_code
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
-    from bfsim.loading import entries_of, kernels_of, load_firmware
+    from bfsim.loading import entries_of, kernels_of, load_firmware, written_in_python
     from bfsim.report.save import files_of_run
     from bfsim.report.verification import as_json, verification_report
     from bfsim.verifying import Sampler
@@ -58,8 +58,8 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     sampler = Sampler(calls)
     done = simulated(on_call=sampler.see, **what)
     loaded = load_firmware(what["firmware"])
-    kernels = kernels_of(loaded.own) | set(sampler.of)
-    code = object_code(kernels, entries_of(loaded.firmware) | set(sampler.of), profile, tools)
+    entries = written_in_python(entries_of(loaded.firmware)) | set(sampler.of)
+    code = object_code(written_in_python(kernels_of(loaded.own)) | entries, entries, profile, tools)
     found = verified(sampler, len(done.frames), profile, code, tools)
     tell(json_path, lambda: [as_json(found), "\n"], lambda: print_report(verification_report(found, top)))
     if found.different or found.unequal:

@@ -60,7 +60,7 @@ def object_code(
     """
     level, (files, names) = level_of(profile), _in_c(kernels, entries)
     if not names:
-        raise ConfigError("the run must call a kernel for there to be real code, but calls none")
+        raise ConfigError("the run must call a kernel in Python for there to be real code, but calls none")
     recipe = recipe_of(files, level)
     return ObjectCode(*code_of(recipe, toolchain), names, is_shipped(recipe))
 

@@ -23,7 +23,8 @@ REGISTERS_NBYTES = 64  # room for the longest descriptor
 class Row:
     """One row of a buffer where the linker put it. A row is the unit of DMA and the argument of kernels.
 
-    Kernels see its elements in `array`, DMA its bytes from `offset` in the arena.
+    Kernels see its elements in `array`, DMA its bytes from `offset` in the arena. A main loop may read and write single elements of
+    `array`, `row.array[0] = 3`, which takes no cycles.
     """
 
     __slots__ = ("address", "array", "buffer", "memory", "nbytes", "octets", "offset")

@@ -35,7 +35,9 @@ class Sampler:
     of: dict[Kernel, Sample] = field(default_factory=dict)
 
     def see(self, kernel: Kernel, arguments: Sequence[Row | int]) -> None:
-        """Take note of a call."""
+        """Take note of a call. One of code for the Blackfin, as of `kernel_from`, has no estimate to be judged."""
+        if kernel.object_code is not None:
+            return
         sample = self.of.setdefault(kernel, Sample())
         if sample.seen % sample.stride == 0:
             if len(sample.kept) == self.most:

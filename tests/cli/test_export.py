@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 from bfsim.cli.main import main
 from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
+from tests.test_kernel_from import SUMS
 from tests.test_run import FIRMWARE
 
 
@@ -51,6 +52,15 @@ def test_nothing_is_overwritten_unless_asked(eyes: str, tmp_path: Path) -> None:
     assert (folder / "kernels.h").read_text() == "mine"
     assert ran(eyes, folder, "--force")[0] == 0
     assert (folder / "kernels.h").read_text() != "mine"
+
+
+def test_kernels_of_other_languages_are_left_out(tmp_path: Path) -> None:
+    """Object code is no Python to be written as C: it ended with a traceback."""
+    (tmp_path / "fw_two.py").write_text(f"{FIRMWARE}\n{SUMS}")
+    code, output = ran(f"{tmp_path}/fw_two.py:eyes", tmp_path / "c")
+    assert (code, output.splitlines()[1]) == (0, "Left out, for they are no Python: sums (sums.c)")
+    assert "threshold" in (tmp_path / "c" / "kernels.h").read_text()
+    assert "sums" not in (tmp_path / "c" / "kernels.h").read_text()
 
 
 def test_a_file_is_no_folder(eyes: str, tmp_path: Path) -> None:
