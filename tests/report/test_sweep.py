@@ -98,6 +98,19 @@ def test_a_line_is_a_setting_over_its_recordings() -> None:
     assert found == (8, 5, 14, 6, 1024, 3)
 
 
+def test_of_settings_that_the_cameras_bound_the_one_that_works_least_is_first() -> None:
+    """Rates differ by when their pictures came: the one that did most stood first."""
+    columns = ("frame.max ms", "latency.median ms", "on_chip B", "missed")
+
+    def shown(name: str, rate: float, frame: float) -> Shown:
+        return Shown(
+            name, "a", {**dict.fromkeys(columns, 1), "frame_rate Hz": rate, "frame.median ms": frame}
+        )
+
+    points = [shown("sdram", 60.04, 0.85), shown("L1", 59.98, 0.17), shown("late", 40.0, 0.1), shown("L2", 60.01, 0.3)]  # fmt: skip
+    assert [each.name for each in lines_of(points)] == ["L1", "L2", "sdram", "late"]
+
+
 @pytest.mark.parametrize(("frames", "is_said"), [((2, 1), True), ((2, 2), False)])
 def test_the_rate_of_one_frame_is_explained(frames: tuple[int, int], is_said: bool) -> None:
     """Beneath the table that has it, as on the screen of a run."""

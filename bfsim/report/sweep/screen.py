@@ -21,6 +21,8 @@ from bfsim.report.units import KIB
 FAILURES_SHOWN = 5
 NAMES_SHOWN = 3
 ON_FRONT = "*"
+RATE_SHARE = 0.002
+"""Rates of firmware that waits for pictures differ by up to so much: by where in a few frames its waits begin and end."""
 
 
 ONE_FRAME = "Hz of a run of one frame has the wait for its picture in it, frame has not: run two or more."
@@ -78,7 +80,7 @@ def point_list(points: Sequence[tuple[str, int, str]]) -> RenderableType:
 
 
 def lines_of(points: Iterable[Shown]) -> list[Line]:
-    """Return a line for each setting of points that are done; the fastest one first."""
+    """Return a line for each setting of points that are done; the fastest one first, of those as fast the one with the shortest frames."""
     by_name = defaultdict[str, list[Row]](list)
     for each in points:
         by_name[each.setting].append(each.row)
@@ -95,7 +97,16 @@ def lines_of(points: Iterable[Shown]) -> list[Line]:
         )
         for name, group in by_name.items()
     ]
-    return sorted(lines, key=lambda each: -each.frame_rate_hz)
+    return list(_ranked(sorted(lines, key=lambda each: -each.frame_rate_hz)))
+
+
+def _ranked(lines: Sequence[Line]) -> Iterator[Line]:
+    """Yield lines that are sorted by their rates with those first that do less, where rates differ no more than by how pictures come."""
+    rest = list(lines)
+    while rest:
+        alike = [each for each in rest if each.frame_rate_hz >= (1 - RATE_SHARE) * rest[0].frame_rate_hz]
+        yield from sorted(alike, key=lambda each: each.frame_ms)
+        rest = rest[len(alike) :]
 
 
 def _numbers(rows: Iterable[Row], column: str) -> list[float]:
