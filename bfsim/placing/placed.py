@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from bfsim.trace import Identity
 
+NEAR_CAMERA = 1.01
+"""The cameras bound a frame that takes up to so many times the time between two pictures."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:

@@ -18,7 +18,7 @@ from bfsim.machine.symbols import require_cores, symbols_of
 from bfsim.placing.ldf import LdfWriter
 from bfsim.placing.measured import Measured, busy_of, frame_cclk
 from bfsim.placing.model import Model
-from bfsim.placing.placed import Fill, Placed, PlacedPart, Trial
+from bfsim.placing.placed import NEAR_CAMERA, Fill, Placed, PlacedPart, Trial
 from bfsim.placing.reasons import about, accesses_of, cost_ms, reason
 from bfsim.recording import RecordingReader
 from bfsim.report.budget import milliseconds
@@ -121,13 +121,15 @@ def _tries(
         seen.add(places)
         last = run(places)
         measured.add(last, model.code_levels(places))
-        best_cclk = min(best_cclk, _score_cclk(last))
+        best_cclk = min(best_cclk, _score_cclk(last, camera_cclk))
         yield _Try(places, predicted_cclk, last)
 
 
-def _score_cclk(run: RunRecord) -> float:
-    """Return what makes one placement better than another."""
-    return frame_cclk(run) + BUSY_WEIGHT * max(busy_of(run).values())
+def _score_cclk(run: RunRecord, camera_cclk: float) -> float:
+    """Return what makes one placement better than another. Frames that the cameras bound are equally long."""
+    frame = float(frame_cclk(run))
+    bounded = camera_cclk if frame <= NEAR_CAMERA * camera_cclk else frame
+    return bounded + BUSY_WEIGHT * max(busy_of(run).values())
 
 
 def _placed(
@@ -141,8 +143,9 @@ def _placed(
 ) -> Placed:
     """Return the records of the best placement that was run. `moved_in`: the first one, where the LDF had no room."""
     hz = first.identity.cclk_hz
-    better = [each for each in tries if _score_cclk(each.run) < (1 - LEAST) * _score_cclk(first)]
-    best = min(better, key=lambda each: _score_cclk(each.run), default=None)
+    enough = (1 - LEAST) * _score_cclk(first, camera_cclk)
+    better = [each for each in tries if _score_cclk(each.run, camera_cclk) < enough]
+    best = min(better, key=lambda each: _score_cclk(each.run, camera_cclk), default=None)
     after, places = (best.run, best.places) if best else (first, moved_in)
     homes: Homes = moved_in or tuple(each.home for each in model.parts)
     parts = tuple(_parts(model, measured, homes, places)) if places else ()

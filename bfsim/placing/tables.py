@@ -10,15 +10,13 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.placing.placed import Placed
+from bfsim.placing.placed import NEAR_CAMERA, Placed
 from bfsim.report.jsonable import jsonable
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.report.units import size
 
 SCHEMA = "bfsim.place/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
-NEAR_CAMERA = 1.01
-"""The cameras bound a frame that takes up to so many times the time between two pictures."""
 
 LONGEST_NAME = 20
 
