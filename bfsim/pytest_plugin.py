@@ -53,12 +53,12 @@ def bfsim(request: pytest.FixtureRequest) -> Callable[..., Run]:
     """Return `bfsim.run.simulate`, which runs the same configuration once a session, and fails the test if a run breaks its `frame_budget`."""
     from bfsim.result import Run
 
-    with _mistakes_of_the_marker():
+    with _mistakes():
         required = [each for mark in request.node.iter_markers(MARK) for each in _sentences(mark)]
 
     def run(*recording: Any, **what: Any) -> Run:
         result = _once(request.config, *recording, **what)
-        with _mistakes_of_the_marker():
+        with _mistakes():
             broken = _broken(result, required)
         request.node.stash[_IS_HELD] = True
         if broken:
@@ -84,14 +84,15 @@ def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]
 
     def check(baseline: str = "budget.toml", case: str | None = None) -> dict[str, Run]:
         path = request.path.parent / baseline
-        cases = chosen(read_baseline(path), path, None, case, "", update=False)
-        for each in cases:
-            require_comparable(each, path)
-        results = {
-            each.name: _once(request.config, **arguments_of(each.configuration, path.parent))
-            for each in cases
-        }
-        outcomes = [judge(each, results[each.name], path) for each in cases]
+        with _mistakes():
+            cases = chosen(read_baseline(path), path, None, case, "", update=False)
+            for each in cases:
+                require_comparable(each, path)
+            results = {
+                each.name: _once(request.config, **arguments_of(each.configuration, path.parent))
+                for each in cases
+            }
+            outcomes = [judge(each, results[each.name], path) for each in cases]
         told = [f"{verdict_line(each)}\n{_told(each)}" for each in outcomes if not each.passed]
         if told:
             pytest.fail("\n\n".join(told), pytrace=False)
@@ -129,13 +130,13 @@ def _result(*recording: Any, on_seen: Callable[[SeenFrame], None] | None = None,
 
 
 @contextmanager
-def _mistakes_of_the_marker() -> Iterator[None]:
-    """Fail the test with what is wrong in its marker, without the code that found it."""
-    from bfsim.errors import ConfigError
+def _mistakes() -> Iterator[None]:
+    """Fail the test with what is wrong in its marker or baseline, without the code that found it."""
+    from bfsim.errors import BfsimError
 
     try:
         yield
-    except ConfigError as error:
+    except BfsimError as error:
         pytest.fail(str(error), pytrace=False)
 
 

@@ -61,6 +61,9 @@ def test_kept_limits(bfsim_check):
 
 def test_broken_limits(bfsim_check):
     bfsim_check()
+
+def test_no_baseline(bfsim_check):
+    bfsim_check("limits.toml")
 """
 BASELINE = """
 [[run]]
@@ -99,7 +102,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "6 failed, 4 passed, 2 errors" in told
+    assert "7 failed, 4 passed, 2 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -117,7 +120,10 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert "@pytest.mark.frame_budget: min_hz must be a number, not '15'" in told
     assert "@pytest.mark.frame_budget: max_ms must be min_hz or stages" in told
     assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
-    assert "pytest_plugin.py:" not in told  # a mistake in a marker is told without the code that found it
+    assert "limits.toml must be a baseline file, but there is none" in told
+    assert (
+        "pytest_plugin.py:" not in told
+    )  # a mistake in a marker or a baseline is told without the code that found it
 
 
 def test_who_does_not_use_it_does_not_wait_for_it() -> None:
