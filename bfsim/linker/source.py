@@ -29,6 +29,13 @@ class Place:
         return f"line {self.line}" if self.path == other.path else str(self)
 
 
+def _visible(character: str) -> str:
+    """Return a character of a source line as one place of a terminal: a file that is no LDF may have any."""
+    if character.isprintable():
+        return character
+    return " " if character == "\t" else "\N{REPLACEMENT CHARACTER}"
+
+
 @dataclass(frozen=True)
 class File:
     """A file as written, and which line of which file includes it (None: the LDF itself)."""
@@ -49,7 +56,7 @@ class File:
         """Return a LinkError about the character `offset`: place, source line, caret."""
         line_start = self.written.rfind("\n", 0, offset) + 1
         rest = self.written[line_start : max(offset, line_start) + _LONGEST_EXCERPT]
-        line = rest.partition("\n")[0].expandtabs(1)
+        line = "".join(map(_visible, rest.partition("\n")[0]))
         column = offset - line_start + 1
         cut = max(0, column - _LONGEST_EXCERPT)
         via = f" (included from {self.included_at})" if self.included_at else ""

@@ -168,6 +168,15 @@ def test_commands_that_place_nothing_are_read(parse: Parse) -> None:
     assert [placed.symbol.name for placed in link(script, symbols).placements] == ["data1", ".bss", "bsz"]
 
 
+def test_what_a_terminal_would_obey_is_not_shown(parse: Parse) -> None:
+    """A file that is no LDF may have anything in its line; the caret stays where it belongs."""
+    with pytest.raises(LinkError) as error:
+        parse("\x1b[2J\t\x07MEMORY { M { WITH(8) } }\n")
+    _, source_line, caret_line = str(error.value).splitlines()
+    assert source_line == "\ufffd[2J \ufffdMEMORY { M { WITH(8) } }"
+    assert caret_line == "^"
+
+
 def test_caret_points_into_the_file_as_written(parse: Parse) -> None:
     """Line, column and caret hold although a comment, a macro and a continued line come first."""
     text = "/* two\n lines */\n#define A \\\n 1\nMEMORY { M { START(A) /* é */ LENGTH(8) WITH(8) } }\n"
