@@ -104,8 +104,8 @@ def _require_alike(
             differences.append(f"{key} {name} {_difference(key, then, now)}")
     if then.differs_in("code", now):
         differences.append(
-            f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)} (with the compiler of then on "
-            "the PATH it is the same; limits of --profile gcc-O2, an estimate, need none)"
+            f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)} (it is that of the "
+            "compiler on the PATH, or else kept from one; limits of --profile gcc-O2, an estimate, need none)"
         )
     if differences:
         raise ConfigError(

@@ -104,7 +104,10 @@ def _region_under(segment: Segment, regions: Sequence[Region]) -> Region:
     try:
         return regions_under(segment.start, segment.nbytes, regions)[0]
     except ConfigError as error:
-        advice = "`bfsim boards NAME` lists the memories of a board, and --board takes another one"
+        advice = (
+            "`bfsim boards NAME` lists the memories of a board, --board takes another one, and --set sdram.bank_bytes=BYTES "
+            "another size of SDRAM"
+        )
         raise LinkError(f"{segment.place}: segment '{segment.name}': {error}; {advice}") from None
 
 

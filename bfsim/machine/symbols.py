@@ -20,9 +20,14 @@ def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
     """Raise FirmwareError unless the firmware is for the cores of the board's chip."""
     if set(firmware.mains) != set(spec.chip.cores):
         cores, known = ", ".join(spec.chip.cores), ", ".join(sorted(firmware.mains))
+        idle = (
+            "; that of a core without work only asks for the next frame"
+            if set(firmware.mains) < set(spec.chip.cores)
+            else ""
+        )
         raise FirmwareError(
-            f"firmware must have main loops for {cores}, not for {known} (board {spec.name}); --board takes another board, of "
-            "those that `bfsim boards` lists"
+            f"firmware must have main loops for {cores}, not for {known} (board {spec.name}){idle}; --board takes another board, "
+            "of those that `bfsim boards` lists"
         )
 
 
