@@ -19,6 +19,7 @@ from bfsim.compiling import file_code
 from bfsim.errors import ConfigError, KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2
+from bfsim.loading import load_kernel
 from bfsim.machine.memories import Memories
 
 DATA = Path(__file__).parent / "blackfin" / "data"
@@ -209,6 +210,23 @@ def test_arguments_are_checked_as_those_of_other_kernels() -> None:
         kernel(ROW, out, 1 << 40, 2)
     with pytest.raises(KernelError, match="out must be one contiguous row of int32"):
         kernel(ROW, ROW, 32, 2)
+
+
+def test_a_kernel_in_python_cannot_call_it(tmp_path: Path) -> None:
+    """Its code is its own: the call is refused when the kernel is read. It was taken for Python, with a traceback in a run."""
+    (tmp_path / "fw_calls.py").write_text(
+        f"""from bfsim.api import i32, kernel, u8
+{SUMS}
+
+@kernel
+def calls(row: u8[:], out: i32[:]) -> i32:
+    return sums(row, out, len(row), 2)
+"""
+    )
+    with pytest.raises(
+        KernelError, match="a kernel cannot call sums, which is no Python; call it from the main loop"
+    ):
+        load_kernel("fw_calls:calls", f"{tmp_path}/fw_calls.py:firmware")
 
 
 def test_a_source_needs_a_compiler_or_kept_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

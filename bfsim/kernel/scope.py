@@ -28,6 +28,10 @@ class KernelScope(Expressions):
             return self._cast(node, target)
         callee = getattr(target, "function", None)
         if isinstance(callee, Function):
+            if getattr(target, "object_code", None) is not None:
+                self.source.refuse(
+                    node, f"a kernel cannot call {name}, which is no Python", "call it from the main loop"
+                )
             return self._kernel_call(node, callee)
         if (intrinsic := INTRINSICS.get(target)) is not None:
             return self._intrinsic(node, intrinsic)
