@@ -55,7 +55,7 @@ def check_memories(script: LinkerScript, regions: Sequence[Region]) -> None:
     _check_views(script)
     used = {output.segment for block in script.blocks for output in block.output_sections if output.segment}
     region_by_segment = {
-        segment.name: _region_under(segment, regions) for segment in script.segments if segment.name in used
+        segment.name: region_under(segment, regions) for segment in script.segments if segment.name in used
     }
     for name, region in region_by_segment.items():
         segment = script.segment_by_name[name]
@@ -99,8 +99,8 @@ def _check_views(script: LinkerScript) -> None:
             )
 
 
-def _region_under(segment: Segment, regions: Sequence[Region]) -> Region:
-    """Return the memory under a segment, the first one of several."""
+def region_under(segment: Segment, regions: Sequence[Region]) -> Region:
+    """Return the memory under a segment, the first one of several; raise LinkError with its place in the LDF where there is none."""
     try:
         return regions_under(segment.start, segment.nbytes, regions)[0]
     except ConfigError as error:

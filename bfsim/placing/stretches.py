@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from bfsim.chip.memory_map import Region, regions_under
+from bfsim.chip.memory_map import Region
 from bfsim.linker import LinkerScript
+from bfsim.linker.checks import region_under
 from bfsim.linker.filling import Filling, align_up
 from bfsim.linker.script import Reserve, Segment
 
@@ -83,7 +84,7 @@ def reserves_in(script: LinkerScript, start: int) -> Iterator[Reserve]:
 def _stretches(
     script: LinkerScript, segment: Segment, regions: Sequence[Region], line_bytes: int
 ) -> Iterator[Stretch]:
-    region = regions_under(segment.start, segment.nbytes, regions)[0]
+    region = region_under(segment, regions)
     if region.memory not in LEVELS:
         return
     level = LEVELS[region.memory]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -193,6 +194,18 @@ def test_nothing_is_overwritten(home: Path) -> None:
     done = bfsim("place", "drive.mcap", "--firmware", name, "--ldf", "sdram", "-o", "placed.ldf", "--force")
     assert done.exit_code == 0, done.output
     assert Path("placed.ldf").read_text().startswith("/*\n** Written by `bfsim place` for mine:firmware")
+
+
+def test_a_segment_without_memory_is_named(home: Path) -> None:
+    """With its place, and what to do, as by `bfsim ldf`: it was told by its address alone."""
+    Path("large.ldf").write_text(
+        '#undef SDRAM_BANK_BYTES\n#define SDRAM_BANK_BYTES 16M\n#define CACHES 0\n#include "cm-bf561.ldfi"\n'
+    )
+    done = bfsim("place", "drive.mcap", "--firmware", firmware("mine"), "--ldf", "large.ldf")
+    assert done.exit_code == 2
+    told = " ".join(done.stderr.split())
+    assert re.search(r"cm-bf561\.ldfi:\d+: segment 'MEM_SDRAM_BANK\d': \d+ bytes at 0x", told), told
+    assert "--set sdram.bank_bytes=BYTES another size of SDRAM" in told
 
 
 def test_what_does_not_fit_is_named(home: Path) -> None:
