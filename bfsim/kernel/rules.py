@@ -84,6 +84,9 @@ class Rule(StrEnum):
     )
     SKIPPED_ITERATIONS = "an iteration that a `continue` skips at one value of its counter is none: the counter is the next one"
     THREADED_HINTS = "a `continue` makes each way to it unlikely, also those that jumps of an inlined kernel were threaded to"
+    PREDICTIVE_COMMONING = (
+        "what an iteration loads that an earlier one has loaded or stored goes along in registers"
+    )
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
@@ -107,6 +110,7 @@ GCC: dict[Rule, str] = {
     Rule.NARROW_CHOICES: "factor_out_conditional_conversion in tree-ssa-phiopt.cc",
     Rule.SKIPPED_ITERATIONS: "tree-ssa-threadbackward.cc",
     Rule.THREADED_HINTS: "predict_paths_leading_to in predict.cc",
+    Rule.PREDICTIVE_COMMONING: "tree-predcom.cc, which the vectoriser of -O2 brings along",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -181,5 +185,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.NARROW_CHOICES: (),
     Rule.SKIPPED_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_threaded_jumps.py
     Rule.THREADED_HINTS: (),
+    Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/test_predictive_commoning.py
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

@@ -13,6 +13,7 @@ from bfsim.kernel.lowering.induction_variables import HIDDEN, InductionVariables
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.predict import Likelihood
+from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.ranges import ranges
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.tail_calls import TailCall, tail_calls
@@ -97,6 +98,8 @@ class Context:
         each = self.flow.instruction(narrow)
         if each is None or each.opcode == "load" or depth == 0:
             return True
+        if ALONG in narrow:
+            return False
         if each.opcode in ("add", "sub", "mul", "shl") and not {"nuw", "nsw"} & set(each.text.split()):
             return False
         if each.opcode == "and":

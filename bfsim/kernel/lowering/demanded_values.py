@@ -20,6 +20,7 @@ from bfsim.kernel.lowering.induction_variable_elimination import eliminated_coun
 from bfsim.kernel.lowering.induction_variables import InductionVariables
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.powers import divided_by_power
+from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
 from bfsim.kernel.lowering.widths import BYTE
@@ -341,7 +342,8 @@ class DemandedValues(Folding):
         low_byte = user.opcode == "and" and user.operands[1] == "255" and self.profile.applies(Rule.RAW_BYTE)
         chosen = user.opcode == "phi" and user.bits in NARROW and self.profile.applies(Rule.NARROW_CHOICES)
         stored = chosen and all(each.opcode == "store" for each in self.users(user.result or ""))
-        return user.opcode == "store" or low_byte or stored or self.narrowed(user)
+        along = user.opcode == "phi" and ALONG in (user.result or "")
+        return user.opcode == "store" or low_byte or stored or along or self.narrowed(user)
 
     def narrowed(self, each: Instruction) -> bool:
         """Whether a sum is stored as a narrow value and used as a wide one: C compilers compute it twice."""

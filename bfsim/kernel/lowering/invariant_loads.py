@@ -19,13 +19,13 @@ def hoist_loads(routine: Routine) -> Routine:
     """Return `routine` with such loads, and what their addresses are computed from, before their loops."""
     flow = ControlFlow(routine)
     for loop in flow.loops:
-        moved = _Hoisting(flow, loop).moved()
+        moved = Hoisting(flow, loop).moved()
         if moved:
             return hoist_loads(_before(routine, flow, loop, moved))
     return routine
 
 
-class _Hoisting:
+class Hoisting:
     """What leaves one loop: loads, and before each of them the instructions that its address needs."""
 
     def __init__(self, flow: ControlFlow, loop: Loop) -> None:
@@ -39,14 +39,14 @@ class _Hoisting:
         if len(outside) != 1 or any(each.is_call for each in self.inside):
             return []
         for each in self.inside:
-            if each.opcode == "load" and (needed := self._needed(each)) is not None:
+            if each.opcode == "load" and (needed := self.needed(each)) is not None:
                 self.leaving += [before for before in needed if not self._leaves(before)]
         return self.leaving
 
     def _leaves(self, each: Instruction) -> bool:
         return any(each is other for other in self.leaving)
 
-    def _needed(self, each: Instruction) -> list[Instruction] | None:
+    def needed(self, each: Instruction) -> list[Instruction] | None:
         """An instruction, behind all of the loop that it is computed from; None if it has to stay."""
         if not self._may_leave(each):
             return None
@@ -55,7 +55,7 @@ class _Hoisting:
             if self.flow.is_invariant(operand, self.loop):
                 continue
             source = self.flow.instruction(operand)
-            needed = self._needed(source) if source is not None else None
+            needed = self.needed(source) if source is not None else None
             if needed is None:
                 return None
             found += [before for before in needed if not any(before is other for other in found)]

@@ -8,6 +8,7 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.webs import Webs
 from bfsim.kernel.rules import Rule
 
@@ -41,13 +42,17 @@ class Moves:
                     move = MachineInstruction(
                         Op.MOVE, line, phi, RegisterBank.ANY, ((value, RegisterBank.ANY),)
                     )
+                    if ALONG in phi and self._is_kept_apart(
+                        value, self._following(value, label), label, home
+                    ):
+                        continue  # the copy of the next one is made for this one, too
                     if self._is_kept_apart(phi, value, label, home):
                         kept = MachineInstruction(
                             Op.MOVE, line, None, RegisterBank.ANY, ((phi, RegisterBank.ANY),)
                         )
                         self.code.add(home, kept)
                         continue
-                    if self._is_before_the_test(phi, label, home):
+                    if self._is_before_the_test(phi, value, label, home):
                         self.code.add(label, move)
                         continue
                     self._on_edge(label, home, move)
@@ -61,7 +66,8 @@ class Moves:
         """Whether the old value is copied in the header, before the new one is computed there [insert_backedge_copies].
 
         Then the two share a register, and nothing is copied on the way back. It is if the old value is wanted after that or
-        behind the header, unless another variable takes it over.
+        behind the header, unless another variable takes it over. What goes along is even then, if GCC sees that it is taken over: not in
+        a loop of one block with a variable before it, for which the statements have been numbered already.
         """
         where, new = self.flow.defined.get(value.removesuffix(".wide"), ("", None))
         critical = home in self.flow.dominators[label] and len(set(self.flow.blocks[label].successors)) > 1
@@ -71,16 +77,43 @@ class Moves:
         places = [
             rows.index(id(each)) if id(each) in rows else len(rows) for each in self.flow.users.get(phi, [])
         ]
-        taken_over = any((phi, label) in arms for arms in self.webs.phis.values())
-        return not taken_over and any(place > rows.index(id(new)) for place in places)
+        if self._is_taken_over(phi, label):
+            return ALONG in phi and not (label == home and self._is_numbered(phi, home))
+        return any(place > rows.index(id(new)) for place in places)
 
-    def _is_before_the_test(self, phi: str, label: str, home: str) -> bool:
+    def _is_numbered(self, along: str, home: str) -> bool:
+        """Whether a variable before `along` is used and computed anew in a loop of one block [maybe_renumber_stmts_bb]."""
+        if f"{ALONG}0." not in along:
+            return True  # the last one of the chain before
+        for phi in self.webs.phis:
+            new = self.flow.instruction(self._following(phi, home).removesuffix(".wide"))
+            if (
+                ALONG not in phi
+                and new is not None
+                and new.opcode != "phi"
+                and self.flow.defined[phi][0] == home
+            ):
+                return True
+        return False
+
+    def _following(self, phi: str, label: str) -> str:
+        """What a phi is behind block `label`; nothing if the value is no phi."""
+        return next((value for value, source in self.webs.phis.get(phi, ()) if source == label), "")
+
+    def _is_taken_over(self, phi: str, label: str) -> bool:
+        """Whether another variable gets the old value at the end of block `label`."""
+        return any((phi, label) in arms for arms in self.webs.phis.values())
+
+    def _is_before_the_test(self, phi: str, value: str, label: str, home: str) -> bool:
         """Whether a copy that goes with a back edge is made before the test there [insert_backedge_copies, tree-outof-ssa.cc].
 
-        So it is unless a variable that was declared later takes over the old value in turn, or the old value is still wanted
-        behind the loop.
+        So it is unless a variable that was declared later takes over the old value in turn, or one that goes along with it, or the old
+        value is still wanted behind the loop.
         """
         if label not in self.flow.blocks or home not in self.flow.dominators[label]:
+            return False
+        new = self.flow.instruction(value.removesuffix(".wide"))
+        if ALONG in phi and new is not None and new.opcode != "phi" and self._is_taken_over(phi, label):
             return False
         later = (other for other in self.webs.phis if _declared(other) > _declared(phi))
         taken_over = any((phi, label) in self.webs.phis[other] for other in later)

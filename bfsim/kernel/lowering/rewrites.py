@@ -20,6 +20,7 @@ from bfsim.kernel.lowering.lagging_counters import without_lagging
 from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.narrow_tests import with_narrow_tests
 from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
+from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
@@ -48,6 +49,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     sink,
     hoist_loads,
     with_final_values,
+    with_predictive_commoning,
 )
 """In this order."""
 SWITCHES = {
@@ -61,6 +63,7 @@ SWITCHES = {
     copy_headers: Rule.COPIED_HEADERS,
     copy_breaks: Rule.COPIED_BREAKS,
     with_final_values: Rule.FINAL_VALUES,
+    with_predictive_commoning: Rule.PREDICTIVE_COMMONING,
 }
 """Those that can be left out."""
 
