@@ -12,6 +12,7 @@ from bfsim.machine.calls.conflicts import COUNT as COUNT_EVENTS
 from bfsim.machine.calls.ledger import (
     CHARGE,
     CHARGE_SITES,
+    CONFLICTS,
     EVENT,
     FILLS,
     OF_CALLS,
@@ -84,22 +85,34 @@ def test_events_are_counted_since_the_last_time() -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_costs_have_their_owners(seed: int) -> None:
-    """What events cost in calls, issue cycles and interlocks, and what sites have stalled by reason; line fills are no stall."""
+    """What events cost in calls, issue cycles and interlocks, and what sites have stalled by reason; line fills are no stall.
+
+    Where a site has counted anything is told, and the counts are kept for the next time.
+    """
     random = np.random.default_rng(seed)
     charges = random.integers(0, 100, (5, COUNT))
     charges[EVENT], charges[OWNER] = random.integers(0, COUNTERS, COUNT), random.integers(0, OWNERS, COUNT)
     before = random.integers(0, 1000, COUNTERS), random.integers(0, 1000, (SITES, FILLS + 1))
     since = random.integers(0, 1000, COUNTERS), random.integers(0, 3, (SITES, FILLS + 1))
+    since[1][w.NO_SITE] = 0  # what no kernel stalls is nobody's, whatever the bus counts
     now = tuple(one + other for one, other in zip(before, since, strict=True))
+    on_bus, conflicts = random.integers(0, 9, (SITES, w.SITE_WORDS)), now[1][:, CONFLICTS].copy()
+    on_bus[1:, : w.STALLS], on_bus[1:, w.FILLS] = now[1][1:, : w.STALLS], now[1][1:, FILLS]
     owners, costs = random.integers(0, OWNERS, SITES), np.zeros((OWNERS, COLUMNS), np.int64)
+    places, amounts = np.zeros((2, since[1].size), np.int64)
 
     expected = np.zeros_like(costs)
     charged = since[0][charges[EVENT]] * charges[OF_CALLS:]
     np.add.at(expected, (charges[OWNER], np.array(CHARGED)[:, np.newaxis]), charged)
     np.add.at(expected, (owners[:, np.newaxis], SITE_COLUMNS), since[1][:, :FILLS])
 
-    events, sites = ([each.ctypes.data for each in pair] for pair in zip(now, before, strict=True))
+    events = (each.ctypes.data for each in (now[0], before[0]))
     CHARGE(charge_events.address())(charges.ctypes.data, COUNT, *events, costs.ctypes.data)
-    columns = SITE_COLUMNS.ctypes.data
-    CHARGE_SITES(charge_sites.address())(owners.ctypes.data, SITES, columns, *sites, costs.ctypes.data)
+    arrays = (
+        each.ctypes.data for each in (SITE_COLUMNS, on_bus, conflicts, before[1], costs, places, amounts)
+    )
+    found = CHARGE_SITES(charge_sites.address())(owners.ctypes.data, SITES, *arrays)
     assert (costs == expected).all()
+    assert places[:found].tolist() == np.flatnonzero(since[1]).tolist()
+    assert amounts[:found].tolist() == since[1][since[1] != 0].tolist()
+    assert (before[1] == now[1]).all()
