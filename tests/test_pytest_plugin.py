@@ -121,9 +121,8 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert "@pytest.mark.frame_budget: max_ms must be min_hz or stages" in told
     assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
     assert "limits.toml must be a baseline file, but there is none" in told
-    assert (
-        "pytest_plugin.py:" not in told
-    )  # a mistake in a marker or a baseline is told without the code that found it
+    # a mistake in a marker or a baseline is told without the code that found it
+    assert "pytest_plugin.py:" not in told
 
 
 def test_who_does_not_use_it_does_not_wait_for_it() -> None:

@@ -226,6 +226,10 @@ class ControlFlow:
             pointer = names[1 if instruction.opcode == "select" else 0] if names else pointer
         return pointer
 
+    def always_run(self, loop: Loop) -> frozenset[str]:
+        """The blocks that run whenever `loop` is entered: no way leaves it before them [last_always_executed_block in tree-predcom.cc of GCC 12]."""
+        return frozenset.intersection(*(self.dominators[each] for each in (loop.latch, *self.exits(loop))))
+
     def every_iteration(self, label: str, loop: Loop) -> bool:
         """Whether a block runs once in each iteration of `loop`."""
         return label in self.dominators[loop.latch] and self.innermost(label) is loop

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +26,16 @@ def run(
     code = kernel.compile(profile, traced=access_trace is not None)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
     return kernel.prepare(code, arrays, code.new_totals(), access_trace).run(arguments)
+
+
+def check_against_python(kernel: Kernel, given: Sequence[Any], profile: CompilerProfile) -> None:
+    """Assert that a kernel returns and leaves what Python does, whose numbers are then cut to the elements' types."""
+    plain = [each.tolist() if isinstance(each, np.ndarray) else each for each in given]
+    assert kernel.python is not None
+    assert run(kernel, *given, profile=profile).value == kernel.python(*plain)
+    for mine, theirs in zip(given, plain, strict=True):
+        if isinstance(mine, np.ndarray):
+            assert mine.tolist() == np.array(theirs, np.int64).astype(mine.dtype).tolist()
 
 
 def cclk(kernel: Kernel, *arguments: Any) -> int:

@@ -10,7 +10,7 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel.isa import Op
 from tests.kernel.modules import import_text
-from tests.kernel.running import run
+from tests.kernel.running import check_against_python, run
 from tests.kernel.test_lowering import lowered
 from tests.kernel.test_partial_redundancies import arguments
 
@@ -165,11 +165,7 @@ def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_
     """What is costed is what runs: stores that became one, tests that are answered, comparisons that are narrow."""
     kernel = kernel_of(name, tmp_path)
     given = arguments(kernel)
-    plain = [each.tolist() if isinstance(each, np.ndarray) else each for each in given]
-    assert run(kernel, *given, profile=profile).value == kernel.python(*plain)
-    for mine, theirs in zip(given, plain, strict=True):
-        if isinstance(mine, np.ndarray):
-            assert mine.tolist() == np.array(theirs, np.int64).astype(mine.dtype).tolist()
+    check_against_python(kernel, given, profile)
 
 
 def test_narrow_choices_are_gccs_alone(tmp_path: Path) -> None:

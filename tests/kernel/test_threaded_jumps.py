@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel.isa import Op
 from tests.kernel.modules import import_text
-from tests.kernel.running import run
+from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
 from tests.kernel.test_partial_redundancies import arguments
 
@@ -112,10 +111,7 @@ def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """An iteration is skipped where nothing else happens in it, and no other one."""
     kernel = kernel_of(CASES[name][0] if name in CASES else OTHERS[name], tmp_path)
-    given = arguments(kernel)
-    plain = [each.tolist() if isinstance(each, np.ndarray) else each for each in given]
-    assert kernel.python is not None
-    assert run(kernel, *given, profile=profile).value == kernel.python(*plain)
+    check_against_python(kernel, arguments(kernel), profile)
 
 
 def test_the_loop_is_not_counted_any_more(tmp_path: Path) -> None:

@@ -63,14 +63,9 @@ class Hoisting:
 
     def _may_leave(self, each: Instruction) -> bool:
         if each.opcode == "load":
-            return self._is_always_made(each) and not self._is_written(each)
+            label, _ = self.flow.defined[each.result or ""]
+            return label in self.flow.always_run(self.loop) and not self._is_written(each)
         return (each.opcode not in FIXED or each.is_computation) and not each.is_division
-
-    def _is_always_made(self, load: Instruction) -> bool:
-        """Whether a load is made whenever the loop is entered: no way leaves the loop before it."""
-        label, _ = self.flow.defined[load.result or ""]
-        ends = (self.loop.latch, *self.flow.exits(self.loop))
-        return all(label in self.flow.dominators[end] for end in ends)
 
     def _is_written(self, load: Instruction) -> bool:
         stores = (each for each in self.inside if each.opcode == "store")

@@ -62,34 +62,23 @@ def with_predictive_commoning(routine: Routine) -> Routine:
 
 def _chains(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> Iterator[Chain]:
     """Yield the chains of a loop; a chain of values that need not be loaded in the first iteration is none [prepare_initializers_chain]."""
-    always = _always(flow, loop)
+    always = flow.always_run(loop)
     for rows in components(references(flow, evolution, loop) or []):
-        if not all(flow.every_iteration(each.label, loop) and each.label in always for each in rows):
-            continue
-        later = {id(each): rows[0].ahead_of(each) or 0 for each in rows}
-        ordered = sorted(rows, key=lambda each: (later[id(each)], rows.index(each)))
-        yield from _split(ordered, [later[id(each)] for each in ordered])
+        if all(each.label in always for each in rows):
+            later = [(each, rows[0].ahead_of(each) or 0) for each in rows]
+            yield from _split(sorted(later, key=lambda pair: pair[1]))
 
 
-def _always(flow: ControlFlow, loop: Loop) -> frozenset[str]:
-    """The blocks that run whenever the loop is entered [last_always_executed_block]."""
-    ends = [loop.latch, *flow.exits(loop)]
-    return frozenset.intersection(*(flow.dominators[each] for each in ends))
-
-
-def _split(rows: Sequence[Reference], later: Sequence[int]) -> Iterator[Chain]:
+def _split(rows: Sequence[tuple[Reference, int]]) -> Iterator[Chain]:
     """Split references, ordered by how much later they come, at stores and where they are far apart [determine_roots_comp]."""
     starts = [0]
-    for number, each in enumerate(rows):
-        if number and (each.writes or later[number] - later[starts[-1]] >= MOST_ITERATIONS):
+    for number, (each, later) in enumerate(rows):
+        if number and (each.writes or later - rows[starts[-1]][1] >= MOST_ITERATIONS):
             starts.append(number)
     for first, end in zip(starts, [*starts[1:], len(rows)], strict=True):
-        others = [
-            (each, later[first + 1 + number] - later[first])
-            for number, each in enumerate(rows[first + 1 : end])
-        ]
-        if others:
-            yield Chain(rows[first], tuple(others))
+        root, begin = rows[first]
+        if end > first + 1:
+            yield Chain(root, tuple((each, later - begin) for each, later in rows[first + 1 : end]))
 
 
 def _can_begin(flow: ControlFlow, root: Reference, loop: Loop) -> bool:
