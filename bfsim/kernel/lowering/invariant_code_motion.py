@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.value_numbers import ValueNumbers
 
 HOISTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr")
 FIXED = ("phi", "load", "store", "call", "br", "ret", "switch", "unreachable")
@@ -19,12 +20,19 @@ class InvariantCodeMotion:
         self.flow = flow
         self.of: dict[str, str] = {}
         self.same: dict[str, str] = {}
+        """What moves to where the same has moved already is computed once: the second result → the first."""
         self.hoisted: dict[str, str] = {}
         """What both sides of a test compute is computed once, before it: the second result → the first."""
+        values, moved = ValueNumbers(), dict[tuple[str, str], str]()
         for label in flow.order:
             for each in flow.blocks[label].instructions:
                 if each.result:
                     self.of[each.result] = self._place(each, label)
+                    values.add(each)
+                if each.result and self.of[each.result] != label:
+                    first = moved.setdefault((values.of(each.result), self.of[each.result]), each.result)
+                    if first != each.result:
+                        self.same[each.result] = first
             self._hoist(label)
 
     def is_invariant(self, value: str, loop: Loop) -> bool:

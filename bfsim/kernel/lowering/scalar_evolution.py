@@ -58,7 +58,7 @@ class ScalarEvolution:
         if value.lstrip("-").isdigit():
             return Affine(constant=int(value))
         each = self.flow.instruction(value)
-        alone = Affine(((value, 1),))
+        alone = Affine(((self.code_motion.same.get(value, value), 1),))
         if each is None or depth == 0:
             return alone
         last = each.operands[-1] if each.operands else ""
