@@ -25,6 +25,8 @@ class Moves:
         self.on_edges: dict[tuple[str, str], list[MachineInstruction]] = {}
         self._copies()
         self._overwrites()
+        if webs.context.profile.applies(Rule.SUM_CLASSES):
+            self._move_back()
         self._moves()
         self._results()
         self._constants()
@@ -187,6 +189,24 @@ class Moves:
                     )
                 block.append(instruction)
             self.code.of[label] = block
+
+    def _move_back(self) -> None:
+        """What two values in pointer registers give is moved to a data register: one move, not two."""
+        for label, block in self.code.of.items():
+            found: list[MachineInstruction] = []
+            for instruction in block:
+                found.append(instruction)
+                result = instruction.result
+                if instruction.op is Op.ALU and instruction.bank is RegisterBank.ANY and result:
+                    names = [name for name, _ in instruction.uses if not name.startswith("#")]
+                    banks = [self.bank.get(self.find(name)) for name in (*names, result)]
+                    if banks == [RegisterBank.POINTER] * 2 + [RegisterBank.DATA]:
+                        instruction.result = self._copy_of(result, RegisterBank.POINTER, "sum")
+                        uses = ((instruction.result, RegisterBank.ANY),)
+                        found.append(
+                            MachineInstruction(Op.MOVE, instruction.line, result, RegisterBank.ANY, uses)
+                        )
+            self.code.of[label] = found
 
     def _results(self) -> None:
         """What is returned goes to R0, from the other bank by a move."""
