@@ -42,7 +42,24 @@ def select(context: Context) -> MachineCode:
             if context.demanded.emits(each):
                 selector.emit(each, context.code_motion.of.get(each.result or "", label))
     selector.pointers()
+    if context.profile.applies(Rule.NARROW_TREES):
+        for label, block in selector.code.of.items():
+            selector.code.of[label] = _extended_where_used(block)
     return selector.code
+
+
+def _extended_where_used(block: list[MachineInstruction]) -> list[MachineInstruction]:
+    """A narrow value that is used as it is, too, is extended right before the first use that wants it wide [TER in tree-ssa-ter.cc]."""
+    wanted = {name for each in block for name, _ in each.uses}
+    found: list[MachineInstruction] = []
+    waiting: dict[str, MachineInstruction] = {}
+    for each in block:
+        found += [waiting.pop(name) for name, _ in each.uses if name in waiting]
+        if each.op is Op.EXTEND and each.result and each.result.endswith(".wide") and each.result in wanted:
+            waiting[each.result] = each
+        else:
+            found.append(each)
+    return found
 
 
 class _Selector(Accesses):
