@@ -87,6 +87,9 @@ class Rule(StrEnum):
     PREDICTIVE_COMMONING = (
         "what an iteration loads that an earlier one has loaded or stored goes along in registers"
     )
+    STEPPED_BETWEEN = (
+        "what is loaded is extended on its own if its pointer is kept before a step that comes between"
+    )
     NARROW_TREES = "of an expression that is stored as narrow, the operands are narrow, and extended apart for other uses"
     SUM_CLASSES = (
         "words that are loaded and added to a sum that is only added to are in pointer registers, and moved"
@@ -115,6 +118,7 @@ GCC: dict[Rule, str] = {
     Rule.SKIPPED_ITERATIONS: "tree-ssa-threadbackward.cc",
     Rule.THREADED_HINTS: "predict_paths_leading_to in predict.cc",
     Rule.PREDICTIVE_COMMONING: "tree-predcom.cc, which the vectoriser of -O2 brings along",
+    Rule.STEPPED_BETWEEN: "can_combine_p in combine.cc",
     Rule.NARROW_TREES: "convert_to_integer_1 in convert.cc",
     Rule.SUM_CLASSES: "find_costs_and_classes in ira-costs.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
@@ -192,6 +196,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.SKIPPED_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_threaded_jumps.py
     Rule.THREADED_HINTS: (),
     Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/test_predictive_commoning.py
+    Rule.STEPPED_BETWEEN: (),
     Rule.NARROW_TREES: (),
     Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/test_register_classes.py
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),

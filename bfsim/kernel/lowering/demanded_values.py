@@ -17,7 +17,7 @@ from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.induction_variable_elimination import eliminated_counters
-from bfsim.kernel.lowering.induction_variables import InductionVariables
+from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.predictive_commoning import ALONG
@@ -374,6 +374,8 @@ class DemandedValues(Folding):
     def extended_late(self, load: Instruction) -> bool:
         """Whether the load with the post-increment is extended on its own: others through its pointer come before its use."""
         variable = self.induction_variables.of.get(id(load))
+        if self._is_stepped_between(load, variable):
+            return True
         if not self.profile.applies(Rule.LATE_EXTENSION):
             return False
         if (
@@ -394,6 +396,18 @@ class DemandedValues(Folding):
         between = rows[rows.index(load) + 1 :]
         first_use = next((number for number, each in enumerate(between) if id(each) in ends), len(between))
         return any(each is access for each in between[:first_use] for _, access, _ in variable.accesses)
+
+    def _is_stepped_between(self, load: Instruction, variable: InductionVariable | None) -> bool:
+        """Whether a pointer that a counter is computed from is stepped between a load and the extension [modified_between_p in combine.cc]."""
+        kept = any(each.variable is variable for each in self.eliminated.values())
+        wide = any(user.opcode in ("zext", "sext") for user in self.users(load.result or ""))
+        return (
+            self.profile.applies(Rule.STEPPED_BETWEEN)
+            and variable is not None
+            and kept
+            and wide
+            and load in self.flow.blocks[variable.loop.header].instructions
+        )
 
     def ends_in(self, value: str, call: Instruction) -> bool:
         """Whether `call` is the only use of a value: then it is computed in the argument's register."""
