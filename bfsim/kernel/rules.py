@@ -87,6 +87,9 @@ class Rule(StrEnum):
     PREDICTIVE_COMMONING = (
         "what an iteration loads that an earlier one has loaded or stored goes along in registers"
     )
+    COUNTER_REGISTERS = (
+        "the counter of a hardware loop takes a pointer register while the registers are allocated"
+    )
     STEPPED_BETWEEN = (
         "what is loaded is extended on its own if its pointer is kept before a step that comes between"
     )
@@ -118,6 +121,7 @@ GCC: dict[Rule, str] = {
     Rule.SKIPPED_ITERATIONS: "tree-ssa-threadbackward.cc",
     Rule.THREADED_HINTS: "predict_paths_leading_to in predict.cc",
     Rule.PREDICTIVE_COMMONING: "tree-predcom.cc, which the vectoriser of -O2 brings along",
+    Rule.COUNTER_REGISTERS: "loop_end in bfin.md",
     Rule.STEPPED_BETWEEN: "can_combine_p in combine.cc",
     Rule.NARROW_TREES: "convert_to_integer_1 in convert.cc",
     Rule.SUM_CLASSES: "find_costs_and_classes in ira-costs.cc",
@@ -196,6 +200,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.SKIPPED_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_threaded_jumps.py
     Rule.THREADED_HINTS: (),
     Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/test_predictive_commoning.py
+    Rule.COUNTER_REGISTERS: (),
     Rule.STEPPED_BETWEEN: (),
     Rule.NARROW_TREES: (),
     Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/test_register_classes.py

@@ -70,13 +70,13 @@ class Pressure:
         )
         crowded: list[set[str]] = []
         for label in self.flow.inside(loop):
+            counters = self._counters(label, loop) if bank is RegisterBank.POINTER else 0
             for alive in self.points(label, across_calls=has_call):
                 here = {name for name in alive if self.bank.get(name) is bank and name not in spilled}
-                if len(here) + extra > room - reloading:
+                if len(here) + extra + counters > room - reloading:
                     crowded.append(here)
         if not crowded:
             return None
-        self.reloading.add((loop.header, bank))
         places = Tally(name for here in crowded for name in here) + Tally(
             dict.fromkeys(constants if extra else (), len(crowded))
         )
@@ -84,7 +84,21 @@ class Pressure:
             busiest = max(crowded, key=len)
             places = Tally(dict.fromkeys([*busiest, *(constants if extra else ())], 1))
         weights = {name: constants.get(name, 0) or self._weight(name, loop) for name in places}
-        return min(weights, key=lambda name: (weights[name] / (places[name] + 1), name), default=None)
+        victim = min(weights, key=lambda name: (weights[name] / (places[name] + 1), name), default=None)
+        if victim is not None and (
+            weights[victim] or not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS)
+        ):
+            self.reloading.add((loop.header, bank))
+        return victim
+
+    def _counters(self, label: str, loop: Loop) -> int:
+        """Pointer registers that counters of counted loops take in a block, from `loop` inwards [loop_end in bfin.md]."""
+        if not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS):
+            return 0
+        counted = self.webs.context.demanded.counted
+        return sum(
+            each.header in counted and each.blocks <= loop.blocks for each in self.flow.loops_of(label)
+        )
 
     def points(self, label: str, *, across_calls: bool) -> list[set[str]]:
         """Webs alive after each instruction of a block (only across calls, if asked for)."""
