@@ -98,6 +98,13 @@ class Rule(StrEnum):
         "words that are loaded and added to a sum that is only added to are in pointer registers, and moved"
     )
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
+    COPIES_IN_FRONT = (
+        "what a counted loop of several blocks copies on its way back is copied in front of its first block"
+    )
+    STRENGTH_REDUCTION = (
+        "a product beside one of a number that is a few less is that one and a few of its factors"
+    )
+    SUMMED_INDICES = "an index that is a sum is added up before it becomes an address, unless elements are bytes and one access uses it"
 
 
 GCC: dict[Rule, str] = {
@@ -126,6 +133,9 @@ GCC: dict[Rule, str] = {
     Rule.NARROW_TREES: "convert_to_integer_1 in convert.cc",
     Rule.SUM_CLASSES: "find_costs_and_classes in ira-costs.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
+    Rule.COPIES_IN_FRONT: "reorder_loops in hw-doloop.cc",
+    Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
+    Rule.SUMMED_INDICES: "POINTER_PLUS_EXPR in expr.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
@@ -205,4 +215,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.NARROW_TREES: (),
     Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/test_register_classes.py
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
+    Rule.COPIES_IN_FRONT: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_pictures.py
+    Rule.STRENGTH_REDUCTION: (),
+    Rule.SUMMED_INDICES: (),
 }

@@ -76,8 +76,11 @@ class BlockLayout:
             targets = self.flow.blocks[name].successors if name in self.flow.blocks else (edge_of(name)[1],)
             for way, target in zip(self.ways(name), targets, strict=True):
                 chances[way] = chances.get(way, 0) + self.likelihood.taken.get((name, target), 1.0)
+            jumps = {
+                way for way, target in zip(self.ways(name), targets, strict=True) if (name, target) in counted
+            }
             edges[name] = tuple(
-                Edge(name, way, chance, count[name] * chance, (name, way) not in counted)
+                Edge(name, way, chance, count[name] * chance, way not in jumps)
                 for way, chance in chances.items()
             )
         headers = {loop.header: loop.blocks for loop in self.flow.loops}

@@ -104,12 +104,11 @@ class _OptimisedLowering:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
-        if (
-            self.flow.is_split(loop)
-            or self.flow.ending(loop) != loop.latch
-            or (loop.latch, loop.header) in self.allocation.on_edges
-        ):
-            return False  # values move from iteration to iteration in a block of its own: the last one jumps
+        if self.flow.is_split(loop) or self.flow.ending(loop) != loop.latch:
+            return False
+        in_front = self.profile.applies(Rule.COPIES_IN_FRONT) and not self._is_one_block(loop)
+        if self._begins_with_copies(loop) and not in_front:
+            return False  # the copies stay behind the end of a loop of one block, which jumps back from there
         before = [
             each
             for each in self.flow.predecessors[loop.latch]
@@ -120,6 +119,25 @@ class _OptimisedLowering:
         if copied and self.profile.applies(Rule.COPIED_END):
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
         return bool(self.code.of[loop.latch]) or len(before) == 1
+
+    def _begins_with_copies(self, loop: Loop) -> bool:
+        """Whether values are copied from iteration to iteration in a block of its own.
+
+        That is moved before the loop's first block, so that who enters the loop jumps over it [reorder_loops in hw-doloop.cc].
+        """
+        return (loop.latch, loop.header) in self.allocation.on_edges
+
+    def _is_one_block(self, loop: Loop) -> bool:
+        """Whether nothing in a loop branches but its end."""
+        converted, label = self.context.if_conversion.by_label, loop.header
+        while label != loop.latch:
+            if label in converted:
+                label, _ = self.flow.defined[converted[label].phi.result or ""]
+            elif len(ways := set(self.flow.blocks[label].successors)) == 1:
+                (label,) = ways
+            else:
+                return False
+        return True
 
     def _ends_in_branch(self, loop: Loop) -> bool:
         """Whether the last instruction of a hardware loop would be a branch ["bad last insn; replace with nop" in hwloop_optimize]."""
@@ -270,6 +288,8 @@ class _OptimisedLowering:
                     cost.charges += [charge(Op.ALU, line)] * 3
                 if loop.header in self.hardware:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
+                    if self._begins_with_copies(loop) and self.layout.falls(block.label, loop.header):
+                        cost.charges.append(charge(Op.JUMP, line))
 
     def _leave_block(self, block: BasicBlock, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label
@@ -359,7 +379,9 @@ class _OptimisedLowering:
         leaving = leaving + self.layout.on(label, out, line)
         stays = ways[0] if out == ways[1] else ways[1]
         if moves := self.layout.copies.get((label, stays), []):
-            again = [*again, *moves, charge(Op.JUMP, line)]
+            again = [*again, *moves]
+            if loop.header not in self.hardware:
+                again.append(charge(Op.JUMP, line))
         return (again, leaving) if ways[0] == stays else (leaving, again)
 
     def _switch(self, block: BasicBlock, cost: BlockCost) -> None:
