@@ -43,7 +43,9 @@ class Context:
         self.second_parts = {each.second: each.inside for each in self.ranges.values()}
         """Blocks whose test is part of the one before, and where they lead if both hold."""
         self.likelihood = Likelihood(self.flow, self.second_parts, profile.without)
-        self.induction_variables = InductionVariables(self.flow, self.evolution, profile)
+        self.induction_variables = InductionVariables(
+            self.flow, self.evolution, self.likelihood.frequency, profile
+        )
         counts_bits = profile.applies(Rule.BIT_COUNTS)
         self.bit_counts = bit_counting_loops(self.flow, self.evolution) if counts_bits else {}
         self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}

@@ -63,7 +63,7 @@ def eliminated_counters(
             prepared = prepares and (
                 affine.keys() != {name, variable.root} or not start.lstrip("-").isdigit()
             )
-            wanted = list(_wanted(flow, evolution, loop, name))
+            wanted = [_before_inner(flow, loop, label) for label in _wanted(flow, evolution, loop, name)]
             blocks = frozenset(wanted)
             often = sum(frequency.get(label, 0) for label in wanted) / frequency.get(loop.header, 1)
             if (
@@ -99,6 +99,13 @@ def _wanted_of_step(
     for user in flow.users.get(step.result or "", []):
         if user is not phi and user.opcode != "getelementptr" and user.result != evolution.exit_test(loop):
             yield loop.latch
+
+
+def _before_inner(flow: ControlFlow, loop: Loop, label: str) -> str:
+    """Where a value that does not change in the loops inside `loop` is computed for block `label`: before them."""
+    around = flow.loops_of(label)
+    inner = around[: around.index(loop)] if loop in around else []
+    return flow.entering(inner[-1]) if inner else label
 
 
 def _home(flow: ControlFlow, user: Instruction) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine, arms_of
@@ -42,8 +43,15 @@ class InductionVariable:
 class InductionVariables:
     """The induction variables of one routine; `of` finds that of an access by its identity."""
 
-    def __init__(self, flow: ControlFlow, evolution: ScalarEvolution, profile: CompilerProfile) -> None:
-        self.flow, self.evolution, self.profile = flow, evolution, profile
+    def __init__(
+        self,
+        flow: ControlFlow,
+        evolution: ScalarEvolution,
+        frequency: Mapping[str, float],
+        profile: CompilerProfile,
+    ) -> None:
+        """`frequency`: of each block."""
+        self.flow, self.evolution, self.frequency, self.profile = flow, evolution, frequency, profile
         self.all: list[InductionVariable] = []
         self.of: dict[int, InductionVariable] = {}
         found: dict[tuple[str, tuple[tuple[str, int], ...]], InductionVariable] = {}
@@ -76,7 +84,18 @@ class InductionVariables:
         fixed = all(
             self.evolution.code_motion.is_invariant(name, one.loop) for name, _ in self._distance(one, other)
         )
-        return fixed and not one.increment.symbolic and self.is_steady(one) and not self.is_steady(other)
+        return (
+            fixed
+            and not one.increment.symbolic
+            and self.is_steady(one)
+            and not self.is_steady(other)
+            and self._share(other) <= 1
+        )
+
+    def _share(self, variable: InductionVariable) -> float:
+        """How many of its accesses an iteration makes."""
+        total = sum(self.frequency[label] for label, _, _ in variable.accesses)
+        return total / self.frequency[variable.loop.header]
 
     def is_steady(self, variable: InductionVariable) -> bool:
         """Whether every iteration makes one of the accesses."""

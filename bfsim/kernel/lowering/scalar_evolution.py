@@ -73,6 +73,8 @@ class ScalarEvolution:
                 return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1))
             case "sub":
                 return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1), -1)
+            case "xor" if number == -1:
+                return Affine(constant=-1).plus(self.affine(each.operands[0], depth - 1), -1)
             case "shl" if number is not None:
                 return Affine().plus(self.affine(each.operands[0], depth - 1), 1 << number)
             case "mul" if number is not None:
