@@ -26,6 +26,7 @@ LOCATION = re.compile(
 SUBPROGRAM = re.compile(r'^!(\d+) = distinct !DISubprogram\(name: "([\w.$-]+)"')
 PROFILE = re.compile(r", !prof !(\d+)")
 WEIGHTS = re.compile(r"^!(\d+) = !\{!\"branch_weights\"(.*)\}")
+NOTE = re.compile(r"^!(\d+) = ", re.MULTILINE)
 WEIGHT = re.compile(r"i32 (-?\d+)")  # LLVM writes unsigned numbers as signed ones
 PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
 CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
@@ -70,7 +71,7 @@ class Instruction:
     location: str = ""
     """Number of the note that has its source line."""
     hint: str = ""
-    """Number of the note that has its weights."""
+    """Number of the note that has its weights; empty if there is none yet."""
 
     @property
     def row(self) -> str:
@@ -227,8 +228,32 @@ def with_names(text: str) -> str:
 
 
 def write_module(text: str, routines: Sequence[Routine]) -> str:
-    """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies."""
-    return "\n".join(_rows(text, iter(routines)))
+    """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies.
+
+    Weights that stand in no note yet are noted.
+    """
+    notes = dict[tuple[int, ...], str]()
+    first = max(map(int, NOTE.findall(text)), default=-1) + 1
+
+    def noted(each: Instruction) -> Instruction:
+        if not each.weights or each.hint:
+            return each
+        return replace(each, hint=notes.setdefault(each.weights, str(first + len(notes))))
+
+    bodies = [
+        replace(
+            routine,
+            blocks=tuple(
+                replace(block, instructions=tuple(map(noted, block.instructions))) for block in routine.blocks
+            ),
+        )
+        for routine in routines
+    ]
+    words = (
+        f'!{number} = !{{!"branch_weights", {", ".join(f"i32 {each}" for each in weights)}}}'
+        for weights, number in notes.items()
+    )
+    return "\n".join((*_rows(text, iter(bodies)), *words))
 
 
 def _rows(text: str, routines: Iterator[Routine]) -> Iterator[str]:

@@ -1,7 +1,8 @@
-"""A test whose answer an earlier one of the same two values gives on one way is asked on the other alone [pass_thread_jumps of GCC 12].
+"""A test whose answer an earlier one gives on one way is asked on the other alone [pass_thread_jumps of GCC 12].
 
-Behind `if g > most: most = g`, where `most` was r, comes `if g < least: least = g`, where `least` was r, too. LLVM's jump threading knows
-what a phi of constants answers, and no relations: so the answers of both ways are made such a phi.
+Behind `if g > most: most = g`, where `most` was r, comes `if g < least: least = g`, where `least` was r, too. In Bresenham's line, where
+`dy` is not positive and `dx` not negative, `if e >= dy` comes before `if e <= dx`. LLVM's jump threading knows what a phi of constants
+answers, and neither relations nor ranges of what is no constant: so the answers of both ways are made such a phi.
 """
 
 from __future__ import annotations
@@ -12,9 +13,15 @@ from dataclasses import dataclass, replace
 from bfsim.kernel.ir_text import Instruction, Routine, predicate, renamed
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import is_extended
+from bfsim.kernel.lowering.value_ranges import answer, is_constant
 
 EXCLUDED = {"sgt": ("slt", "sle"), "slt": ("sgt", "sge"), "ugt": ("ult", "ule"), "ult": ("ugt", "uge")}
 """Which relations of two values cannot hold where one does."""
+SAID = (1, 4)
+"""How likely an answer is where it is not known, and the other one, if it is known to be the first on the other way: of two ways and two
+answers that are as likely, three quarters of it are taken off [update_bb_profile_for_threading in cfg.cc]. Comparisons with constants are threaded before it is guessed."""
+EVEN = (1, 1)
+"""Of the earlier test: LLVM would take what is said of the later one for a hint at this."""
 SWAPPED = {
     "sgt": "slt",
     "sge": "sle",
@@ -29,12 +36,19 @@ SWAPPED = {
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """A `test` that is false on the way from block `asked` by block `arm` to block `join`, and known nowhere else."""
+    """A `test` behind block `join`, which block `asked` leads to at once, and by block `arm`: it `says` this on the way from `known`."""
 
     test: Instruction
     asked: str
     arm: str
     join: str
+    known: str
+    says: bool
+
+    @property
+    def open(self) -> str:
+        """The block from which its answer is not known."""
+        return self.asked if self.known == self.arm else self.arm
 
 
 def with_known_answers(routine: Routine) -> Routine:
@@ -50,7 +64,7 @@ def with_known_answers(routine: Routine) -> Routine:
 def _known(flow: ControlFlow, label: str) -> _Known | None:
     block = flow.blocks[label]
     first = flow.instruction(block.terminator.operands[0]) if len(set(block.successors)) == 2 else None
-    if first is None or first.opcode != "icmp" or predicate(first) not in EXCLUDED:
+    if first is None or first.opcode != "icmp":
         return None
     arm, join = block.successors  # where it holds, and where not
     if (
@@ -59,18 +73,25 @@ def _known(flow: ControlFlow, label: str) -> _Known | None:
         or set(flow.predecessors[join]) != {arm, label}
     ):
         return None
-    pair = _values(flow, first)
     for test in _tests_behind(flow, join):
-        relation = predicate(test)
-        if _values(flow, test) == pair[::-1]:
-            relation = SWAPPED.get(relation, relation)
-        elif _values(flow, test) != pair:
+        if not all(_is_there(flow, each, label) for each in test.operands):
             continue
-        if relation in EXCLUDED[predicate(first)] and all(
-            _is_there(flow, each, label) for each in test.operands
-        ):
-            return _Known(test, label, arm, join)
+        if _excludes(flow, first, test):
+            return _Known(test, label, arm, join, arm, says=False)
+        for known, holds in ((arm, True), (label, False)):
+            if (says := answer(flow, first, test, holds=holds)) is not None:
+                return _Known(test, label, arm, join, known, says)
     return None
+
+
+def _excludes(flow: ControlFlow, first: Instruction, test: Instruction) -> bool:
+    """Whether a test of the same two values cannot hold where the first one does."""
+    relation, pair, others = predicate(test), _values(flow, first), _values(flow, test)
+    if others == pair[::-1]:
+        relation = SWAPPED.get(relation, relation)
+    elif others != pair:
+        return False
+    return relation in EXCLUDED.get(predicate(first), ())
 
 
 def _tests_behind(flow: ControlFlow, join: str) -> Iterator[Instruction]:
@@ -110,17 +131,22 @@ def _answered(flow: ControlFlow, known: _Known) -> Routine:
             names[operand] = f"{operand}.asked"
             rows.append(replace(each, result=names[operand]))
     rows.append(replace(renamed(test, names), result=asked))
+    says = str(known.says).lower()
     phi = replace(
         test,
         result=name,
         opcode="phi",
-        text=f"phi i1 [ false, %{known.arm} ], [ {asked}, %{known.asked} ]",
-        operands=("false", asked),
+        text=f"phi i1 [ {says}, %{known.known} ], [ {asked}, %{known.open} ]",
+        operands=(says, asked),
     )
-    blocks = []
+    blocks, is_guessed = [], not is_constant(test.operands[1])
     for block in flow.routine.blocks:
         own = [renamed(each, {test.result or "": name}) for each in block.instructions if each is not test]
-        if block.label == known.asked:
+        if is_guessed and block.terminator.operands[:1] == (test.result,):
+            own[-1] = replace(own[-1], weights=SAID if known.says else SAID[::-1], hint="")
+        elif is_guessed and block.label == known.asked and not own[-1].weights:
+            own[-1] = replace(own[-1], weights=EVEN)
+        if block.label == known.open:
             own = [*own[:-1], *rows, own[-1]]
         elif block.label == known.join:
             own = [phi, *own]

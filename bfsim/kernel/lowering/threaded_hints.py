@@ -7,7 +7,6 @@ to it knows. So it moves to the branches at which those ways part.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -24,37 +23,22 @@ from bfsim.kernel.ir_text import (
 )
 from bfsim.kernel.loops import ControlFlow
 
-NOTE = re.compile(r"^!(\d+) = ", re.MULTILINE)
-
 
 def with_threaded_hints(text: str) -> str:
     """Return the module `text`, of which variables are registers and nothing else was done yet, with such hints moved."""
     if "branch_weights" not in text:
         return text
     text = with_names(text)
-    number = max(map(int, NOTE.findall(text))) + 1
-    notes = dict[tuple[int, ...], str]()
-    routines = []
-    for routine in read_module(text):
-        moved = _moved(ControlFlow(routine))
-        for weights in moved.values():
-            notes.setdefault(weights, str(number + len(notes)))
-        routines.append(_hinted(routine, moved, notes))
-    words = (
-        f'!{name} = !{{!"branch_weights", {", ".join(f"i32 {each}" for each in weights)}}}'
-        for weights, name in notes.items()
+    return write_module(
+        text, [_hinted(routine, _moved(ControlFlow(routine))) for routine in read_module(text)]
     )
-    return "\n".join((write_module(text, routines), *words))
 
 
-def _hinted(
-    routine: Routine, moved: dict[str, tuple[int, ...]], notes: dict[tuple[int, ...], str]
-) -> Routine:
+def _hinted(routine: Routine, moved: dict[str, tuple[int, ...]]) -> Routine:
     def hinted(block: BasicBlock) -> BasicBlock:
-        weights = moved.get(block.label)
-        if weights is None:
+        if block.label not in moved:
             return block
-        branch = replace(block.terminator, weights=weights, hint=notes[weights])
+        branch = replace(block.terminator, weights=moved[block.label], hint="")
         return replace(block, instructions=(*block.instructions[:-1], branch))
 
     return replace(routine, blocks=tuple(map(hinted, routine.blocks)))
