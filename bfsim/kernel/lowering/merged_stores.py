@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.edges import put_between
 
 
 def merge_stores(routine: Routine) -> Routine:
@@ -25,6 +26,27 @@ def merge_stores(routine: Routine) -> Routine:
             stores = [_only_store(each) for each in sides]
             if stores[0] and stores[1] and _address(flow, stores[0]) == _address(flow, stores[1]):
                 return merge_stores(_merged(routine, flow, sides, (stores[0], stores[1])))
+    return routine
+
+
+def with_sides_apart(routine: Routine) -> Routine:
+    """Return `routine` with an empty block on the way of a test straight to a choice, in place of one that its other way shares.
+
+    Which of the two is there is LLVM's doing; only a side of its own may be a conditional move.
+    """
+    flow = ControlFlow(routine)
+    blocks = {each.label: each for each in routine.blocks}
+    for label, block in blocks.items():
+        before = flow.predecessors[label]
+        if len(block.instructions) > 1 or len(before) < 2 or len(set(block.successors)) != 1:
+            continue
+        (end,) = set(block.successors)
+        tests = [each for each in before if end in flow.blocks[each].successors]
+        if tests and end != label:
+            for test in tests:
+                put_between(blocks, test, end, f"{test}.side")
+            _bypass(blocks, before, label, end)
+            return with_sides_apart(replace(routine, blocks=tuple(blocks.values())))
     return routine
 
 

@@ -17,7 +17,7 @@ from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.known_answers import with_known_answers
 from bfsim.kernel.lowering.lagging_counters import without_lagging
-from bfsim.kernel.lowering.merged_stores import merge_stores
+from bfsim.kernel.lowering.merged_stores import merge_stores, with_sides_apart
 from bfsim.kernel.lowering.narrow_tests import with_narrow_tests
 from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
@@ -27,6 +27,8 @@ from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
 from bfsim.kernel.lowering.short_circuits import split_tests
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
+from bfsim.kernel.lowering.strength_reduction import with_reduced_strength
+from bfsim.kernel.lowering.summed_indices import with_summed_indices
 from bfsim.kernel.lowering.sunk_stores import with_sunk_stores
 from bfsim.kernel.lowering.wide_extremes import widen_extremes
 from bfsim.kernel.lowering.widths import WORD
@@ -34,6 +36,9 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    with_sides_apart,
+    with_reduced_strength,
+    with_summed_indices,
     widen_extremes,
     without_lagging,
     factor_sums,
@@ -64,6 +69,8 @@ SWITCHES = {
     copy_breaks: Rule.COPIED_BREAKS,
     with_final_values: Rule.FINAL_VALUES,
     with_predictive_commoning: Rule.PREDICTIVE_COMMONING,
+    with_reduced_strength: Rule.STRENGTH_REDUCTION,
+    with_summed_indices: Rule.SUMMED_INDICES,
 }
 """Those that can be left out."""
 
