@@ -1,7 +1,8 @@
 """An index is added up before it becomes an address: LLVM makes a[i + j] to an address j elements behind the one i elements behind a.
 
 C compilers add up what the source adds up: the sum of two words is an index, and its address one instruction [POINTER_PLUS_EXPR of GCC 12].
-Addresses that a loop steps along, or that do not change in it, are the same either way, and left as they are.
+The address of a byte that one access uses is a sum of three, to which the product comes first [expand_expr with EXPAND_SUM]. Addresses
+that a loop steps along, or that do not change in it, are the same either way. Those are left as they are.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def _summed(flow: ControlFlow) -> Routine | None:
 
 
 def _inner(flow: ControlFlow, each: Instruction) -> Instruction | None:
-    """The address that another one is some elements behind, itself as many words behind another one as a value says."""
+    """The address that another one is some elements behind, if that is itself some elements behind another one."""
     if each.opcode != "getelementptr" or not each.operands[-1].startswith("%"):
         return None
     inner = flow.instruction(each.operands[0])
