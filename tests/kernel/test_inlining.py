@@ -32,6 +32,27 @@ SMALL = """
 def twice(x: i32) -> i32:
     return x + x
 """
+PUT = """
+def put(out: u8[:], bits: u32[:], value: u32, n: i32, at: i32):
+    bits[{0}0] = (bits[{0}0] << n) | value
+    bits[{0}1] += u32(n)
+    while bits[{0}1] >= 8:
+        bits[{0}1] -= 8
+        out[bits[{0}2]] = bits[{0}0] >> bits[{0}1]
+        bits[{0}2] += 1
+
+
+def top(out: u8[:], bits: u32[:], row: u8[:], k: i32) -> i32:
+    for i in range(len(row)):
+        q = row[i] >> k
+        if q < 12:
+            put(out, bits, u32(q), q + 1, i)
+            put(out, bits, u32(row[i]), k, i)
+        else:
+            put(out, bits, 0xFFF, 12, i)
+            put(out, bits, u32(row[i]), 8, i)
+    return i32(bits[2])
+"""
 TOP = """
 @kernel
 def top(a: i32[:]) -> i32:
@@ -93,6 +114,14 @@ def test_what_is_called_once_is_inlined_whatever_its_size(tmp_path: Path) -> Non
         LARGE.format(name="large") + TOP.format(expression="large(a, i) + large(a, 2 * i)"), tmp_path
     ).top
     assert (decided(twice)["large"].inlined, decided(twice)["large"].why) == (False, Why.LARGE)
+
+
+def test_of_accesses_to_what_is_handed_over_half_are_expected_to_go(tmp_path: Path) -> None:
+    """So state[0] makes a kernel half a statement larger, and state[n] a whole one: GCC 12.2 inlines this one with the first alone."""
+    fixed, chosen = (decided(kernels(PUT.format(place), tmp_path).top)["put"] for place in ("", "at + "))
+    assert (fixed.inlined, fixed.why) == (True, Why.SMALL)
+    assert not chosen.inlined
+    assert chosen.growth > fixed.growth
 
 
 def test_calls_from_other_kernels_of_the_file_count(tmp_path: Path) -> None:
