@@ -24,6 +24,7 @@ from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
+from bfsim.kernel.lowering.restored_values import with_restored_values
 from bfsim.kernel.lowering.short_circuits import split_tests
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
@@ -36,6 +37,7 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    with_restored_values,
     with_sides_apart,
     with_reduced_strength,
     with_summed_indices,
