@@ -19,7 +19,8 @@ EXCLUDED = {"sgt": ("slt", "sle"), "slt": ("sgt", "sge"), "ugt": ("ult", "ule"),
 """Which relations of two values cannot hold where one does."""
 SAID = (1, 4)
 """How likely an answer is where it is not known, and the other one, if it is known to be the first on the other way: of two ways and two
-answers that are as likely, three quarters of it are taken off [update_bb_profile_for_threading in cfg.cc]. Comparisons with constants are threaded before it is guessed."""
+answers that are as likely, three quarters of it are taken off [update_bb_profile_for_threading in cfg.cc]. Comparisons with constants are
+threaded before it is guessed."""
 EVEN = (1, 1)
 """Of the earlier test: LLVM would take what is said of the later one for a hint at this."""
 SWAPPED = {

@@ -1,7 +1,7 @@
 """A value is itself again where ways meet: LLVM puts 0 in place of x where a test has found x to be 0, and chooses between 0 and x behind.
 
-Such a choice is x [GCC 12 replaces a value by a number where it is used, not where ways meet: cprop_into_successor_phis in
-tree-ssa-dom.cc does so for what is copied alone]. Unless that is seen, the counter of a loop with `if x > 0` in it is none.
+Such a choice is x, as GCC 12 has it [measured: borders in tests/kernel/test_rows_of_pictures.py]. Unless that is seen, the counter of a
+loop with `if x > 0` in it is none.
 """
 
 from __future__ import annotations
