@@ -8,6 +8,8 @@ import textwrap
 from pathlib import Path
 from types import ModuleType
 
+from bfsim.kernel import Kernel
+
 HEADER = """from __future__ import annotations
 
 from bfsim.kernel import f32, i8, i16, i32, kernel, quotient, remainder, u8, u16, u32
@@ -27,3 +29,9 @@ def import_text(text: str, folder: Path, name: str | None = None) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def kernel_of(text: str, folder: Path) -> Kernel:
+    """The kernel `f` that is written in `text`, without its decorator."""
+    found: Kernel = import_text(f"@kernel{text}", folder).f
+    return found

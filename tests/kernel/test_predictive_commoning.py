@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.isa import Op
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
 from tests.kernel.test_partial_redundancies import arguments
@@ -102,12 +102,6 @@ KEPT = {
     "not made in every iteration": (PERHAPS, 2),
 }
 """Loops in which GCC carries nothing, and the loads of an iteration, or of half a one."""
-
-
-def kernel_of(text: str, folder: Path) -> Kernel:
-    """The kernel of a case."""
-    found: Kernel = import_text(f"@kernel{text}", folder).f
-    return found
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
 from tests.kernel.test_partial_redundancies import arguments
@@ -80,12 +80,6 @@ CASES = {
     "a half-word and a word in a total": (TOTAL.format("i16", "a[i] + b[i]"), 842, 0.04),
 }
 """A kernel, its cycles, and how near to them the estimate is. In the last three, nothing is moved or extended."""
-
-
-def kernel_of(text: str, folder: Path) -> Kernel:
-    """The kernel of a case."""
-    found: Kernel = import_text(f"@kernel{text}", folder).f
-    return found
 
 
 @pytest.mark.parametrize("name", CASES)

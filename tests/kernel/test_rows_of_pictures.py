@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.value_ranges import answer, value_range
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
 from tests.kernel.test_partial_redundancies import arguments
@@ -149,12 +149,6 @@ CASES = {
     "borders": (BORDERS, 3528, 0.12),
     "one of two stores": (STORED, 2667, 0.02),
 }
-
-
-def kernel_of(text: str, folder: Path) -> Kernel:
-    """The kernel of a case."""
-    found: Kernel = import_text(f"@kernel{text}", folder).f
-    return found
 
 
 @pytest.mark.parametrize("name", CASES)
