@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from functools import cache, cached_property
-from math import ceil
+from math import floor
 
 from bfsim import store
 from bfsim.kernel import generic, keys
@@ -44,12 +44,12 @@ class CallSite:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What one routine is where it is inlined, without its prologue and its return; what else is gone there."""
+    """What one routine is where it is inlined, and what is gone there beside its prologue and its return."""
 
     size: int
     time: float
     calls: tuple[CallSite, ...]
-    gone_size: float
+    gone_size: int
     gone_time: float
 
 
@@ -75,7 +75,7 @@ class _Estimator:
     """By symbol, what a call of a kernel passes."""
 
     def run(self) -> Estimate:
-        size, time, calls, gone_size, gone_time = 0, 0.0, [], 0.0, 0.0
+        size, time, calls, accesses, gone_time = 0, 0.0, [], 0, 0.0
         for label in self.flow.order:
             frequency = self.frequency[label]
             for each in self.flow.blocks[label].instructions:
@@ -83,13 +83,14 @@ class _Estimator:
                 size += own
                 time += frequency * self._time(each, own)
                 if self._is_of_parameter(each):
-                    gone_size += GONE
+                    accesses += 1
                     gone_time += GONE * frequency
                 if each.is_call:
                     calls.append(
                         CallSite(_callee(each), each.line.line, frequency, own, self._time(each, own))
                     )
-        return Estimate(ceil(size - gone_size), time - gone_time, tuple(calls), gone_size, gone_time)
+        gone = floor(GONE * accesses)
+        return Estimate(size - gone, time - gone_time, tuple(calls), gone, gone_time)
 
     def _is_of_parameter(self, access: Instruction) -> bool:
         """Whether it loads or stores a fixed element of a parameter."""

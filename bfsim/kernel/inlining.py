@@ -70,7 +70,7 @@ class _Node:
 
     size: int
     time: float
-    gone_size: float
+    gone_size: int
     gone_time: float
     edges: list[_Edge]
     is_static: bool
@@ -207,7 +207,7 @@ class Inliner:
     def _overall_growth(self, callee: str) -> int:
         """By how much the program grows if all calls of `callee` are inlined."""
         node = self.nodes[callee]
-        own = round(node.size + node.gone_size) if callee in self.static else 0
+        own = node.size + node.gone_size if callee in self.static else 0
         return sum(self._growth(edge) for _, edge in self._calls_of(callee)) - own
 
     def _saves(self, callee: str) -> bool:

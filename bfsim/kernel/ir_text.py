@@ -35,6 +35,12 @@ KERNEL_CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
 NO_HINT = (1 << 20, 1)
 """Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
+SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
+           "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
+"""Relations by those of the same two values the other way round."""
+INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
+            "ult": "uge", "uge": "ult", "ule": "ugt", "ugt": "ule", "eq": "ne", "ne": "eq"}  # fmt: skip
+"""Relations by those that hold where they do not."""
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 ENTERS = "bfsim.enters."
 """Before the symbol of a kernel: a call that does nothing, where the code of an inlined kernel begins."""
@@ -346,6 +352,11 @@ def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
         return each
     text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
     return replace(each, text=text, operands=tuple(names.get(name, name) for name in each.operands))
+
+
+def is_number(value: str) -> bool:
+    """Whether a value is an integer of the text."""
+    return value.lstrip("-").isdigit()
 
 
 def predicate(compare: Instruction) -> str:

@@ -135,7 +135,6 @@ GCC: dict[Rule, str] = {
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.COPIES_IN_FRONT: "reorder_loops in hw-doloop.cc",
     Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
-    Rule.SUMMED_INDICES: "POINTER_PLUS_EXPR in expr.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",

@@ -203,6 +203,24 @@ def test_ranges_say_what_a_test_answers() -> None:
     assert answer(flow, below, known, holds=False) is None
 
 
+def test_the_second_step_of_a_line_is_asked_for_behind_the_first_alone(tmp_path: Path) -> None:
+    """Where Bresenham's line does not go on in x, it goes on in y: as often as it goes on in x, `e2 <= dx` is tested."""
+    kernel = kernel_of(LINE, tmp_path)
+    picture, ends, count = arguments(kernel)
+    code = kernel.compile(GCC_O2)
+    totals = code.new_totals()
+    iterations = kernel.prepare(code, [picture, ends], totals).run((picture, ends, count)).value
+    line = LINE.splitlines().index("            if e2 <= dx:") + 1
+    tests = sum(
+        events * each.times
+        for counter, events in zip(code.counters, totals.tolist(), strict=True)
+        for each in counter.charges
+        if each.op is Op.COMPARE and each.line.line == line
+    )
+    steps = sum(abs(int(x & 15) - 3) for x in ends[: count - 1 : 2])
+    assert tests == steps < (iterations or 0)
+
+
 def test_values_are_handed_on_in_front_of_a_hardware_loop(tmp_path: Path) -> None:
     """Of several blocks; where there is one, or by VisualDSP++, of which nothing says so, the loop is none."""
     several, one = (CASES[name][0].lstrip() for name in ("values handed on", "in one block"))

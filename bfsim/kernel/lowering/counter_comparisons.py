@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from bfsim.kernel.ir_text import Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
@@ -70,7 +70,7 @@ class CounterComparisons:
             return IV_COMPARE if test.relation == "ne" else 1 - IV_COMPARE
         if not self._coherent(bound.start, test.start):
             return None
-        if all(_is_number(each) for each in (bound.other, test.other, test.start)):
+        if all(is_number(each) for each in (bound.other, test.other, test.start)):
             return None
         below = test.relation in ("lt", "le")
         if self._coherent(bound.other, test.other):
@@ -82,14 +82,10 @@ class CounterComparisons:
 
     def _coherent(self, one: str, other: str) -> bool:
         """Whether two values are equal, both constants, or one the other and a constant [expr_coherent_p]."""
-        if one == other or (_is_number(one) and _is_number(other)):
+        if one == other or (is_number(one) and is_number(other)):
             return True
         return any(
             (each := self.flow.instruction(here)) is not None
-            and [name for name in each.operands if not _is_number(name)] == [there]
+            and [name for name in each.operands if not is_number(name)] == [there]
             for here, there in ((one, other), (other, one))
         )
-
-
-def _is_number(value: str) -> bool:
-    return value.lstrip("-").isdigit()

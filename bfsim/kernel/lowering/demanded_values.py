@@ -10,7 +10,7 @@ from enum import Enum, auto
 from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
-from bfsim.kernel.ir_text import Instruction, SourceLine
+from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
@@ -19,6 +19,7 @@ from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.induction_variable_elimination import eliminated_counters
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
 from bfsim.kernel.lowering.jump_threading import JumpThreading
+from bfsim.kernel.lowering.narrow_trees import is_cut_tree
 from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.redundant import AGAIN
@@ -30,10 +31,6 @@ from bfsim.kernel.rules import Rule
 FEWEST_ITERATIONS = (
     3  # a loop of so few iterations keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
 )
-
-
-CUT = {"add", "sub", "mul", "and", "or", "xor"}
-"""Operations of whose operands only the low bits are needed for those of the result."""
 
 
 class Use(Enum):
@@ -347,21 +344,8 @@ class DemandedValues(Folding):
         chosen = user.opcode == "phi" and user.bits in NARROW and self.profile.applies(Rule.NARROW_CHOICES)
         stored = chosen and all(each.opcode == "store" for each in self.users(user.result or ""))
         along = user.opcode == "phi" and ALONG in (user.result or "")
-        narrow = self.profile.applies(Rule.NARROW_TREES) and self._is_narrow(user, user.line)
+        narrow = self.profile.applies(Rule.NARROW_TREES) and is_cut_tree(self.users, user)
         return user.opcode == "store" or low_byte or stored or along or narrow or self.narrowed(user)
-
-    def _is_narrow(self, each: Instruction, line: SourceLine) -> bool:
-        """Whether an operation is part of an expression, written on one line, of which only the low bits are stored [convert_to_integer_1]."""
-        if each.opcode not in CUT or each.line != line:
-            return False
-        users = self.users(each.result or "")
-        return bool(users) and all(self._is_cut(user, line) for user in users)
-
-    def _is_cut(self, each: Instruction, line: SourceLine) -> bool:
-        """Whether a use of a result takes its low bits, and stores what comes of them."""
-        if each.opcode == "trunc":
-            return all(self._is_cut(user, line) for user in self.users(each.result or ""))
-        return (each.opcode == "store" and each.bits in NARROW) or self._is_narrow(each, line)
 
     def narrowed(self, each: Instruction) -> bool:
         """Whether a sum is stored as a narrow value and used as a wide one: C compilers compute it twice."""

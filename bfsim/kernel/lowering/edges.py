@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction
 
 
 def going_to(block: BasicBlock, old: str, new: str) -> BasicBlock:
@@ -31,3 +31,26 @@ def put_between(blocks: dict[str, BasicBlock], source: str, label: str, between:
     blocks[source] = going_to(blocks[source], label, between)
     blocks[label] = come_to_from(blocks[label], source, between)
     blocks[between] = BasicBlock(between, (jump,))
+
+
+def bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: str) -> None:
+    """Lead all that goes to an empty block on to where it leads."""
+    for each in before:
+        *rows, branch = blocks[each].instructions
+        text = re.sub(rf"label %{re.escape(label)}(?![\w.$-])", f"label %{end}", branch.text)
+        blocks[each] = replace(blocks[each], instructions=(*rows, replace(branch, text=text)))
+    changed = []
+    for phi in blocks[end].instructions:
+        if phi.opcode == "phi":
+            arms = PHI_ARM.findall(phi.text)
+            ways = [(value, source) for value, source in arms if source != f"%{label}"]
+            ways += [
+                (value, f"%{each}") for value, source in arms if source == f"%{label}" for each in before
+            ]
+            kind = phi.text.split()[1]
+            text = f"phi {kind} " + ", ".join(f"[ {value}, {source} ]" for value, source in ways)
+            changed.append(replace(phi, text=text, operands=tuple(value for value, _ in ways)))
+        else:
+            changed.append(phi)
+    blocks[end] = replace(blocks[end], instructions=tuple(changed))
+    del blocks[label]

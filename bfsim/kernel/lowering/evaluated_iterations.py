@@ -9,7 +9,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import Instruction, arms_of, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 
 MOST_ITERATIONS = 1000  # [GCC: max-iterations-to-track]
@@ -41,7 +41,7 @@ def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None
     ways = flow.blocks[loop.latch].successors
     stays = ways[0] == loop.header
     arms = arms_of(counter)
-    if set(arms) != {flow.entering(loop), loop.latch} or not _is_number(arms[flow.entering(loop)]):
+    if set(arms) != {flow.entering(loop), loop.latch} or not is_number(arms[flow.entering(loop)]):
         return None
     value = int(arms[flow.entering(loop)]) & WORD_MASK
     for iteration in range(1, MOST_ITERATIONS + 1):
@@ -60,7 +60,7 @@ def _counter(flow: ControlFlow, loop: Loop, value: str, depth: int = DEEPEST) ->
         return each if flow.defined[value][0] == loop.header and each.bits == 32 else None
     if each.opcode not in (*ARITHMETIC, "icmp"):
         return None
-    names = {operand for operand in each.operands[:2] if not _is_number(operand)}
+    names = {operand for operand in each.operands[:2] if not is_number(operand)}
     return _counter(flow, loop, names.pop(), depth - 1) if len(names) == 1 else None
 
 
@@ -74,7 +74,7 @@ def _holds(flow: ControlFlow, compare: Instruction, counter: Instruction, value:
 
 def _value(flow: ControlFlow, name: str, counter: Instruction, value: int) -> int:
     """What `name` is in the iteration in which the counter is `value`; 32 bits, not negative."""
-    if _is_number(name):
+    if is_number(name):
         return int(name) & WORD_MASK
     if name == counter.result:
         return value
@@ -82,7 +82,3 @@ def _value(flow: ControlFlow, name: str, counter: Instruction, value: int) -> in
     assert each is not None
     left, right = (_value(flow, operand, counter, value) for operand in each.operands[:2])
     return ARITHMETIC[each.opcode](left, right & 31 if "sh" in each.opcode else right) & WORD_MASK
-
-
-def _is_number(operand: str) -> bool:
-    return operand.lstrip("-").isdigit()

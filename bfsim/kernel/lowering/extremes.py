@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import (
     is_extended,
     is_narrowed,
     is_narrowed_behind,
-    is_number,
     stored_bits,
 )
 from bfsim.kernel.lowering.widths import WORD

@@ -72,7 +72,8 @@ class InductionVariables:
         """Whether the pointer of one variable takes the place of another's [cost of an iv use, tree-ssa-loop-ivopts.cc].
 
         An access that not every iteration makes costs less where it is computed from a pointer that is there than with a pointer
-        of its own, which every iteration would have to step.
+        of its own, which every iteration would have to step: as long as an iteration makes one of them at most, by the guess of how often
+        each block runs [determine_group_iv_cost_address].
         """
         if (
             one is other

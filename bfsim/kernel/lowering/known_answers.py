@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import Instruction, Routine, predicate, renamed
+from bfsim.kernel.ir_text import SWAPPED, Instruction, Routine, is_number, predicate, renamed
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import is_extended
-from bfsim.kernel.lowering.value_ranges import answer, is_constant
+from bfsim.kernel.lowering.value_ranges import answer
 
 EXCLUDED = {"sgt": ("slt", "sle"), "slt": ("sgt", "sge"), "ugt": ("ult", "ule"), "ult": ("ugt", "uge")}
 """Which relations of two values cannot hold where one does."""
@@ -23,16 +23,6 @@ answers that are as likely, three quarters of it are taken off [update_bb_profil
 threaded before it is guessed."""
 EVEN = (1, 1)
 """Of the earlier test: LLVM would take what is said of the later one for a hint at this."""
-SWAPPED = {
-    "sgt": "slt",
-    "sge": "sle",
-    "slt": "sgt",
-    "sle": "sge",
-    "ugt": "ult",
-    "uge": "ule",
-    "ult": "ugt",
-    "ule": "uge",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +130,7 @@ def _answered(flow: ControlFlow, known: _Known) -> Routine:
         text=f"phi i1 [ {says}, %{known.known} ], [ {asked}, %{known.open} ]",
         operands=(says, asked),
     )
-    blocks, is_guessed = [], not is_constant(test.operands[1])
+    blocks, is_guessed = [], not is_number(test.operands[1])
     for block in flow.routine.blocks:
         own = [renamed(each, {test.result or "": name}) for each in block.instructions if each is not test]
         if is_guessed and block.terminator.operands[:1] == (test.result,):

@@ -6,12 +6,11 @@ if it is there already.
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.edges import put_between
+from bfsim.kernel.lowering.edges import bypass
 
 
 def merge_stores(routine: Routine) -> Routine:
@@ -26,27 +25,6 @@ def merge_stores(routine: Routine) -> Routine:
             stores = [_only_store(each) for each in sides]
             if stores[0] and stores[1] and _address(flow, stores[0]) == _address(flow, stores[1]):
                 return merge_stores(_merged(routine, flow, sides, (stores[0], stores[1])))
-    return routine
-
-
-def with_sides_apart(routine: Routine) -> Routine:
-    """Return `routine` with an empty block on the way of a test straight to a choice, in place of one that its other way shares.
-
-    Which of the two is there is LLVM's doing; only a side of its own may be a conditional move.
-    """
-    flow = ControlFlow(routine)
-    blocks = {each.label: each for each in routine.blocks}
-    for label, block in blocks.items():
-        before = flow.predecessors[label]
-        if len(block.instructions) > 1 or len(before) < 2 or len(set(block.successors)) != 1:
-            continue
-        (end,) = set(block.successors)
-        tests = [each for each in before if end in flow.blocks[each].successors]
-        if tests and end != label:
-            for test in tests:
-                put_between(blocks, test, end, f"{test}.side")
-            _bypass(blocks, before, label, end)
-            return with_sides_apart(replace(routine, blocks=tuple(blocks.values())))
     return routine
 
 
@@ -100,29 +78,6 @@ def _merged(
     blocks[end] = replace(blocks[end], instructions=(phi, *phis, *made_there, store, *behind))
     for side in sides:
         if len(blocks[side.label].instructions) == 1 and len(flow.predecessors[side.label]) > 1:
-            _bypass(blocks, flow.predecessors[side.label], side.label, end)
+            bypass(blocks, flow.predecessors[side.label], side.label, end)
             break
     return replace(routine, blocks=tuple(blocks.values()))
-
-
-def _bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: str) -> None:
-    """Lead all that goes to an empty block on to where it leads."""
-    for each in before:
-        *rows, branch = blocks[each].instructions
-        text = re.sub(rf"label %{re.escape(label)}(?![\w.$-])", f"label %{end}", branch.text)
-        blocks[each] = replace(blocks[each], instructions=(*rows, replace(branch, text=text)))
-    changed = []
-    for phi in blocks[end].instructions:
-        if phi.opcode == "phi":
-            arms = PHI_ARM.findall(phi.text)
-            ways = [(value, source) for value, source in arms if source != f"%{label}"]
-            ways += [
-                (value, f"%{each}") for value, source in arms if source == f"%{label}" for each in before
-            ]
-            kind = phi.text.split()[1]
-            text = f"phi {kind} " + ", ".join(f"[ {value}, {source} ]" for value, source in ways)
-            changed.append(replace(phi, text=text, operands=tuple(value for value, _ in ways)))
-        else:
-            changed.append(phi)
-    blocks[end] = replace(blocks[end], instructions=tuple(changed))
-    del blocks[label]

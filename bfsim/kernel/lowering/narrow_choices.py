@@ -5,7 +5,7 @@ So other values are chosen than are tested, and the choice may be no minimum or 
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.widths import WORD
 
@@ -51,8 +51,3 @@ def is_computed_narrow(flow: ControlFlow, value: Instruction, bits: int) -> bool
     made_of = [flow.instruction(each) for each in value.operands if not is_number(each)]
     narrow = (each is not None and is_extended(each) and f" i{bits} " in each.text for each in made_of)
     return value.opcode in NARROWED and all(narrow)
-
-
-def is_number(value: str) -> bool:
-    """Whether a value is an integer of the text."""
-    return value.lstrip("-").isdigit()

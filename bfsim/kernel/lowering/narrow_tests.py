@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from bfsim.kernel.ir_text import Instruction, Routine, predicate, renamed
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.unused import without_unused
 
 UNSIGNED = {"sgt": "ugt", "sge": "uge", "slt": "ult", "sle": "ule"}
 
@@ -53,19 +54,8 @@ def _without_copies(routine: Routine) -> Routine:
             home, first = words[each.text]
             if first != each.result and home in flow.dominators[label]:
                 same[each.result or ""] = first
-    return _without_unused(
-        _mapped(routine, lambda each: None if each.result in same else renamed(each, same))
-    )
-
-
-def _without_unused(routine: Routine) -> Routine:
-    users = ControlFlow(routine).users
-    return _mapped(
-        routine,
-        lambda each: (
-            each if each.opcode not in ("zext", "getelementptr") or users.get(each.result or "") else None
-        ),
-    )
+    kept = _mapped(routine, lambda each: None if each.result in same else renamed(each, same))
+    return without_unused(kept, ("zext", "getelementptr"))
 
 
 def _mapped(routine: Routine, change: Callable[[Instruction], Instruction | None]) -> Routine:

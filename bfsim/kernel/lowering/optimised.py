@@ -14,6 +14,7 @@ from bfsim.kernel.lowering.bundles import bundled
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
+from bfsim.kernel.lowering.hardware_loops import HardwareLoops
 from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.machine_code import MachineInstruction
 from bfsim.kernel.lowering.registers import Allocation, allocate
@@ -53,7 +54,7 @@ class _OptimisedLowering:
             frozenset(self._way_back(loop) for loop in self._counted()),
             dict(self._threaded()),
         )
-        self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
+        self.hardware = HardwareLoops(self.context, self.code, self.allocation)
 
     def _nbytes(self, name: str) -> int:
         """Code bytes of a block with its branch or return, or of the copies on an edge."""
@@ -99,66 +100,6 @@ class _OptimisedLowering:
         return not self.code.of[label] and len(block.successors) == 1 and not is_latch and (
             label != self.flow.routine.blocks[0].label
         )  # fmt: skip
-
-    def _is_hardware(self, loop: Loop) -> bool:
-        """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
-        if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
-            return False
-        if self.flow.is_split(loop) or self.flow.ending(loop) != loop.latch:
-            return False
-        in_front = self.profile.applies(Rule.COPIES_IN_FRONT) and not self._is_one_block(loop)
-        if self._begins_with_copies(loop) and not in_front:
-            return False  # the copies stay behind the end of a loop of one block, which jumps back from there
-        before = [
-            each
-            for each in self.flow.predecessors[loop.latch]
-            if not self.flow.is_overflow_guard(self.flow.blocks[each])
-            and each not in self.context.if_conversion.gone
-        ]
-        copied = any(self._ends_apart(inner, before) for inner in loop.inner)
-        if copied and self.profile.applies(Rule.COPIED_END):
-            return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
-        return bool(self.code.of[loop.latch]) or len(before) == 1
-
-    def _begins_with_copies(self, loop: Loop) -> bool:
-        """Whether values are copied from iteration to iteration in a block of its own.
-
-        That is moved before the loop's first block, so that who enters the loop jumps over it [reorder_loops in hw-doloop.cc].
-        """
-        return (loop.latch, loop.header) in self.allocation.on_edges
-
-    def _is_one_block(self, loop: Loop) -> bool:
-        """Whether nothing in a loop branches but its end."""
-        converted, label = self.context.if_conversion.by_label, loop.header
-        while label != loop.latch:
-            if label in converted:
-                label, _ = self.flow.defined[converted[label].phi.result or ""]
-            elif len(ways := set(self.flow.blocks[label].successors)) == 1:
-                (label,) = ways
-            else:
-                return False
-        return True
-
-    def _ends_in_branch(self, loop: Loop) -> bool:
-        """Whether the last instruction of a hardware loop would be a branch ["bad last insn; replace with nop" in hwloop_optimize]."""
-        (before,) = [*self.flow.predecessors[loop.latch]][:1]
-        return (
-            not self.code.of[loop.latch]
-            and before != loop.latch
-            and len(set(self.flow.blocks[before].successors)) > 1
-            and before not in self.context.if_conversion.by_label
-        )
-
-    def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
-        """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
-        ends = inner.blocks & set(before)
-        return len(ends) > 1 and any(
-            label in ends and way not in inner.blocks for label, way in self.allocation.on_edges
-        )
-
-    def _counted_depth(self, loop: Loop) -> int:
-        own = int(loop.header in self.context.demanded.counted)
-        return own + max((self._counted_depth(each) for each in loop.inner), default=0)
 
     def block(self, block: BasicBlock) -> BlockCost:
         cost = BlockCost()
@@ -286,9 +227,9 @@ class _OptimisedLowering:
                     for variable in self.context.induction_variables.all
                 ):
                     cost.charges += [charge(Op.ALU, line)] * 3
-                if loop.header in self.hardware:
+                if loop.header in self.hardware.all:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
-                    if self._begins_with_copies(loop) and self.layout.falls(block.label, loop.header):
+                    if self.hardware.begins_with_copies(loop) and self.layout.falls(block.label, loop.header):
                         cost.charges.append(charge(Op.JUMP, line))
 
     def _leave_block(self, block: BasicBlock, cost: BlockCost) -> None:
@@ -368,11 +309,11 @@ class _OptimisedLowering:
         if loop is None:
             return self.layout.sides(label, line)
         again, leaving = [], []
-        if loop.header not in self.hardware:
+        if loop.header not in self.hardware.all:
             count = [charge(Op.ALU, line), charge(Op.COMPARE, line)]
             again = [*count, charge(Op.BRANCH_TAKEN, line)]
             leaving = [*count, charge(Op.BRANCH_NOT_TAKEN, line)]
-        elif self._ends_in_branch(loop):
+        elif self.hardware.ends_in_branch(loop):
             again = leaving = [charge(Op.NOP, line)]
         ways = self.flow.blocks[label].successors
         out = ways[0] if ways[0] not in loop.blocks else ways[1]
@@ -380,7 +321,7 @@ class _OptimisedLowering:
         stays = ways[0] if out == ways[1] else ways[1]
         if moves := self.layout.copies.get((label, stays), []):
             again = [*again, *moves]
-            if loop.header not in self.hardware:
+            if loop.header not in self.hardware.all:
                 again.append(charge(Op.JUMP, line))
         return (again, leaving) if ways[0] == stays else (leaving, again)
 

@@ -10,10 +10,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from, going_to, put_between
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
+from bfsim.kernel.lowering.unused import without_unused
 from bfsim.kernel.profile import GCC_O2
 
 NEUTRAL = {
@@ -127,23 +128,19 @@ def _operand_on_way(
     if made.opcode not in CASTS:
         return None
     value = _operand_on_way(flow, block, made.operands[0], source, rows)
-    if value is None or (_is_number(value) and not 0 <= int(value) < SAME_IN_ALL_WIDTHS):
+    if value is None or (is_number(value) and not 0 <= int(value) < SAME_IN_ALL_WIDTHS):
         return None
-    if _is_number(value):
+    if is_number(value):
         return value
     name = f"{made.result}.{source}"
     rows.append(replace(made, result=name, text=_with(made.text, made.operands[0], value), operands=(value,)))
     return name
 
 
-def _is_number(value: str) -> bool:
-    return value.lstrip("-").isdigit()
-
-
 def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
     """Return what an operation gives without being done, None if it has to be."""
     left, right = operands
-    if _is_number(left) and _is_number(right):
+    if is_number(left) and is_number(right):
         return None  # another number, which takes a register there: to add it behind, as it was, is nearer to GCC's code
     sides = [(left, right), (right, left)] if opcode in COMMUTATIVE else [(left, right)]
     for kept, other in sides:
@@ -178,7 +175,7 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
     blocks[label] = replace(blocks[label], instructions=(phi, *rest))
     for source in found.values:
         _without_empty(blocks, flow, source, label)
-    return _without_unused(replace(routine, blocks=tuple(blocks.values())))
+    return without_unused(replace(routine, blocks=tuple(blocks.values())), ("phi", *CASTS))
 
 
 def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str, label: str) -> None:
@@ -192,23 +189,3 @@ def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str,
     blocks[source] = going_to(blocks[source], empty, label)
     blocks[label] = come_to_from(blocks[label], empty, source)
     del blocks[empty]
-
-
-def _without_unused(routine: Routine) -> Routine:
-    """Take out choices and conversions that nothing uses any more."""
-    users = ControlFlow(routine).users
-    removed = [
-        each
-        for block in routine.blocks
-        for each in block.instructions
-        if each.opcode in ("phi", *CASTS) and not users.get(each.result or "")
-    ]
-    if not removed:
-        return routine
-    blocks = tuple(
-        replace(
-            block, instructions=tuple(row for row in block.instructions if not any(row is x for x in removed))
-        )
-        for block in routine.blocks
-    )
-    return _without_unused(replace(routine, blocks=blocks))

@@ -10,14 +10,11 @@ from __future__ import annotations
 from collections import Counter as Tally
 from collections import defaultdict
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
-
-if TYPE_CHECKING:
-    from bfsim.kernel.lowering.webs import Webs
+from bfsim.kernel.lowering.webs import Webs
 
 ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
 PASSING = {Op.MOVE, Op.IMM, Op.IMM32}
@@ -97,18 +94,18 @@ class RegisterClasses:
         for web, value in self.values.items():
             if value.is_between:
                 self.webs.bank[web] = DATA
-        self.room = _Room(self.webs)
+        room = _Room(self.webs)
         gains = {web: self.costs[web][DATA] - self.costs[web][POINTER] for web in self.behind}
         for web in sorted(gains, key=lambda web: (-gains[web], web)):
             if gains[web] > 0 and self.values[web].is_free:
-                self._to_pointers(web)
+                self._to_pointers(web, room)
         for web in sorted(gains, reverse=True):  # what costs as much in either is where the next sum is
             if (
                 gains[web] == 0
                 and self.values[web].is_between
                 and {self.webs.bank[other] for other in self.behind[web]} == {POINTER}
             ):
-                self._to_pointers(web)
+                self._to_pointers(web, room)
 
     def _second_pass(self, instruction: MachineInstruction, weight: int) -> None:
         """Add what an operation costs its values in each bank, in moves; note what is behind those of a chain."""
@@ -122,10 +119,10 @@ class RegisterClasses:
             more = self.values[web].is_between  # out of IPREGS, it is one move more
             self.costs[web][POINTER] += weight * (min(moves[POINTER], moves[DATA] + 1) + more)
 
-    def _to_pointers(self, web: str) -> None:
+    def _to_pointers(self, web: str, room: _Room) -> None:
         value = self.values[web]
         may_be = value.is_free or value.is_between
-        if may_be and self.webs.bank[web] is DATA and self.room.has(web):
+        if may_be and self.webs.bank[web] is DATA and room.has(web):
             self.webs.bank[web] = POINTER
 
     def _tied(self, instruction: MachineInstruction) -> set[str]:

@@ -15,6 +15,7 @@ from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
 from bfsim.kernel.lowering.pressure import POINTERS, Pressure
+from bfsim.kernel.lowering.register_classes import RegisterClasses
 from bfsim.kernel.lowering.webs import Webs
 from bfsim.kernel.rules import Rule
 
@@ -39,6 +40,8 @@ class Allocation:
 def allocate(context: Context, code: MachineCode) -> Allocation:
     """Insert moves, constants and reloads into `code`; return what belongs to edges and to the function's ends."""
     webs = Webs(context, code)
+    if context.profile.applies(Rule.SUM_CLASSES):
+        RegisterClasses(webs).place()
     moves = Moves(webs)
     pressure = Pressure(webs)
     names = (*webs.web, *webs.bank)

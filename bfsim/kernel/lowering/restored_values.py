@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import Instruction, Routine, arms_of, predicate, renamed
+from bfsim.kernel.ir_text import Instruction, Routine, arms_of, is_number, predicate, renamed
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.value_ranges import is_constant
 
 
 def with_restored_values(routine: Routine) -> Routine:
@@ -30,8 +29,8 @@ def _chosen(flow: ControlFlow, phi: Instruction) -> str | None:
     """The value that a choice is on all ways, on some of which a number may stand in its place."""
     home, _ = flow.defined[phi.result or ""]
     arms = arms_of(phi)
-    values = {value for value in arms.values() if not is_constant(value)}
-    numbers = {label: value for label, value in arms.items() if is_constant(value)}
+    values = {value for value in arms.values() if not is_number(value)}
+    numbers = {label: value for label, value in arms.items() if is_number(value)}
     if len(values) != 1 or len(arms) < 2 or not phi.text.startswith("phi i32 "):
         return None
     (value,) = values

@@ -17,7 +17,7 @@ from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.known_answers import with_known_answers
 from bfsim.kernel.lowering.lagging_counters import without_lagging
-from bfsim.kernel.lowering.merged_stores import merge_stores, with_sides_apart
+from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.narrow_tests import with_narrow_tests
 from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
@@ -26,6 +26,7 @@ from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
 from bfsim.kernel.lowering.restored_values import with_restored_values
 from bfsim.kernel.lowering.short_circuits import split_tests
+from bfsim.kernel.lowering.sides_apart import with_sides_apart
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
 from bfsim.kernel.lowering.strength_reduction import with_reduced_strength

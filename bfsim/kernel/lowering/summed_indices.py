@@ -1,8 +1,8 @@
 """An index is added up before it becomes an address: LLVM makes a[i + j] to an address j elements behind the one i elements behind a.
 
-C compilers add up what the source adds up: the sum of two words is an index, and its address one instruction [POINTER_PLUS_EXPR of GCC 12].
-The address of a byte that one access uses is a sum of three, to which the product comes first [expand_expr with EXPAND_SUM]. Addresses
-that a loop steps along, or that do not change in it, are the same either way. Those are left as they are.
+C compilers add up what the source adds up: the sum of two words is an index, and its address one instruction. Only the address of a byte
+that one access uses is such a sum of three in GCC 12's code, too [fitted: tests/kernel/test_rows_of_pictures.py]. It is left as it is, and so
+are addresses that a loop steps along, or that do not change in it: they cost the same either way.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from bfsim.kernel.ir_text import Instruction, Routine
 from bfsim.kernel.loops import ControlFlow, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.lowering.unused import without_unused
 
 INDEX = ".index"
 
@@ -43,7 +44,7 @@ def _summed(flow: ControlFlow) -> Routine | None:
             inner = behind.get(each.result)
             rows += [each] if inner is None or each.result is None else _at_once(each, inner)
         blocks.append(replace(block, instructions=tuple(rows)))
-    return _without_unused(replace(flow.routine, blocks=tuple(blocks)))
+    return without_unused(replace(flow.routine, blocks=tuple(blocks)), ("getelementptr",))
 
 
 def _inner(flow: ControlFlow, each: Instruction) -> Instruction | None:
@@ -74,22 +75,3 @@ def _at_once(each: Instruction, inner: Instruction) -> Iterator[Instruction]:
     yield replace(each, result=index, opcode="add", text=f"add i32 {first}, {last}", operands=(first, last))
     text = f"{_kind(each)} ptr {inner.operands[0]}, i32 {index}"
     yield replace(each, text=text, operands=(inner.operands[0], index))
-
-
-def _without_unused(routine: Routine) -> Routine:
-    """Leave out the addresses that nothing uses now."""
-    flow = ControlFlow(routine)
-    return replace(
-        routine,
-        blocks=tuple(
-            replace(
-                block,
-                instructions=tuple(
-                    each
-                    for each in block.instructions
-                    if each.opcode != "getelementptr" or flow.users.get(each.result or "")
-                ),
-            )
-            for block in routine.blocks
-        ),
-    )

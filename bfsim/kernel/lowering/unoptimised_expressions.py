@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from bfsim.kernel.ir_text import Instruction, SourceLine
+from bfsim.kernel.ir_text import INVERTED, SWAPPED, Instruction, SourceLine
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
 from bfsim.kernel.lowering.powers import by_power
 from bfsim.kernel.lowering.widths import WORD
-
-SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
-           "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
-INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
-            "ult": "uge", "uge": "ult", "ule": "ugt", "ugt": "ule", "eq": "ne", "ne": "eq"}  # fmt: skip
 
 SIGN = 1 << (WORD - 1)
 DIVISIONS = ("sdiv", "srem", "udiv", "urem")

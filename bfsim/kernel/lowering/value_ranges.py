@@ -1,31 +1,27 @@
 """Value ranges: the least and the largest a word may be, by what computes it and by what a test on the way has said [vr-values.cc, gimple-range.cc of GCC 12].
 
-The largest word has no negative one less than the least, so that GCC takes the absolute value of a word, of which it lets the
-overflow be undefined, for one that is not negative.
+The absolute value of the least word overflows, which GCC takes for undefined: so absolute values are not negative.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from bfsim.kernel.ir_text import Instruction, predicate
+from bfsim.kernel.ir_text import INVERTED, Instruction, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
 
 LEAST, LARGEST = -(1 << 31), (1 << 31) - 1
 Range = tuple[int, int]
-DEEPEST = 6
-"""Operations that a range is looked for through."""
 LESS = {"slt": (0, 1, 1), "sle": (0, 1, 0), "sgt": (1, 0, 1), "sge": (1, 0, 0)}
 """Of a test that holds: which operand is the smaller one, which the larger, and by how much at least."""
-NEGATED = {"slt": "sge", "sge": "slt", "sgt": "sle", "sle": "sgt"}
 
 
-def value_range(flow: ControlFlow, value: str, depth: int = DEEPEST) -> Range:
+def value_range(flow: ControlFlow, value: str) -> Range:
     """Return the least and the largest that `value` may be."""
-    if is_constant(value):
+    if is_number(value):
         return int(value), int(value)
     each = flow.instruction(value)
-    if each is None or depth == 0:
+    if each is None:
         return LEAST, LARGEST
     if "@llvm.abs." in each.text:
         return 0, LARGEST
@@ -33,7 +29,7 @@ def value_range(flow: ControlFlow, value: str, depth: int = DEEPEST) -> Range:
         bits = int(each.text.split()[1].removeprefix("i"))
         return (0, (1 << bits) - 1) if each.opcode == "zext" else (-(1 << bits - 1), (1 << bits - 1) - 1)
     if each.opcode == "sub" and each.operands[0] == "0":
-        low, high = value_range(flow, each.operands[1], depth - 1)
+        low, high = value_range(flow, each.operands[1])
         return (-high, -low) if low > LEAST else (LEAST, LARGEST)
     return LEAST, LARGEST
 
@@ -42,10 +38,10 @@ def answer(flow: ControlFlow, known: Instruction, test: Instruction, *, holds: b
     """Return what `test` says where `known` is known to hold, or not to; None if that does not decide it."""
     if predicate(known) not in LESS or predicate(test) not in LESS:
         return None
-    within = _bounded(flow, known, predicate(known) if holds else NEGATED[predicate(known)])
+    within = _bounded(flow, known, predicate(known) if holds else INVERTED[predicate(known)])
     if not set(test.operands[:2]) & within.keys():
         return None
-    for relation, said in ((predicate(test), True), (NEGATED[predicate(test)], False)):
+    for relation, said in ((predicate(test), True), (INVERTED[predicate(test)], False)):
         smaller, larger, apart = LESS[relation]
         _, most = _range(flow, test.operands[smaller], within)
         least, _ = _range(flow, test.operands[larger], within)
@@ -65,8 +61,3 @@ def _bounded(flow: ControlFlow, test: Instruction, relation: str) -> Mapping[str
 
 def _range(flow: ControlFlow, value: str, within: Mapping[str, Range]) -> Range:
     return within[value] if value in within else value_range(flow, value)
-
-
-def is_constant(value: str) -> bool:
-    """Whether a value is a number."""
-    return value.lstrip("-").isdigit()

@@ -9,7 +9,6 @@ from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.induction_variables import is_merged_pointer
 from bfsim.kernel.lowering.liveness import Liveness, liveness
 from bfsim.kernel.lowering.machine_code import MachineCode, RegisterBank
-from bfsim.kernel.lowering.register_classes import RegisterClasses
 from bfsim.kernel.rules import Rule
 
 ROUNDS = 3  # in which values settle in the bank of those they are computed with
@@ -28,8 +27,6 @@ class Webs:
         self.analyse()
         self._coalesce()
         self._choose_banks()
-        if context.profile.applies(Rule.SUM_CLASSES):
-            RegisterClasses(self).place()
 
     def _phis(self) -> dict[str, list[tuple[str, str]]]:
         found: dict[str, list[tuple[str, str]]] = {}

@@ -1,0 +1,78 @@
+"""Which loops are hardware loops: LSETUP, no branch at their ends [hwloop_optimize in bfin.cc, hw-doloop.cc of GCC 12]."""
+
+from __future__ import annotations
+
+from bfsim.kernel import isa
+from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.machine_code import MachineCode
+from bfsim.kernel.lowering.registers import Allocation
+from bfsim.kernel.rules import Rule
+
+
+class HardwareLoops:
+    """Those of one routine, by their headers in `all`."""
+
+    def __init__(self, context: Context, code: MachineCode, allocation: Allocation) -> None:
+        self.context, self.flow, self.code, self.allocation = context, context.flow, code, allocation
+        self.all = {loop.header for loop in self.flow.loops if self._is_one(loop)}
+
+    def _is_one(self, loop: Loop) -> bool:
+        """Whether it is a counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
+        if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
+            return False
+        if self.flow.is_split(loop) or self.flow.ending(loop) != loop.latch:
+            return False
+        in_front = self.context.profile.applies(Rule.COPIES_IN_FRONT) and not self._is_one_block(loop)
+        if self.begins_with_copies(loop) and not in_front:
+            return False  # the copies stay behind the end of a loop of one block, which jumps back from there
+        before = [
+            each
+            for each in self.flow.predecessors[loop.latch]
+            if not self.flow.is_overflow_guard(self.flow.blocks[each])
+            and each not in self.context.if_conversion.gone
+        ]
+        copied = any(self._ends_apart(inner, before) for inner in loop.inner)
+        if copied and self.context.profile.applies(Rule.COPIED_END):
+            return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
+        return bool(self.code.of[loop.latch]) or len(before) == 1
+
+    def begins_with_copies(self, loop: Loop) -> bool:
+        """Whether values are copied from iteration to iteration in a block of its own.
+
+        That is moved before the loop's first block, so that who enters the loop jumps over it [reorder_loops in hw-doloop.cc].
+        """
+        return (loop.latch, loop.header) in self.allocation.on_edges
+
+    def _is_one_block(self, loop: Loop) -> bool:
+        """Whether nothing in a loop branches but its end."""
+        converted, label = self.context.if_conversion.by_label, loop.header
+        while label != loop.latch:
+            if label in converted:
+                label, _ = self.flow.defined[converted[label].phi.result or ""]
+            elif len(ways := set(self.flow.blocks[label].successors)) == 1:
+                (label,) = ways
+            else:
+                return False
+        return True
+
+    def ends_in_branch(self, loop: Loop) -> bool:
+        """Whether the last instruction of a hardware loop would be a branch ["bad last insn; replace with nop" in hwloop_optimize]."""
+        (before,) = [*self.flow.predecessors[loop.latch]][:1]
+        return (
+            not self.code.of[loop.latch]
+            and before != loop.latch
+            and len(set(self.flow.blocks[before].successors)) > 1
+            and before not in self.context.if_conversion.by_label
+        )
+
+    def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
+        """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
+        ends = inner.blocks & set(before)
+        return len(ends) > 1 and any(
+            label in ends and way not in inner.blocks for label, way in self.allocation.on_edges
+        )
+
+    def _counted_depth(self, loop: Loop) -> int:
+        own = int(loop.header in self.context.demanded.counted)
+        return own + max((self._counted_depth(each) for each in loop.inner), default=0)
