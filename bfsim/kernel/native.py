@@ -85,10 +85,14 @@ def _loaded(each: NativeEntry) -> int:
     return machine_code.address_of(each.symbol)
 
 
-@cache
 def _key(symbol: str) -> str:
-    package = Path(__file__).parent.parent
-    digest = hashlib.sha256(f"{symbol} {tools()}".encode())
+    return hashlib.sha256(f"{symbol} {tools()} {_sources()}".encode()).hexdigest()
+
+
+@cache
+def _sources() -> str:
+    """Return the digest of all files that hold compiled parts."""
+    package, digest = Path(__file__).parent.parent, hashlib.sha256()
     for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()
