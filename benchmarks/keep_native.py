@@ -14,6 +14,7 @@ from pathlib import Path
 
 from bfsim import kernel
 from bfsim.kernel.traced_access import trace_access
+from bfsim.machine.bus.tape import note, note_access, note_copy, note_run, note_wait
 from bfsim.machine.bus.weave import advance
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
@@ -25,6 +26,11 @@ FOLDER = Path(kernel.__file__).parent / KEPT
 ENTRIES = (
     trace_access,
     advance,
+    note,
+    note_run,
+    note_access,
+    note_copy,
+    note_wait,
     count_events,
     charge_conflicts,
     charge_events,

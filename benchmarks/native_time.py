@@ -55,7 +55,7 @@ def native_time(kernels: Stopwatch, weave: Stopwatch) -> Iterator[None]:
     """Take the time of kernels and of the weave, in boards that are made inside."""
     with (
         patch.object(PreparedCall, "__init__", _after(PreparedCall, "_entry", kernels)),
-        patch.object(ObjectCall, "__init__", _after(ObjectCall, "_entry", kernels)),
+        patch.object(ObjectCall, "__init__", _after(ObjectCall, "run", kernels)),
         patch.object(WovenBus, "__init__", _after(WovenBus, "_advance", weave)),
     ):
         yield

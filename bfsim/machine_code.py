@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Callable
 from enum import IntEnum
 from functools import cache
+from typing import Any
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -128,3 +131,35 @@ def loaded(code: bytes) -> llvm.ExecutionEngine:
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return engine
+
+
+METH_FASTCALL, METH_O = 0x80, 0x08
+"""CPython: a function gets its `self`, and the address of its arguments and their number, or its only argument."""
+
+
+class _Method(ctypes.Structure):
+    """CPython's `PyMethodDef`."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("function", ctypes.c_void_p),
+        ("flags", ctypes.c_int),
+        ("about", ctypes.c_char_p),
+    )
+
+
+@cache
+def _method(address: int, flags: int) -> _Method:
+    return _Method(b"machine code", address, flags, None)
+
+
+@cache
+def _new_function() -> Any:
+    kind = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
+    return kind(("PyCFunction_NewEx", ctypes.pythonapi))
+
+
+def built_in(address: int, bound: object, flags: int = METH_FASTCALL) -> Callable[..., Any]:
+    """Return machine code as a built-in function of Python, with the C interface of CPython: `bound` is its `self`."""
+    made: Callable[..., Any] = _new_function()(ctypes.addressof(_method(address, flags)), bound, None)
+    return made

@@ -34,9 +34,10 @@ place of a stamp, and its site is that of the routine that is fetched first (`bu
     ROOM,  # how many entries the log can have
     REGIONS,  # how many regions are cached
     LINE_BITS, SETS, WAYS,
-) = range(9)  # fmt: skip
+    KEPT,  # how many entries of earlier calls are kept in front of those of the next
+) = range(10)  # fmt: skip
 MAX_REGIONS = 8
-FIRST_REGION = 9  # first offset, end and policy of each
+FIRST_REGION = 10  # first offset, end and policy of each
 TAGS = (
     FIRST_REGION + 3 * MAX_REGIONS
 )  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
@@ -97,7 +98,6 @@ class AccessTrace:
         self._arena = arena  # the state has its address only
         self._state = room
         self._words: Any = room.data
-        self._kept = 0
         self._state[TAGS:LOG] = EMPTY
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
         self._room = self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
@@ -120,50 +120,55 @@ class AccessTrace:
             self._state[FUNCTION] = trace_access.address()
         return int(self._state.ctypes.data)
 
+    def address_of(self, word: int) -> int:
+        """Return the host address of a word of the state."""
+        return int(self._state.ctypes.data) + self._state.itemsize * word
+
     def logs(self, address: int) -> bool:
         """Whether accesses to memory at a host address are logged: whether it is outside of L1."""
         return bool(self._state[ARENA] <= address < self._state[END])
 
     def take_count(self) -> int:
         """Return how many accesses the last call logged, and begin the log anew behind what is kept."""
-        words, kept = self._words, self._kept
+        words = self._words
+        kept: int = words[KEPT]
         count: int = words[ENTRIES] - kept
         words[ENTRIES] = kept
-        if count > self._room - kept:
-            self._check_room(count)
+        self.check_room(count)
         return count
 
     def keep(self, count: int) -> int:
         """Keep the `count` entries of the last call in front of those to come; return the number of the first."""
-        first = self._kept
-        self._words[ENTRIES] = self._kept = first + count
+        words = self._words
+        first: int = words[KEPT]
+        words[ENTRIES] = words[KEPT] = first + count
         return first
 
     def drop(self) -> None:
         """Keep nothing any more."""
-        self._words[ENTRIES] = self._kept = 0
+        self._words[ENTRIES] = self._words[KEPT] = 0
 
     def entries(self, count: int) -> NDArray[np.int64]:
         """Return the first `count` entries of the log behind what is kept: those of the last call."""
-        first = LOG + self._kept
+        first = LOG + self._words[KEPT]
         return self._state[first : first + count]
 
     def sites(self, count: int) -> NDArray[np.int64]:
         """Return the sites of these entries."""
-        first = LOG + self._room + self._kept
+        first = LOG + self._room + self._words[KEPT]
         return self._state[first : first + count]
 
     def add(self, count: int, entry: int, site: int) -> int:
         """Add an entry behind the `count` of the last call; return the new count."""
-        self._check_room(count + 1)
-        first, words = LOG + self._kept + count, self._words
+        self.check_room(count + 1)
+        first, words = LOG + self._words[KEPT] + count, self._words
         words[first], words[first + self._room] = entry, site
         return count + 1
 
     def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
         """Add `entries`, ordered by their stamps, to the `count` of the last call, behind those of the same; return the new count."""
         total = count + len(entries)
-        self._check_room(total)
+        self.check_room(total)
         merged, merged_sites = self.entries(total), self.sites(total)
         merged[count:], merged_sites[count:] = entries, sites
         if count:
@@ -171,8 +176,9 @@ class AccessTrace:
             merged[:], merged_sites[:] = merged[order], merged_sites[order]
         return total
 
-    def _check_room(self, count: int) -> None:
-        room = self._room - self._kept
+    def check_room(self, count: int) -> None:
+        """Raise KernelError if a call must not log so many accesses."""
+        room = self._room - self._words[KEPT]
         if count > room:
             raise KernelError(
                 f"a kernel call must access memory outside L1 at most {room} times, not {count} times: split it"

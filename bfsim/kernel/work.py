@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.blackfin import left
 from bfsim.errors import FirmwareError
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.entry import FIRST_ARGUMENT, STALL_SHIFT
@@ -18,6 +19,8 @@ from bfsim.kernel.types import FloatType, Number
 
 FLOAT, BITS = struct.Struct("<f"), struct.Struct("<I")
 ISSUE_MASK = (1 << STALL_SHIFT) - 1
+ISSUE_CCLK, STALL_CCLK, ACCESSES = left.ISSUE_CCLK, left.STALL_CCLK, left.ACCESSES
+"""Places of the numbers of a `Work`."""
 
 
 def is_single(value: object) -> bool:
@@ -34,19 +37,41 @@ def is_single(value: object) -> bool:
 class Work:
     """One kernel call, done natively: pixels are written already, time has not passed yet.
 
-    `stall_cclk` are interlocks: cycles in which one operation waits for another. `value` is what the kernel returned. `accesses`
-    is how many accesses outside L1 the access_trace logged for it.
+    `value` is what the kernel returned. Its numbers are where machine code finds them.
     """
 
-    __slots__ = ("accesses", "issue_cclk", "stall_cclk", "value")
+    __slots__ = ("_numbers", "at", "value")
 
     def __init__(
         self, issue_cclk: int, stall_cclk: int, value: float | None = None, accesses: int = 0
     ) -> None:
-        self.issue_cclk = issue_cclk
-        self.stall_cclk = stall_cclk
+        self._numbers = (ctypes.c_int64 * 3)(issue_cclk, stall_cclk, accesses)
+        self.at = ctypes.addressof(self._numbers)
+        """Their address."""
         self.value = value
-        self.accesses = accesses
+
+    def be(self, issue_cclk: int, stall_cclk: int, accesses: int) -> None:
+        """Have it be of another call."""
+        self._numbers[:] = [issue_cclk, stall_cclk, accesses]
+
+    @property
+    def issue_cclk(self) -> int:
+        """Cycles in which operations are issued."""
+        return self._numbers[ISSUE_CCLK]
+
+    @property
+    def stall_cclk(self) -> int:
+        """Interlocks: cycles in which one operation waits for another."""
+        return self._numbers[STALL_CCLK]
+
+    @property
+    def accesses(self) -> int:
+        """How many accesses outside L1 the access_trace logged."""
+        return self._numbers[ACCESSES]
+
+    @accesses.setter
+    def accesses(self, count: int) -> None:
+        self._numbers[ACCESSES] = count
 
 
 UNYIELDED = "core.run(...) gives its value when it is yielded: write `yield core.run(...)`, in parentheses within an expression"
@@ -154,9 +179,8 @@ class PreparedCall:
             self._check(arguments)
             raise self._failure()
         work = self._work  # one for all runs: to make it takes Python longer than to run a short kernel
-        work.issue_cclk = cycles & ISSUE_MASK
-        work.stall_cclk = cycles >> STALL_SHIFT
-        work.accesses = self._access_trace.take_count() if self._access_trace else 0
+        accesses = self._access_trace.take_count() if self._access_trace else 0
+        work.be(cycles & ISSUE_MASK, cycles >> STALL_SHIFT, accesses)
         if self._value_word:
             work.value = block[self._value_word]
             if self._is_float:

@@ -320,3 +320,22 @@ def test_rings_never_hold_more_than_they_have_rows(turns: list[int]) -> None:
     board.run(noise(2))
     for picture, (left, right) in zip(noise(2), zip(written[::2], written[1::2], strict=True), strict=True):
         assert {left.tobytes(), right.tobytes()} == {picture.left.tobytes(), picture.right.tobytes()}
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_every_row_of_a_ring_must_be_as_long_as_its_line(ahead: bool) -> None:
+    """Not the first ones alone: a copy would write over what lies behind."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        short = core.part(frame.rows, 0, 4)
+        ring = core.window_ring((frame.rows[0], short[1]), core.rows("in_ring"))
+        if not ahead:
+            core.on_interrupt("SUPPLEMENTAL_0", lambda _: None)
+        yield from ring.line()
+        yield from ring.line()
+
+    with pytest.raises(
+        FirmwareError,
+        match=r"a row of camera must be as long as the one of in_ring that it is copied to \(32 bytes\), not 4 bytes",
+    ):
+        run(every_frame(work))

@@ -4,28 +4,25 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from functools import cache
-from typing import Any
+from functools import cache, partial
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.calling import ISSUE_MASK, STALL_SHIFT, Argument, BoundCall, Counts, Kind
+from bfsim.blackfin.caller import Kind
+from bfsim.blackfin.calling import Argument, Counts, Log, bound_call
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import catch_always
-from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, placed
+from bfsim.blackfin.left import FAILED, NO_ROOM, WORD_BITS, Left, Result
+from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, Subroutine, placed
 from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.kernel import crashes
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
 from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject
-from bfsim.kernel.types import ArrayType, FloatType, u32
+from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
 from bfsim.kernel.work import Work
-
-IN_MEMORY = {
-    "i8": ctypes.c_int8, "u8": ctypes.c_uint8, "i16": ctypes.c_int16, "u16": ctypes.c_uint16,
-    "i32": ctypes.c_int32, "u32": ctypes.c_uint32, "f32": ctypes.c_float,
-}  # fmt: skip
-"""Numbers by their types: of what R0 holds, a narrow type has the lower bits."""
 
 
 class ObjectCall:
@@ -51,8 +48,6 @@ class ObjectCall:
         stack is, if its accesses are told, too. `memory`: that of the board, if all arrays lie in it.
         """
         function = code.function
-        self._check, self._access_trace = check, access_trace
-        self._kept = arrays, memory  # their places have their addresses only
         space = code.subroutine.processor.space
         parts: Sequence[Placed] = ()
         if memory is None:
@@ -62,7 +57,7 @@ class ObjectCall:
         else:
             from_host = space.window(memory) - memory.ctypes.data
             addresses = [each.ctypes.data + from_host for each in arrays]
-        trace = None
+        log = None
         if access_trace:
             followed = [
                 Followed(address, array.nbytes, array.ctypes.data, first_site + number)
@@ -72,34 +67,41 @@ class ObjectCall:
             if stack is not None:
                 followed.append(_followed_stack(stack, first_site + len(arrays)))
             trace = block_of(access_trace.address(), followed)
+            logged, before, room = (access_trace.address_of(word) for word in (ENTRIES, KEPT, ROOM))
+            log = Log(ctypes.addressof(trace), logged, before, room, (trace, access_trace))
         _catch_faults()
+        work = Work(0, 0)  # one for all runs: to make it takes Python longer than to run a short kernel
+        left = Left(
+            work, work.at, *_result(function), partial(_refuse, check, code.subroutine, access_trace, work)
+        )
         counts = Counts(totals[: len(code.order)], code.order)
         given, taken = len(function.parameters), _arguments(function, arrays, addresses)
-        self._call = BoundCall(code.subroutine, taken, given, parts, counts, trace)
-        self._entry = self._call.entry
-        self._result: Any = (
-            IN_MEMORY[str(function.result)].from_address(self._call.result) if function.result else None
-        )
-        self._work = Work(0, 0)
-
-    @property
-    def stays_in_l1(self) -> bool:
+        self.stays_in_l1 = access_trace is None
         """Whether no access of it can leave L1."""
-        return self._access_trace is None
+        kept = arrays, memory
+        self.run: Callable[[Sequence[Any]], Work] = bound_call(
+            code.subroutine, taken, given, parts, counts, left, log, kept
+        )
+        """Runs the code now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
 
-    def run(self, arguments: Sequence[Any]) -> Work:
-        """Run the code now and say what it cost, until the next run. Of `arguments`, only the numbers are read."""
-        outcome = self._entry(*arguments)
-        if outcome < 0:
-            self._check(arguments)
-            self._call.refuse(outcome)
-        work = self._work  # one for all runs: to make it takes Python longer than to run a short kernel
-        work.issue_cclk = outcome & ISSUE_MASK
-        work.stall_cclk = outcome >> STALL_SHIFT
-        work.accesses = self._access_trace.take_count() if self._access_trace else 0
-        if self._result is not None:
-            work.value = self._result.value
-        return work
+
+def _refuse(
+    check: Callable[[Sequence[object]], None], subroutine: Subroutine, access_trace: AccessTrace | None, work: Work,
+    arguments: Sequence[object],
+) -> NoReturn:  # fmt: skip
+    """Raise KernelError for a call that failed: `work` says why."""
+    if access_trace and work.issue_cclk == NO_ROOM:
+        access_trace.check_room(work.accesses)
+    check(arguments)
+    subroutine.refuse(Event(FAILED - work.issue_cclk))
+
+
+def _result(function: Function) -> tuple[Result, int]:
+    """Return what R0 is when a function returns, and of how many bits: of a narrow type it has the lower ones."""
+    kind = function.result
+    if isinstance(kind, IntType):
+        return (Result.SIGNED if kind.signed else Result.UNSIGNED), kind.bits
+    return (Result.FLOAT if kind else Result.NONE), WORD_BITS
 
 
 def _arguments(

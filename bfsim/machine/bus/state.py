@@ -165,7 +165,7 @@ TOUCH, SETTING_UP, RING_EMPTY, RING_FULL = range(
     4
 )  # the how-manieth account it was, from 1 on, and why it stalled
 ACCOUNT_WORDS = 4
-MAX_ACCOUNTS = 64
+MAX_ACCOUNTS = 256
 PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
 
 # An operation: what it is, and up to four numbers.
@@ -179,6 +179,14 @@ PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
 ) = range(6)  # fmt: skip
 OPERATION_WORDS = 5
 MAX_OPERATIONS = 1 << 17
+
+# ---- A tape: how much of its operations a core that runs ahead has noted (`tape`).
+(
+    NOTED,          # operations
+    MARKED,         # how many of them the mark that was set last is behind
+    NOTED_COPIES,   # copies, in all
+) = range(3)  # fmt: skip
+TAPE_WORDS = 3
 PLAN_WORDS = TRANSFER_WORDS
 MAX_PLANS = 1 << 17
 
@@ -223,4 +231,5 @@ COPIES_AT = (
     OPERATIONS_AT + CORES * MAX_OPERATIONS * OPERATION_WORDS
 )  # number and place of the latest copies of each core
 PLANS_AT = COPIES_AT + CORES * 2 * ENDS
-STATE_WORDS = PLANS_AT + MAX_PLANS * PLAN_WORDS
+TAPES_AT = PLANS_AT + MAX_PLANS * PLAN_WORDS
+STATE_WORDS = TAPES_AT + CORES * TAPE_WORDS

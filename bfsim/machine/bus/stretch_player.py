@@ -26,21 +26,15 @@ class StretchPlayer:
         self._ends = ends
         self._plans = 0
 
-    def write(self, core: int, operations: NDArray[np.int64]) -> int:
-        """Write what a core is to do, operations as in `bus.state`, all words in one, at most MAX_OPERATIONS of them; return how many."""
-        first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
-        self._state[first : first + operations.size] = operations
-        return operations.size // w.OPERATION_WORDS
-
-    def play(self, core: int, clock_cclk: int, operations: int) -> simpy.Event:
-        """Let a core do so many `operations`, which are written, by itself from now on, its clock being at a cycle; return the end.
+    def play(self, core: int, clock_cclk: int, end: int, first: int = 0) -> simpy.Event:
+        """Let a core do what is written by itself from now on, its clock being at a cycle: operations from `first` up to `end`; return the end.
 
         What their calls access is in the core's log.
         """
         play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
         copies = words[play + w.COPIES]
         self._state[play : play + w.PLAY_WORDS] = 0
-        words[play + w.OPERATIONS_END] = operations
+        words[play + w.OPERATION], words[play + w.OPERATIONS_END] = first, end
         words[play + w.CLOCK] = clock_cclk
         words[play + w.ACTS_AT] = self._env.tick
         words[play + w.AWAITED] = w.NONE

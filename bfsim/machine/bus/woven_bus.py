@@ -22,6 +22,7 @@ from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.new_state import new_state
 from bfsim.machine.bus.planner import Planner
 from bfsim.machine.bus.stretch_player import StretchPlayer
+from bfsim.machine.bus.tape import Tape
 from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
@@ -49,6 +50,10 @@ class WovenBus:
         self.stretches = StretchPlayer(env, self._state, self._ends)
         self.records = BusRecords(board, self.words, self.owners)
         env.follow(self)
+
+    def tape(self, core: int) -> Tape:
+        """Return the tape of a core that runs ahead."""
+        return Tape(core, self._state, self._memory)
 
     # ---- time
 

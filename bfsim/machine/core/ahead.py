@@ -10,34 +10,76 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import nullcontext
 from functools import partial
-from struct import pack
 from typing import Any
 
 import numpy as np
 import simpy
-from numpy.typing import NDArray
 
+from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.chip.spec import EventSpec
 from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import COUNTER_OF
+from bfsim.machine.bus.tape import COPY_WORDS
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.in_step import InStep
 from bfsim.machine.core.interrupts import Handler
-from bfsim.machine.core.progress import Away, Copy, Wait
+from bfsim.machine.core.line_copies import Copy, LineCopies, Lines
+from bfsim.machine.core.progress import Away, Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import StallReason
 
-MOST_WORDS, MOST_ACCESSES = w.MAX_OPERATIONS // 2 * w.OPERATION_WORDS, 1 << 16
-"""What is done ahead, at most, before a core meets the others: its room is larger, for it cannot do so at every operation."""
+MOST_COPIES = 1 << 10
+"""Rings that are remembered: one over an area that moves is another one in each frame."""
 
-Operation = tuple[int, int, int, int, int]
+
+class CopiesAhead:
+    """`LineCopies` of a core that runs ahead: bytes are moved at once, and it is noted when that was asked for."""
+
+    def __init__(self, ahead: Ahead, lines: Lines, in_step: LineCopies) -> None:
+        self._ahead = ahead
+        self._lines = lines
+        self._in_step = in_step
+        self._table = np.full((len(lines), COPY_WORDS), w.NONE, np.int64)
+        self._note_program = ahead.programming(lines.owner, COPY_WRITES, COPY_READS)
+        self._note_copy = ahead.tape.copying(self._table)
+        self._note_wait: Callable[[Any], int] = ahead.tape.waiting(
+            COUNTER_OF[lines.reason], ahead.account_of(lines.owner)
+        )
+
+    def program(self) -> None:
+        """Note it, or let its time pass."""
+        ahead = self._ahead
+        if ahead.runs_ahead or ahead.tape.noted:
+            self._note_program()
+        else:
+            self._in_step.program()
+
+    def copy(self, number: int) -> Copy:
+        """Copy at once."""
+        ahead = self._ahead
+        if not (ahead.runs_ahead or ahead.tape.noted):
+            return self._in_step.copy(number)
+        copy = self._note_copy(number)
+        if copy == w.NONE:
+            self._table[number] = ahead.planned(self._lines.stream, *self._lines.rows(number))
+            copy = self._note_copy(number)
+        return copy
+
+    def goes_on(self, copy: Copy) -> bool:
+        """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""
+        ahead = self._ahead
+        if not ahead.runs_ahead:
+            return ahead.has(copy)
+        if self._note_wait(copy):
+            ahead.is_full = True
+        return True
 
 
 class Ahead:
@@ -57,17 +99,17 @@ class Ahead:
         self._bus = bus
         self._access_trace = access_trace
         self._write_cclk, self._read_cclk = events.mmr_write_cclk, events.mmr_read_cclk
-        self._copies = 0
-        self._known_copies: dict[tuple[MdmaStream, Row, Row], Operation] = {}
+        self.tape = bus.tape(number)
+        self._meet = self.tape.noting(w.CATCH_UP)
+        self._owners: dict[str, int] = {}  # of accounts
+        self._copies: dict[tuple[object, ...], CopiesAhead] = {}
         self._plans: dict[tuple[object, ...], int] = {}
         self._begin()
 
     def _begin(self) -> None:
         """Begin anew: the clock is where the firmware is."""
-        self._noted: list[int] = []  # operations, word by word,
-        self._issued = self._interlocked = 0  # and what the calls behind the last of them took
-        self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many words
-        self._owners: dict[str, int] = {}  # of their accounts
+        self.tape.clear()
+        self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many operations
         self.is_full = False
         self._access_trace.drop()
 
@@ -75,20 +117,12 @@ class Ahead:
 
     def note_call(self, work: Work, call: KnownCall) -> None:  # noqa: ARG002
         """Note it."""
-        if self._issued:
-            self._note_calls()
-        first = self._access_trace.keep(work.accesses)
-        last = first + work.accesses
-        self._noted += (w.ACCESS, work.issue_cclk, work.stall_cclk, first, last)
-        if last > MOST_ACCESSES:
+        if self.tape.note_access(work.at):
             self.is_full = True
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it behind what is noted, or charge it at once."""
-        if self._noted:
-            self._issued += work.issue_cclk
-            self._interlocked += work.stall_cclk
-        else:
+        if not self.tape.note_run(work.at):
             self._in_step.charge_call(work, call)
 
     def play_call(self, work: Work, call: KnownCall) -> Wait:
@@ -109,17 +143,14 @@ class Ahead:
     def catch_up(self) -> simpy.Event | None:
         """Note that the core meets the simulated time, or meet it."""
         if self.runs_ahead:
-            if self._issued:
-                self._note_calls()
-            self._noted += (w.CATCH_UP, 0, 0, 0, 0)
+            self._meet()
             return None
-        return self._env.process(self.sync()) if self._noted else self._in_step.catch_up()
+        return self._env.process(self.sync()) if self.tape.noted else self._in_step.catch_up()
 
     def when_there(self, what: Callable[[], None]) -> None:
         """Do it when the clock is where the firmware is now."""
-        if self._noted:
-            self._note_calls()
-            self._moments.append((len(self._noted), what))
+        if noted := self.tape.mark():
+            self._moments.append((noted, what))
         else:
             what()
 
@@ -129,64 +160,48 @@ class Ahead:
 
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Note it, or let its time pass."""
-        if self.runs_ahead or self._noted:
-            if self._issued:
-                self._note_calls()
-            cclk = writes * self._write_cclk + reads * self._read_cclk
-            self._noted += (w.SET_UP, cclk, self._account_of(owner), writes, reads)
+        if self.runs_ahead or self.tape.noted:
+            self.programming(owner, writes, reads)()
         else:
             self._in_step.program_device(owner, writes=writes, reads=reads)
 
+    def programming(self, owner: str, writes: int, reads: int) -> Callable[[], int]:
+        """Return what notes that."""
+        cclk = writes * self._write_cclk + reads * self._read_cclk
+        return self.tape.noting(w.SET_UP, cclk, self.account_of(owner), writes, reads)
+
     # ---- copies
 
-    def copy(self, stream: MdmaStream, source: Row, destination: Row) -> Copy:
-        """Copy at once, and note when that was asked for."""
-        if not (self.runs_ahead or self._noted):
-            return self._in_step.copy(stream, source, destination)
-        key = stream, source, destination
-        operation = self._known_copies.get(key)
-        if operation is None:
-            operation = self._known_copies[key] = self._planned(*key)
-        destination.octets[:] = source.octets
-        if self._issued:
-            self._note_calls()
-        self._noted += operation
-        self._copies += 1
-        return self._copies - 1
+    def copies(self, lines: Lines) -> LineCopies:
+        """Return what makes them ahead, the same for the same rows."""
+        key = lines.stream, lines.sources, lines.destinations
+        if key not in self._copies:
+            if len(self._copies) == MOST_COPIES:
+                self._copies.clear()
+            self._copies[key] = CopiesAhead(self, lines, self._in_step.copies(lines))
+        return self._copies[key]
 
-    def _planned(self, stream: MdmaStream, source: Row, destination: Row) -> Operation:
-        """Return a copy as an operation: the number of its plan, which those of its kind share, and where it begins to read and to write."""
+    def planned(self, stream: MdmaStream, source: Row, destination: Row) -> tuple[int, ...]:
+        """Return a copy as the tape has it in a table: by the number of its plan, which those of its kind share."""
         kind = stream, *stream.kind_of(source, destination)
         if kind not in self._plans:
             plans = self._bus.stretches.keep_plans([stream.plan(source, destination).words])
             self._plans[kind] = int(plans[0])
-        return w.COPY, self._plans[kind], source.offset, destination.offset, 0
+        return self._plans[kind], source.offset, destination.offset, 0, source.nbytes
 
     def settle(self) -> None:
         """Settle the bus, unless something is done ahead, which does not depend on it."""
-        if not (self.runs_ahead or self._noted):
+        if not (self.runs_ahead or self.tape.noted):
             self._in_step.settle()
 
     def has(self, copy: Copy) -> bool:
         """Whether it is over: nobody knows that of one made ahead before it is waited for."""
-        return not (self.runs_ahead or self._noted) and self._in_step.has(self._posted(copy))
-
-    def goes_on(self, copy: Copy, reason: StallReason, owner: str) -> bool:
-        """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""
-        if not (self.runs_ahead and isinstance(copy, int)):
-            return self.has(copy)
-        if self._issued:
-            self._note_calls()
-        self._noted += (w.AWAIT, self._copies - copy, COUNTER_OF[reason], self._account_of(owner), 0)
-        if len(self._noted) > MOST_WORDS:
-            self.is_full = True
-        return True
+        return not (self.runs_ahead or self.tape.noted) and self._in_step.has(self._posted(copy))
 
     def wait_transfer(self, copy: Copy, reason: StallReason, owner: str) -> Wait:
-        """Note the wait and go on, or wait."""
-        if not self.runs_ahead or not self.goes_on(copy, reason, owner):
-            yield from self.play_stretches()
-            yield from self._in_step.wait_transfer(self._posted(copy), reason, owner)
+        """Wait for its end."""
+        yield from self.play_stretches()
+        yield from self._in_step.wait_transfer(self._posted(copy), reason, owner)
 
     def _posted(self, copy: Copy) -> Transfer:
         """Return the transfer of the bus that a copy is which was made ahead and has been played."""
@@ -212,7 +227,7 @@ class Ahead:
         self.stay_in_step()
         self.interrupts.source(source)  # a wrong one is told here
         self.when_there(partial(self._in_step.on_interrupt, source, handler))
-        self.is_full = bool(self._noted)
+        self.is_full = bool(self.tape.noted)
 
     def request_interrupt(self, source: str) -> None:
         """Ask for it when the clock is there."""
@@ -227,41 +242,24 @@ class Ahead:
 
     def play_stretches(self) -> Wait:
         """Have the bus play what was done ahead, and do at each moment what was to be done then."""
-        if self._noted:
-            self._note_calls()
-            # numpy takes eight times as long for a list of ints
-            words = pack(f"{len(self._noted)}q", *self._noted)
-            yield from self._play(np.frombuffer(words, np.int64))
+        if noted := self.tape.noted:
+            yield from self._play(noted)
 
-    def _play(self, operations: NDArray[np.int64]) -> Wait:
-        """Have the bus play operations, all in one."""
+    def _play(self, noted: int) -> Wait:
+        """Have the bus play so many operations, all in one."""
         with self.interrupts.held():  # no handler comes between,
             self.is_full = False  # and no second play of the same
             stretches, owners, first = self._bus.stretches, list(self._owners), 0
-            for end, what in (*self._moments, (len(operations), self._begin)):
+            for end, what in (*self._moments, (noted, self._begin)):
                 if end > first:
-                    count = stretches.write(self._number, operations[first:end])
-                    yield stretches.play(self._number, self.clock.cclk, count)
+                    yield stretches.play(self._number, self.clock.cclk, end, first)
                     self.clock.stretch(stretches.played(self._number, len(owners)), owners)
                     first = end
                 what()
 
-    def _note_calls(self) -> None:
-        """Note the calls that have met nobody since the last operation, as one."""
-        issued, interlocked = self._issued, self._interlocked
-        if issued or interlocked:
-            self._issued = self._interlocked = 0
-            self._noted += (w.RUN, issued, interlocked, 0, 0)
-
-    def _account_of(self, owner: str) -> int:
-        owners = self._owners
-        if owner in owners:
-            return owners[owner]
-        number = owners[owner] = len(owners)
+    def account_of(self, owner: str) -> int:
+        """Return the number of the account of an owner. Raises FirmwareError for too many."""
+        number = self._owners.setdefault(owner, len(self._owners))
         if number == w.MAX_ACCOUNTS:
-            raise FirmwareError(
-                f"core {self._name} must use at most {w.MAX_ACCOUNTS} rings before it waits for a picture or another core"
-            )
-        if number > w.MAX_ACCOUNTS // 2:
-            self.is_full = True
+            raise FirmwareError(f"core {self._name} must use at most {w.MAX_ACCOUNTS} rings and devices")
         return number

@@ -93,6 +93,11 @@ class CoreClock:
         """Return the cycles up to the first CCLK edge from `tick` on; 0 if that is over."""
         return max(0, -(-tick // self.cclk_ticks) - self.cclk)
 
+    def is_over(self, transfer: Transfer) -> bool:
+        """Whether a transfer is done by now."""
+        end = transfer.end
+        return end is not None and end <= self.ticks
+
     def wake(self, reason: StallReason | None, owner: str, ended_by: Transfer | None = None) -> None:
         """Go on at the first CCLK edge from now; that was a stall, or idle without a reason."""
         self.waited(reason, self.until(self._env.tick), owner, ended_by)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Generator, Iterator, Sequence
-from functools import partial
+from functools import cached_property, partial
 from operator import index
 from typing import Any
 
 from bfsim.errors import FirmwareError
-from bfsim.kernel import Kernel, Work
 from bfsim.kernel.types import Number
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
@@ -19,6 +18,7 @@ from bfsim.machine.core.interrupts import CoreHandler
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.pictures import CAMERAS
 from bfsim.machine.core.places import Columns, Pixels
+from bfsim.machine.core.tasks import Run
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
@@ -45,9 +45,10 @@ class Core:
 
     # ---- kernels
 
-    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
+    @cached_property
+    def run(self) -> Run:
         """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
-        return self._tasks.run(kernel, arguments)
+        return self._tasks.run  # without a call between, for firmware asks for this most
 
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:

@@ -19,10 +19,9 @@ from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.accounts import KERNELS
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
-from bfsim.machine.core.progress import Away, Copy, Wait
+from bfsim.machine.core.line_copies import CopiesInStep, Copy, LineCopies, Lines
+from bfsim.machine.core.progress import Away, Wait
 from bfsim.machine.core.waits import Waits
-from bfsim.machine.dma.mdma import MdmaStream
-from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import StallReason
 
@@ -105,9 +104,9 @@ class InStep:
 
     # ---- copies
 
-    def copy(self, stream: MdmaStream, source: Row, destination: Row) -> Copy:
-        """Post the copy."""
-        return stream.copy(source, destination, self.clock.ticks)
+    def copies(self, lines: Lines) -> LineCopies:
+        """Return what posts them."""
+        return CopiesInStep(lines, self.clock)
 
     def settle(self) -> None:
         """Settle the bus."""
@@ -116,12 +115,7 @@ class InStep:
     def has(self, copy: Copy) -> bool:
         """Whether it is over."""
         assert isinstance(copy, Transfer), "nothing is copied ahead"
-        end = copy.end
-        return end is not None and end <= self.clock.ticks
-
-    def goes_on(self, copy: Copy, reason: StallReason, owner: str) -> bool:  # noqa: ARG002
-        """Whether it is over."""
-        return self.has(copy)
+        return self.clock.is_over(copy)
 
     def wait_transfer(self, copy: Copy, reason: StallReason, owner: str) -> Wait:
         """Wait for its end."""

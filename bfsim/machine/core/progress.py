@@ -16,17 +16,13 @@ from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
+from bfsim.machine.core.line_copies import Copy, LineCopies, Lines
 from bfsim.machine.core.waits import Waits
-from bfsim.machine.dma.mdma import MdmaStream
-from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
 
 Wait = Generator[Any, Any, Any]
 
 Away = AbstractContextManager[None]
-
-Copy = Transfer | int
-"""A copy that a core has asked for: on its way, or made ahead, the how-manieth of all of its own."""
 
 
 class Progress(Protocol):
@@ -74,17 +70,14 @@ class Progress(Protocol):
 
     # ---- copies
 
-    def copy(self, stream: MdmaStream, source: Row, destination: Row) -> Copy:
-        """Have a stream of this core copy a row, behind its copies before."""
+    def copies(self, lines: Lines) -> LineCopies:
+        """Return what has lines copied for this core."""
 
     def settle(self) -> None:
         """Let everything on the bus happen that is due; the core's clock must have been caught up with."""
 
     def has(self, copy: Copy) -> bool:
         """Whether a copy is done by the core's clock."""
-
-    def goes_on(self, copy: Copy, reason: StallReason, owner: str) -> bool:
-        """Whether a core that needs a copy done can go on at once; else it must wait for it."""
 
     def wait_transfer(self, copy: Copy, reason: StallReason, owner: str) -> Wait:
         """Stall until a copy or another transfer is done; interrupts that have handlers are taken as they come."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from typing import Any
+from typing import Any, Protocol
 
 import simpy
 
@@ -20,6 +20,13 @@ from bfsim.machine.memories import Row
 from bfsim.trace import REST, StallReason
 
 Charge = Callable[[Work, KnownCall], None]
+
+
+class Run(Protocol):
+    """What runs kernels for firmware."""
+
+    def __call__(self, kernel: Kernel, *arguments: Row | int) -> Work:
+        """Run a kernel."""
 
 
 class Tasks:
@@ -42,7 +49,7 @@ class Tasks:
         self.frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
 
-    def run(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
+    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
         """Run a kernel now, or promise to: what it gives must be yielded next."""
         if self._unclaimed is not None:
             self.check_claimed()

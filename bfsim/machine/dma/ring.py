@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
-from bfsim.machine.core.progress import Copy, Progress
+from bfsim.machine.core.line_copies import Copy, Lines
+from bfsim.machine.core.progress import Progress
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
@@ -44,18 +44,17 @@ class InputRing:
         """`on_line`: called with the number of each line that is taken, and with how many there are."""
         _check(rows, image)
         self._progress = progress
-        self._stream = stream
-        self._image = image
         self._rows = rows
         self._on_line = on_line
         self._owner = f"ring {rows[0].buffer}"
+        self._lines = progress.copies(Lines(stream, tuple(image), tuple(rows), self._owner, EMPTY))
         self._height, self._depth = len(image), len(rows)
         self._taken = 0
         self._coming: Copy | None = None  # the next line
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        progress, number = self._progress, self._taken
+        progress, lines, number = self._progress, self._lines, self._taken
         if late := progress.catch_up():
             yield late
         if number == self._height:
@@ -66,20 +65,17 @@ class InputRing:
         timeline = progress.clock.timeline
         if timeline:
             self._on_line(number, self._height)
-        progress.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
-        copy = self._fetch(number) if self._coming is None else self._coming
+        lines.program()
+        copy = lines.copy(number) if self._coming is None else self._coming
         # one line ahead: its row is the one that the core gave up with this call
-        self._coming = self._fetch(number + 1) if number + 1 < self._height else None
+        self._coming = lines.copy(number + 1) if number + 1 < self._height else None
         progress.settle()
-        is_there = progress.goes_on(copy, EMPTY, self._owner)
+        is_there = lines.goes_on(copy)
         if timeline:
             progress.clock.tell_level(self._owner, int(is_there))
         if not is_there:
             yield from progress.wait_transfer(copy, EMPTY, self._owner)
         return self._rows[number % self._depth]
-
-    def _fetch(self, number: int) -> Copy:
-        return self._progress.copy(self._stream, self._image[number], self._rows[number % self._depth])
 
     def __getitem__(self, number: int) -> Row:
         """Return the row of line `number`, which must still be in the ring."""
@@ -99,10 +95,10 @@ class OutputRing:
     ) -> None:
         _check(rows, image)
         self._progress = progress
-        self._stream = stream
         self._image = image
         self._rows = rows
         self._owner = f"ring {rows[0].buffer}"
+        self._lines = progress.copies(Lines(stream, tuple(rows), tuple(image), self._owner, FULL))
         self._height, self._depth = len(image), len(rows)
         self._copies: list[Copy] = []
         self._waits = progress.waits
@@ -110,24 +106,20 @@ class OutputRing:
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
         number, depth = len(self._copies), self._depth
-        if number >= depth:
-            progress, copy = self._progress, self._copies[number - depth]
-            why = FULL, self._owner
-            if progress.interrupts.can_come or not progress.goes_on(copy, *why):
-                yield from progress.wait_transfer(copy, *why)
+        if number >= depth and self._must_wait(self._copies[number - depth]):
+            yield from self._progress.wait_transfer(self._copies[number - depth], FULL, self._owner)
         return self._rows[number % depth]
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
-        number = len(self._copies)
+        progress, number = self._progress, len(self._copies)
         if number == self._height:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
-        self._progress.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
-        row = self._rows[number % self._depth]
-        self._copies.append(self._progress.copy(self._stream, row, self._image[number]))
-        if self._progress.clock.timeline:
+        self._lines.program()
+        self._copies.append(self._lines.copy(number))
+        if progress.clock.timeline:
             self._tell_fill()
 
     def _tell_fill(self) -> None:
@@ -138,5 +130,9 @@ class OutputRing:
     @awaited
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
-        if self._copies:
+        if self._copies and self._must_wait(self._copies[-1]):
             yield from self._progress.wait_transfer(self._copies[-1], FULL, self._owner)
+
+    def _must_wait(self, copy: Copy) -> bool:
+        """Whether a core that needs a copy done must wait for it, or may be interrupted there."""
+        return self._progress.interrupts.can_come or not self._lines.goes_on(copy)

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.calls.call_cache import KnownCall
-from bfsim.machine.core.ahead import Ahead, Operation
+from bfsim.machine.core.ahead import Ahead
 from bfsim.machine.core.progress import Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
@@ -39,9 +38,8 @@ class RecordedAhead(Ahead):
 
     def mark(self) -> None:
         """Note the place of a call of firmware."""
-        if self._noted:
-            self._note_calls()
-            self._marks.append(len(self._noted) // w.OPERATION_WORDS)
+        if noted := self.tape.mark():
+            self._marks.append(noted)
         else:
             self.notes.add(CALL)
 
@@ -52,7 +50,7 @@ class RecordedAhead(Ahead):
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it though nothing is noted before it."""
-        if not (self._noted or self.is_paused):
+        if not (self.tape.noted or self.is_paused):
             self.notes.add(w.RUN, work.issue_cclk, work.stall_cclk)
         super().charge_call(work, call)
 
@@ -64,15 +62,16 @@ class RecordedAhead(Ahead):
             self.notes.add_accesses(trace.entries(count), trace.sites(count))
             self.notes.add(w.ACCESS, work.issue_cclk, work.stall_cclk, count, call.number)
 
-    def _planned(self, stream: MdmaStream, source: Row, destination: Row) -> Operation:
-        kind, plan, offset, to, _ = super()._planned(stream, source, destination)
+    def planned(self, stream: MdmaStream, source: Row, destination: Row) -> tuple[int, ...]:
+        """Return it with its number in the notes."""
+        plan, offset, to, _, nbytes = super().planned(stream, source, destination)
         number = RING_STREAMS[self._number].index(stream.master)
-        return kind, plan, offset, to, self.notes.copy(number, source, destination)
+        return plan, offset, to, self.notes.copy(number, source, destination), nbytes
 
-    def _play(self, operations: NDArray[np.int64]) -> Wait:
+    def _play(self, noted: int) -> Wait:
         if not self.is_paused:
-            self._note_stretch(operations.reshape(-1, w.OPERATION_WORDS).copy())
-        return super()._play(operations)
+            self._note_stretch(self.tape.operations(0, noted).copy())
+        return super()._play(noted)
 
     def _note_stretch(self, operations: Table) -> None:
         """Note operations in the words of `FrameWork`."""

@@ -1,0 +1,80 @@
+"""The copies of a ring: one a line, from or to rows that come again and again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
+from bfsim.errors import FirmwareError
+from bfsim.machine.bus.transfer_plans import Transfer
+from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.memories import Row
+from bfsim.trace import StallReason
+
+Copy = Transfer | int
+"""A copy that a core has asked for: on its way, or made ahead, the how-manieth of all of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """What a stream copies for a ring: each row of `sources` to one of `destinations`; where either has fewer, they come again.
+
+    `owner`: whom the cycles of setting copies up and of waiting for them belong to; the latter are stalls for `reason`.
+    """
+
+    stream: MdmaStream
+    sources: tuple[Row, ...]
+    destinations: tuple[Row, ...]
+    owner: str
+    reason: StallReason
+
+    def __len__(self) -> int:
+        """Return how many copies there are."""
+        return max(len(self.sources), len(self.destinations))
+
+    def rows(self, number: int) -> tuple[Row, Row]:
+        """Return what copy `number` reads and writes. Raises FirmwareError where these are not equally long."""
+        source = self.sources[number % len(self.sources)]
+        destination = self.destinations[number % len(self.destinations)]
+        if source.nbytes != destination.nbytes:
+            raise FirmwareError(
+                f"a row of {source.buffer} must be as long as the one of {destination.buffer} that it is copied to "
+                f"({destination.nbytes} bytes), not {source.nbytes} bytes"
+            )
+        return source, destination
+
+
+class LineCopies(Protocol):
+    """The copies of lines, as a core has them done."""
+
+    def program(self) -> None:
+        """Program the stream."""
+
+    def copy(self, number: int) -> Copy:
+        """Have line `number` copied, behind all copies of the stream before."""
+
+    def goes_on(self, copy: Copy) -> bool:
+        """Whether a core that needs a copy done can go on at once; else it must wait for it."""
+
+
+class CopiesInStep:
+    """`LineCopies` of a core in step with the simulated time, by its clock."""
+
+    def __init__(self, lines: Lines, clock: CoreClock) -> None:
+        self._lines = lines
+        self._clock = clock
+
+    def program(self) -> None:
+        """Let the time of the registers pass."""
+        self._clock.program_device(self._lines.owner, writes=COPY_WRITES, reads=COPY_READS)
+
+    def copy(self, number: int) -> Transfer:
+        """Post the copy."""
+        return self._lines.stream.copy(*self._lines.rows(number), self._clock.ticks)
+
+    def goes_on(self, copy: Copy) -> bool:
+        """Whether it is over."""
+        assert isinstance(copy, Transfer), "nothing is copied ahead"
+        return self._clock.is_over(copy)

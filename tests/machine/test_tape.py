@@ -1,0 +1,115 @@
+"""The tape of a core that runs ahead: what it notes is where the bus plays it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bfsim.kernel import Work
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.tape import COPY_WORDS, MOST_OPERATIONS, Tape
+from tests.machine.rig import Bench
+
+CORE = 1
+MEET = w.CATCH_UP, 0, 0, 0, 0
+
+
+@pytest.fixture
+def bench() -> Bench:
+    """Return a bus."""
+    return Bench()
+
+
+@pytest.fixture
+def tape(bench: Bench) -> Tape:
+    """Return the tape of a core on it."""
+    return bench.bus.tape(CORE)
+
+
+def noted(tape: Tape) -> list[tuple[int, ...]]:
+    """Return what a tape has noted."""
+    return [tuple(each) for each in tape.operations(0, tape.noted).tolist()]
+
+
+def run(tape: Tape, issue_cclk: int, stall_cclk: int = 0) -> int:
+    """Note a call that has met nobody."""
+    work = Work(issue_cclk, stall_cclk)
+    return tape.note_run(work.at)
+
+
+def test_the_first_calls_of_all_are_not_noted(tape: Tape) -> None:
+    """The core's clock is known until something else is."""
+    assert not run(tape, 7, 2)
+    tape.noting(w.CATCH_UP)()
+    assert run(tape, 7, 2)
+    assert noted(tape) == [MEET, (w.RUN, 7, 2, 0, 0)]
+
+
+def test_calls_that_meet_nobody_are_noted_as_one(tape: Tape) -> None:
+    """But not across what was noted between them, nor across a mark, where something is done at that moment."""
+    tape.noting(w.CATCH_UP)()
+    for _ in range(3):
+        run(tape, 7, 2)
+    tape.noting(w.CATCH_UP)()
+    run(tape, 1, 0)
+    assert tape.mark() == 4
+    run(tape, 5, 0)
+    run(tape, 6, 0)
+    assert noted(tape) == [MEET, (w.RUN, 21, 6, 0, 0), MEET, (w.RUN, 1, 0, 0, 0), (w.RUN, 11, 0, 0, 0)]
+
+
+def test_a_mark_is_gone_with_what_was_before_it(tape: Tape) -> None:
+    """The next stretch begins anew."""
+    tape.noting(w.CATCH_UP)()
+    tape.mark()
+    tape.clear()
+    assert tape.noted == tape.mark() == 0
+
+
+def test_accesses_of_calls_stand_behind_each_other(tape: Tape) -> None:
+    """Each call has those that it logged."""
+    for accesses in (3, 0, 4):
+        work = Work(10, 1, accesses=accesses)
+        tape.note_access(work.at)
+    assert noted(tape) == [(w.ACCESS, 10, 1, 0, 3), (w.ACCESS, 10, 1, 3, 3), (w.ACCESS, 10, 1, 3, 7)]
+
+
+@pytest.mark.parametrize("nbytes", [1, 4, 33, 640])
+@pytest.mark.parametrize("shift", range(3))
+def test_a_copy_moves_its_bytes_and_no_others(bench: Bench, tape: Tape, nbytes: int, shift: int) -> None:
+    """Wherever they lie."""
+    arena = bench.memories.arena
+    arena[:4096] = np.arange(4096) % 251
+    before = arena[:4096].copy()
+    copies = np.full((2, COPY_WORDS), w.NONE)
+    copies[1] = 9, 100, 2048 + shift, 77, nbytes
+    copy = tape.copying(copies)
+    assert [copy(1), copy(0), copy(1)] == [0, w.NONE, 1]
+    before[2048 + shift : 2048 + shift + nbytes] = before[100 : 100 + nbytes]
+    assert np.array_equal(arena[:4096], before)
+    assert noted(tape) == 2 * [(w.COPY, 9, 100, 2048 + shift, 77)]
+
+
+def test_a_wait_counts_back_from_the_last_copy(tape: Tape) -> None:
+    """As the bus looks for copies; also in a later stretch."""
+    copies = np.array([[9, 0, 64, 0, 4]])
+    for _ in range(3):
+        tape.copying(copies)(0)
+    tape.clear()
+    tape.waiting(w.RING_FULL, 5)(1)
+    assert noted(tape) == [(w.AWAIT, 2, w.RING_FULL, 5, 0)]
+
+
+def test_cores_have_tapes_of_their_own(bench: Bench, tape: Tape) -> None:
+    """Side by side in the state."""
+    other = bench.bus.tape(0)
+    tape.noting(w.CATCH_UP)()
+    assert (other.noted, tape.noted) == (0, 1)
+
+
+def test_a_tape_is_full_with_room_to_spare(tape: Tape) -> None:
+    """So that a core need not meet the others at every operation."""
+    note = tape.noting(w.CATCH_UP)
+    assert not any(note() for _ in range(MOST_OPERATIONS))
+    assert note()
+    assert tape.noted < w.MAX_OPERATIONS
