@@ -46,13 +46,14 @@ PARTS = {
     SIMULATOR / "kernel": KERNELS,
     SIMULATOR / "blackfin": KERNELS,
     SIMULATOR / "machine" / "calls": KERNELS,
+    SIMULATOR / "machine" / "core" / "tasks.py": KERNELS,
     SIMULATOR / "machine" / "bus": WEAVE,
     SIMULATOR / "machine" / "dma": "rings and DMA",
     SIMULATOR / "machine" / "core": "clocks of the cores, and what runs ahead",
     SIMULATOR / "machine": "the rest of the machine",
     Path(simpy.__file__).parent: "SimPy",
 }
-"""What the Python in a folder is a part of, the first that fits."""
+"""What the Python in a folder or a file is a part of, the first that fits."""
 REST = "everything else"
 
 
