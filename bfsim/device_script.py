@@ -5,14 +5,24 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from bfsim.errors import ConfigError, with_article
 from bfsim.file_content import read_bounded
 
-_PARSERS = {".json": json.loads, ".toml": tomllib.loads}
+
+def _refuse(constant: str) -> Any:
+    """JSON has no word for these, though Python writes and reads them."""
+    raise ValueError(f"{constant} is no number of JSON")
+
+
+_PARSERS: Mapping[str, Callable[[str], Any]] = {
+    ".json": partial(json.loads, parse_constant=_refuse),
+    ".toml": tomllib.loads,
+}
 
 
 def read_script(path: Path) -> tuple[Mapping[str, Any], str]:

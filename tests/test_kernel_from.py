@@ -224,7 +224,8 @@ def calls(row: u8[:], out: i32[:]) -> i32:
 """
     )
     with pytest.raises(
-        KernelError, match="a kernel cannot call sums, which is no Python; call it from the main loop"
+        KernelError,
+        match="a kernel cannot call sums, which is not written in Python; call it from the main loop",
     ):
         load_kernel("fw_calls:calls", f"{tmp_path}/fw_calls.py:firmware")
 

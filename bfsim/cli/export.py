@@ -33,4 +33,4 @@ def export(firmware: str, folder: Path, line_directives: bool, force: bool) -> N
     done = written(firmware, folder, line_directives=line_directives, force=force)
     click.echo(f"{done.kernels} kernels, {done.lines:,} lines of C in {done.folder}")
     if done.left:
-        click.echo(f"Left out, for they are no Python: {', '.join(done.left)}")
+        click.echo(f"Left out, for they are not written in Python: {', '.join(done.left)}")

@@ -113,7 +113,7 @@ def sweep(
 
     Every result is kept under the identity of its run: what was done is never done again, whatever ended the sweep and
     however FILE changes. All points are read and checked before the first one runs. One that fails is reported, and the
-    others go on; the exit code is then 2.
+    others go on; the exit code is then 2, of a --dry-run, too.
 
     \b
     Examples:
@@ -137,13 +137,19 @@ def sweep(
         before = set(points.outcomes)
         if dry_run:
             _list(points, cluster or here)
+            _require_no_error(points)
             return
         is_interrupted = not _run(points, cluster or here)
     _report(points, before, axes, top)
     if is_interrupted:
         click.echo("bfsim: interrupted; the same command goes on from here", err=True)
         raise SystemExit(interrupted_code())
-    if any(map(points.error_of, points.planned)):
+    _require_no_error(points)
+
+
+def _require_no_error(sweep: Sweep) -> None:
+    """End with exit code 2 if a point failed, or can never work: why has been told."""
+    if any(map(sweep.error_of, sweep.planned)):
         raise SystemExit(MISTAKE)
 
 

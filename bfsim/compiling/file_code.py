@@ -13,6 +13,7 @@ from bfsim.blackfin.image import Routine
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.compiling.declared import require_declared
 from bfsim.compiling.recipes import Recipe, code_of
 from bfsim.compiling.toolchain import blackfin_compiler
 from bfsim.errors import KernelError
@@ -26,7 +27,8 @@ from bfsim.kernel.types import Number
 
 SOURCES = (".c", ".s", ".S")
 OBJECTS = (".o", ".elf")
-LEVEL = "-O2"
+OPTIONS = ("-O2", "-g2")
+"""-g2: what parameters the functions have, too, which is held against what Python says of them."""
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
 
 
@@ -59,6 +61,7 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
     image = link(read_object(_object_file(path, files), path.name), is_whole=False)
     symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
     address = image.address_of(symbol)
+    require_declared(image, path.name, name, parameters, result)
     routine = image.routine_at(address) or Routine(symbol, address, address)
     kernels: dict[str, Function] = {}
     sources = _sources(path.parent, files)
@@ -107,7 +110,7 @@ def _object_file(path: Path, files: Mapping[str, bytes]) -> bytes:
 def recipe_of_source(files: Mapping[str, bytes], name: str) -> Recipe:
     """Return what the code of the source file `name` is made of; `files`: it and what it includes."""
     texts = {each: octets.decode(errors="replace") for each, octets in files.items()}
-    return Recipe(texts, (name,), (LEVEL,))
+    return Recipe(texts, (name,), OPTIONS)
 
 
 def _read(path: Path) -> bytes:

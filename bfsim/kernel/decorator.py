@@ -58,7 +58,7 @@ class RunnableCall(Protocol):
         """Run the kernel now and say what it cost. Of `arguments`, only the numbers are read."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Kernel:
     """A kernel. Calling it runs the compiled code on numpy arrays, and `cost` says the cycles of a call.
 
@@ -88,6 +88,10 @@ class Kernel:
                 _IN_PYTHON.reset(before)
 
         return plain
+
+    def __repr__(self) -> str:
+        """Return name and place, not all of the object code."""
+        return f"<kernel {self.name} ({self.place})>"
 
     @property
     def name(self) -> str:

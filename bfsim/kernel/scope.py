@@ -30,7 +30,9 @@ class KernelScope(Expressions):
         if isinstance(callee, Function):
             if getattr(target, "object_code", None) is not None:
                 self.source.refuse(
-                    node, f"a kernel cannot call {name}, which is no Python", "call it from the main loop"
+                    node,
+                    f"a kernel cannot call {name}, which is not written in Python",
+                    "call it from the main loop",
                 )
             return self._kernel_call(node, callee)
         if (intrinsic := INTRINSICS.get(target)) is not None:

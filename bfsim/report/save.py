@@ -22,7 +22,7 @@ def require_place(path: Path) -> None:
     if not path.parent.is_dir():
         raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
     if path.exists() and not path.is_file():
-        raise ConfigError(f"{path} must be an ordinary file to be written, not a folder or a device")
+        raise ConfigError(f"{path} must be an ordinary file, not a folder or a device")
     if not os.access(_resolved(path).parent, os.W_OK):
         raise ConfigError(f"{path}: the folder {path.parent} must be writable to write a file there")
 

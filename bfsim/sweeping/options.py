@@ -37,11 +37,17 @@ def flattened(table: Any, where: str) -> dict[str, Any]:
         raise ConfigError(f"{where} must be a table of options, not {shown(table)}")
     for key, value in table.items():
         if key not in Configuration.model_fields:
-            known = ", ".join(Configuration.model_fields)
-            raise ConfigError(f"{where}.{cut(key)} must not be there; known keys are {known}")
+            raise ConfigError(f"{where}.{cut(key)} must not be there; {_advice(key, value)}")
         if key in TREES and key != SCRIPT and not isinstance(value, dict):
             raise ConfigError(f"{where}.{key} must be a table of names and values, not {shown(value)}")
     return dict(_by_path(table))
+
+
+def _advice(key: str, value: Any) -> str:
+    """Say what keys there are, or, where a path of the board may be meant, how that is written."""
+    if isinstance(value, dict) and value:
+        return f"a number of the board is written set.{cut(f'{key}.{next(iter(value))}')}"
+    return f"known keys are {', '.join(Configuration.model_fields)}"
 
 
 def _by_path(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

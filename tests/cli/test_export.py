@@ -58,7 +58,10 @@ def test_kernels_of_other_languages_are_left_out(tmp_path: Path) -> None:
     """Object code is no Python to be written as C: it ended with a traceback."""
     (tmp_path / "fw_two.py").write_text(f"{FIRMWARE}\n{SUMS}")
     code, output = ran(f"{tmp_path}/fw_two.py:eyes", tmp_path / "c")
-    assert (code, output.splitlines()[1]) == (0, "Left out, for they are no Python: sums (sums.c)")
+    assert (code, output.splitlines()[1]) == (
+        0,
+        "Left out, for they are not written in Python: sums (sums.c)",
+    )
     assert "threshold" in (tmp_path / "c" / "kernels.h").read_text()
     assert "sums" not in (tmp_path / "c" / "kernels.h").read_text()
 

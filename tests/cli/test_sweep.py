@@ -124,6 +124,9 @@ def test_many_recordings_are_a_line_for_each_setting(file: Path) -> None:
 def test_what_cannot_work_is_told_at_once(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The others go on, unless --strict says no."""
     file.write_text(FILE.replace("[axes]", '[axes]\nldf = ["thesis", "none"]'))
+    listed = call(file, "--dry-run")
+    assert listed.exit_code == 2
+    assert "4 of 8 points can never work:" in listed.output
     done = call(file)
     assert done.exit_code == 2
     assert "4 of 8 points can never work:" in done.output

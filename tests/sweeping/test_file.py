@@ -117,6 +117,7 @@ def test_a_path_into_a_script_that_is_a_file(tmp_path: Path) -> None:
         ("point = [3]", "point.1 must be a table of options, not 3"),
         ("point = [{name = 3}]", "point.1.name must be text, not 3"),
         ("axes.clock = [1]", "axes.clock must not be there; known keys are recording, firmware, board, set"),
+        ("axes.sdram.nRP = [3]", "axes.sdram must not be there; a number of the board is written set.sdram.nRP"),
         ("axes.ldf = 'l2'", "axes.ldf must be a list of values, not 'l2'"),
         ("axes.ldf = []", "axes.ldf must be a list of values, not []"),
         ("axes.set = [1]", "axes.set must be a table of names and values, not [1]"),

@@ -1,0 +1,65 @@
+"""Whether what Python says of a function in C is what C says: of arguments that are not, it would compute anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from bfsim.blackfin.image import Image
+from bfsim.blackfin.prototypes import CPrototype, CType, prototype_of
+from bfsim.errors import KernelError
+from bfsim.kernel.function import Parameter
+from bfsim.kernel.types import ArrayType, FloatType, Number
+
+
+def require_declared(
+    image: Image, place: str, name: str, parameters: Sequence[Parameter], result: Number | None
+) -> None:
+    """Raise KernelError unless parameters and result are as C has them, where the debugging information tells.
+
+    A number may be of another size than C's, an array be of numbers where C has a struct or void, a pointer be the number 0,
+    and a result be left alone.
+    """
+    prototype = prototype_of(image, name)
+    if prototype is None:
+        return
+    wrong = next(_differences(prototype, parameters, result), None)
+    if wrong:
+        raise KernelError(f"{wrong}; in {place} it is `{prototype}`")
+
+
+def _differences(c: CPrototype, parameters: Sequence[Parameter], result: Number | None) -> Iterator[str]:
+    for (name, kind), declared in zip(c.parameters, parameters, strict=False):
+        must_be = _what_fits(kind, declared.type)
+        if must_be:
+            called = declared.name if declared.name == name else f"{declared.name} ({name} in C)"
+            yield f"{called} of {c.name} must be {must_be}, not {declared.type}"
+    if len(c.parameters) != len(parameters):
+        told = ", ".join(each.name for each in parameters) or "none"
+        yield f"{c.name} must be declared with {_counted(len(c.parameters))}, not {len(parameters)} ({told})"
+    if result is not None and c.result is None:
+        yield f"{c.name} must have no `result`, for it returns nothing"
+    elif result is not None and c.result is not None and isinstance(result, FloatType) != c.result.is_float:
+        yield f"the result of {c.name} must be {'f32' if c.result.is_float else 'an integer'}, not {result}"
+
+
+def _counted(count: int) -> str:
+    return "1 parameter" if count == 1 else f"{count or 'no'} parameters"
+
+
+def _what_fits(kind: CType, declared: Number | ArrayType) -> str:
+    """Return what a parameter must be that C gives this type; nothing where what is declared will do."""
+    if isinstance(declared, ArrayType):
+        if kind.target is None:
+            return "a number" if kind.nbytes else ""
+        return _elements_that_fit(kind.target, declared)
+    if kind.target is None and kind.nbytes and isinstance(declared, FloatType) != kind.is_float:
+        return "f32" if kind.is_float else "an integer"
+    return ""
+
+
+def _elements_that_fit(target: CType, declared: ArrayType) -> str:
+    element = declared.element
+    is_same = element.nbytes == target.nbytes and isinstance(element, FloatType) == target.is_float
+    if is_same or target.target is not None or not target.nbytes:
+        return ""
+    return "f32[:]" if target.is_float else f"an array of {8 * target.nbytes}-bit integers"

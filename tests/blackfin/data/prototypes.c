@@ -1,0 +1,21 @@
+/* Parameters of each kind, for tests/test_declared.py. */
+typedef unsigned char byte;
+struct state { int at; };
+enum pace { SLOW, FAST };
+
+int sum(const byte *row, int n)
+{
+    int total = 0;
+    for (int i = 0; i < n; i++)
+        total += row[i];
+    return total;
+}
+
+void step(const short *restrict gains, struct state *state, void *scratch, float by, enum pace pace)
+{
+    state->at += gains[pace] + (int)by + *(byte *)scratch;
+}
+
+int any(int first, ...) { return first; }
+
+int untold() { return 1; }
