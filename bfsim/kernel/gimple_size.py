@@ -24,6 +24,7 @@ from bfsim.kernel.lowering.predict import Likelihood
 GONE = 0.5  # [ipa-fnsummary.cc] of an access that may go
 # [tree-inline.cc] time of a call, of a division by no constant, of a return; everything else takes as long as it is large
 CALL_TIME, DIVISION_TIME, RETURN_TIME = 10, 10, 2
+TEST_SIZE = 2  # [tree-inline.cc] of a comparison that a branch takes
 EARLY_PASSES = (
     "sroa", "simplify_cfg", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce",
     "simplify_cfg",
@@ -103,19 +104,9 @@ class _Estimator:
         return place in self.flow.routine.parameters
 
     def _size(self, each: Instruction) -> int:
-        if each.opcode in FREE:
-            return 0
-        if each.opcode == "getelementptr":
-            return min(pointee_nbytes(each), 2) if each.operands[-1].startswith("%") else 0
-        if each.opcode in ("icmp", "fcmp"):
-            return int(not self._only_branches(each))
-        if each.opcode == "br":
-            return 2 if each.operands else 0
-        if each.opcode == "switch":
-            return 2 * (1 + len(each.text.split("label")) - 2)
         if each.is_call:
             return 1 + self.arguments[_callee(each)] + int(each.result in self.flow.users)
-        return 1
+        return statement_size(self.flow, each)
 
     def _time(self, each: Instruction, size: int) -> int:
         if each.is_call:
@@ -124,14 +115,30 @@ class _Estimator:
             return DIVISION_TIME
         return size
 
-    def _only_branches(self, test: Instruction) -> bool:
-        users = self.flow.users.get(test.result or "", [])
-        return bool(users) and all(each.opcode == "br" for each in users)
-
     @cached_property
     def frequency(self) -> dict[str, float]:
         """Runs of each block per run of the routine."""
         return frequencies(self.flow, Likelihood(self.flow).taken)
+
+
+def statement_size(flow: ControlFlow, each: Instruction) -> int:
+    """Return the size of what is no call."""
+    if each.opcode in FREE:
+        return 0
+    if each.opcode == "getelementptr":
+        return min(pointee_nbytes(each), 2) if each.operands[-1].startswith("%") else 0
+    if each.opcode in ("icmp", "fcmp"):
+        return int(not _only_branches(flow, each))
+    if each.opcode == "br":
+        return TEST_SIZE if each.operands else 0
+    if each.opcode == "switch":
+        return 2 * (1 + len(each.text.split("label")) - 2)
+    return 1
+
+
+def _only_branches(flow: ControlFlow, test: Instruction) -> bool:
+    users = flow.users.get(test.result or "", [])
+    return bool(users) and all(each.opcode == "br" for each in users)
 
 
 def _callee(call: Instruction) -> str:

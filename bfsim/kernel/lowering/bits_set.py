@@ -9,6 +9,8 @@ from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow
 
 PAIRS, FOURS, BYTES, ONES = 0x55555555, 0x33333333, 0x0F0F0F0F, 0x01010101
+STATEMENTS = 12
+"""So many operations are one."""
 
 
 def counted_word(flow: ControlFlow, each: Instruction) -> str | None:

@@ -10,8 +10,11 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
+from bfsim.kernel.gimple_size import TEST_SIZE, statement_size
 from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate, renamed
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
+from bfsim.kernel.lowering.bits_set import STATEMENTS as WORD_COUNT
+from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.short_circuits import SECOND
@@ -68,11 +71,29 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
     alone = flow.predecessors[inside[0]] == [loop.header] and back == [loop.latch] and not flow.is_split(loop)
     if (
         not (alone and is_entered_once)
-        or len(header.instructions) > MOST_STATEMENTS
+        or _size(flow, header) > MOST_STATEMENTS
         or _has_phi(flow.blocks[inside[0]])
     ):
         return False
     return _counts(flow, loop) and _uses_are_near(flow, header, inside[0], way_out)
+
+
+def _size(flow: ControlFlow, header: BasicBlock) -> int:
+    """The statements of both tests: of the first one the comparison, of the second one all, where bits that are counted are one."""
+    statements = sum(statement_size(flow, each) for each in header.instructions if not each.is_call)
+    counts = sum(counted_word(flow, each) is not None for each in header.instructions)
+    sums = sum(_adds_to_index(flow, each) for each in header.instructions)
+    return TEST_SIZE + statements - counts * (WORD_COUNT - 1) - sums
+
+
+def _adds_to_index(flow: ControlFlow, each: Instruction) -> bool:
+    """Whether an address is only the base of another one: GCC adds the indices, and scales their sum."""
+    users = flow.users.get(each.result or "", [])
+    return (
+        each.opcode == "getelementptr"
+        and statement_size(flow, each) > 1
+        and [user.opcode for user in users] == ["getelementptr"]
+    )
 
 
 def _has_phi(block: BasicBlock) -> bool:
