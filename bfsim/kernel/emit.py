@@ -26,6 +26,7 @@ from bfsim.kernel.emit_values import (
 )
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
+from bfsim.kernel.subloops import makes_subloop
 from bfsim.kernel.types import ArrayType
 
 Sites = tuple[Site, ...]
@@ -95,7 +96,7 @@ def _emit_into(module: ir.Module, function: Function, inlined: frozenset[Inlined
         values.slots[name] = builder.alloca(register_type(kind), name=f"{name}.v{number}")
     for name, value in scalars.items():
         builder.store(value, values.slots[name])
-    _Statements(builder, values).emit(function.body)
+    _Statements(builder, values, function.body).emit(function.body)
     if not builder.block.is_terminated:
         if function.result:
             builder.unreachable()
@@ -159,6 +160,7 @@ class _Statements:
 
     builder: ir.IRBuilder
     values: Values
+    body: tuple[tree.Stmt, ...]
     loops: list[tuple[ir.BasicBlock, ir.BasicBlock]] = field(init=False, default_factory=list)
     """Of each open loop: where `continue` and where `break` go."""
 
@@ -208,14 +210,18 @@ class _Statements:
 
     def _while(self, node: tree.While) -> None:
         test, body, after = (self.builder.append_basic_block(name) for name in ("test", "body", "after"))
+        again = test if makes_subloop(node, self.body) else self.builder.append_basic_block("again")
         self.builder.branch(test)
         self.builder.position_at_end(test)
         self.values.at(node.line)
         self.builder.cbranch(self.values.value(node.test), body, after)
         self.builder.position_at_end(body)
-        with self._loop(test, after):
+        with self._loop(again, after):
             self.emit(node.body)
-        self._fall_to(test)
+        self._fall_to(again)
+        if again is not test:
+            self.builder.position_at_end(again)
+            self.builder.branch(test)
         self.builder.position_at_end(after)
 
     def _for(self, node: tree.For) -> None:
