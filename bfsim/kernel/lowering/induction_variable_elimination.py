@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
@@ -60,8 +60,10 @@ def eliminated_counters(
             if each.opcode != "phi" or name in found or affine.get(name) != 1:
                 continue
             start = evolution.first(name, loop) or ""
-            prepared = prepares and (
-                affine.keys() != {name, variable.root} or not start.lstrip("-").isdigit()
+            prepared = (
+                prepares
+                and (affine.keys() != {name, variable.root} or not is_number(start))
+                and not evolution.ends_behind_start(loop)
             )
             wanted = [_before_inner(flow, loop, label) for label in _wanted(flow, evolution, loop, name)]
             blocks = frozenset(wanted)

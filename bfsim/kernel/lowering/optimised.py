@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
+from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, is_number
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
@@ -221,7 +221,7 @@ class _OptimisedLowering:
             line = self.flow.blocks[loop.header].instructions[-1].line
             line = self.flow.blocks[loop.latch].terminator.line or line
             if block.label == self.flow.entering(loop):
-                cost.charges.append(charge(Op.MOVE, line))
+                cost.charges += [charge(each, line) for each in self._iteration_count(loop)]
                 if any(
                     variable.loop is loop and abs(variable.increment.constant) > 1
                     for variable in self.context.induction_variables.all
@@ -231,6 +231,17 @@ class _OptimisedLowering:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
                     if self.hardware.begins_with_copies(loop) and self.layout.falls(block.label, loop.header):
                         cost.charges.append(charge(Op.JUMP, line))
+
+    def _iteration_count(self, loop: Loop) -> Iterator[Op]:
+        """What computes how often a counted loop iterates; once, where it may be less than that [niter_for_exit in loop-iv.cc]."""
+        yield Op.MOVE
+        if self.context.evolution.iterations(loop) is not None:
+            return
+        start = self.context.evolution.counter_start(loop)
+        if start is not None and not is_number(start):
+            yield Op.ALU
+        if self.context.evolution.ends_behind_start(loop):
+            yield from (Op.ALU, Op.COMPARE, Op.IMM, Op.COND_MOVE)
 
     def _leave_block(self, block: BasicBlock, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label

@@ -214,6 +214,26 @@ class ScalarEvolution:
             return None
         return next((arm for arm, source in PHI_ARM.findall(each.text) if source[1:] == entering), None)
 
+    def counter_start(self, loop: Loop) -> str | None:
+        """Return what the counter that ends `loop` starts with, but for a constant; None if none is known to end it."""
+        test = self.flow.instruction(self.exit_test(loop) or "")
+        return self.first(test.operands[0], loop) if test is not None and test.opcode == "icmp" else None
+
+    def ends_behind_start(self, loop: Loop) -> bool:
+        """Whether `loop` ends at a sum of what its counter starts with: `range(x, x + n)`.
+
+        Whether it iterates at all is whether `n` is positive [match.pd of GCC 12], which does not tell later passes that x is below x + n.
+        """
+        test = self.flow.instruction(self.exit_test(loop) or "")
+        start = self.counter_start(loop)
+        bound = self.flow.instruction(test.operands[1]) if test is not None and start is not None else None
+        return (
+            bound is not None
+            and bound.opcode == "add"
+            and start in bound.operands
+            and self.iterations(loop) is None
+        )
+
     def starts_fixed(self, loop: Loop) -> bool:
         """Whether every counter of `loop` starts at a constant."""
         entering = self.flow.entering(loop)
