@@ -15,6 +15,7 @@ from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.counter_comparisons import CounterComparisons
 from bfsim.kernel.lowering.frequencies import frequencies
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.loop_guards import loop_guards
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.rules import Rule
 
@@ -40,7 +41,7 @@ class Likelihood:
         self.flow, self.second_parts = flow, second_parts or {}
         self.evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
         compares = Rule.COMPARED_COUNTERS not in without
-        self.guards_loops = Rule.LOOP_GUARDS not in without
+        self.loop_guards = frozenset(loop_guards(flow)) if Rule.LOOP_GUARDS not in without else frozenset()
         self.comparisons = CounterComparisons(flow, self.evolution).votes if compares else {}
 
     @cached_property
@@ -127,34 +128,9 @@ class Likelihood:
         return votes
 
     def _by_loops_behind(self, block: BasicBlock) -> list[float]:
-        """A side that leads to a loop inside the one around the test, and to nothing else, is unlikely [predict_loops]."""
-        around = self.flow.innermost(block.label)
-        if around is None or not self.guards_loops:
-            return []
-        votes = []
-        for loop in around.inner:
-            if self._first_of(loop) in self.flow.dominators[around.latch]:
-                continue
-            leads = [self._first_of(loop) in self.flow.post_dominators[way] for way in block.successors]
-            if leads[0] != leads[1]:
-                votes.append(1 - LOOP_GUARD if leads[0] else LOOP_GUARD)
-        return votes
-
-    def _first_of(self, loop: Loop) -> str:
-        """Where the source begins a loop: at the test that decides whether it is entered, a copy of one that ends it, if there is one."""
-        blocks, before = self.flow.blocks, self.flow.predecessors
-        ends = {blocks[label].terminator.line for label in self.flow.exits(loop)}
-        found = loop.header
-        (label,) = [each for each in before[loop.header] if each not in loop.blocks][:1] or [loop.header]
-        while label not in loop.blocks:
-            if len(set(blocks[label].successors)) > 1:
-                if blocks[label].terminator.line not in ends:
-                    break
-                found = label
-            if len(before[label]) != 1:
-                break
-            (label,) = before[label]
-        return found
+        """A side that leads to a loop inside the one around the test is unlikely."""
+        votes = zip((1 - LOOP_GUARD, LOOP_GUARD), block.successors, strict=True)
+        return [vote for vote, way in votes if (block.label, way) in self.loop_guards]
 
     def _leaving(self, loop: Loop) -> float:
         """How likely each exit of a loop is; before its first iteration, too, as the test there is a copy of its header's."""
