@@ -34,6 +34,8 @@ class Accesses(Calls):
         self.append(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes, access=each)
         if self.context.demanded.extended_apart(each):
             self.append(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
+            if self.context.demanded.extended_for_distance(each):
+                self.append(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
         elif self.context.demanded.extended_late(each):
             self.append(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
 

@@ -11,7 +11,7 @@ from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
 from bfsim.kernel.ir_text import Instruction
-from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.folding import NARROW, Folding
@@ -34,10 +34,11 @@ FEWEST_ITERATIONS = (
 
 
 class Use(Enum):
-    """How a narrow value is used: as it was loaded, extended as a factor of a 16-bit product, or extended to a word."""
+    """How a narrow value is used: as it was loaded, extended as a factor of a 16-bit product or of the distance of an element, or extended to a word."""
 
     RAW = auto()
     FACTOR = auto()
+    DISTANCE = auto()
     WIDE = auto()
 
 
@@ -295,7 +296,13 @@ class DemandedValues(Folding):
     def extended_apart(self, load: Instruction) -> bool:
         """Whether a narrow value is taken as it is, or by a product, and computed with: it is loaded, then extended."""
         uses = self._uses(load)
-        return Use.WIDE in uses and len(uses) > 1
+        return not uses.isdisjoint({Use.WIDE, Use.DISTANCE}) and len(uses) > 1
+
+    def extended_for_distance(self, load: Instruction) -> bool:
+        """Whether a byte that is extended to a word is also extended for the distance of an element, in the same block."""
+        rows = next(each.instructions for each in self.flow.routine.blocks if load in each.instructions)
+        near = any(user in rows and _is_distance(user) for user in self._wide_users(load))
+        return near and {Use.DISTANCE, Use.WIDE} <= self._uses(load)
 
     def extended_for_product(self, operand: str) -> bool:
         """Whether a factor is a byte that is also used in another way: it is extended once more, for the product."""
@@ -329,6 +336,8 @@ class DemandedValues(Folding):
             and all(map(self.is_short, user.operands[:2]))
         ):
             return Use.FACTOR if load.bits == BYTE else Use.RAW  # a product takes the low half of a register
+        if _is_distance(user) and load.bits == BYTE and self.profile.applies(Rule.FACTORS):
+            return Use.DISTANCE  # a product, too [convert_mult_to_widen in tree-ssa-math-opts.cc]
         return Use.WIDE
 
     def _wide_users(self, load: Instruction) -> list[Instruction]:
@@ -396,3 +405,8 @@ class DemandedValues(Folding):
     def ends_in(self, value: str, call: Instruction) -> bool:
         """Whether `call` is the only use of a value: then it is computed in the argument's register."""
         return value in self.flow.defined and self.users(value) == [call]
+
+
+def _is_distance(each: Instruction) -> bool:
+    """Whether an address takes an index that counts elements of more than a byte."""
+    return each.opcode == "getelementptr" and pointee_nbytes(each) > 1
