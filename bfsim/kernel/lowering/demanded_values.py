@@ -6,12 +6,11 @@ Post-increments, hardware loops, folded offsets and extending loads do much of w
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum, auto
 from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
 from bfsim.kernel.ir_text import Instruction
-from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
+from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.folding import NARROW, Folding
@@ -20,6 +19,7 @@ from bfsim.kernel.lowering.induction_variable_elimination import eliminated_coun
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.narrow_trees import is_cut_tree
+from bfsim.kernel.lowering.narrow_uses import Use, is_distance
 from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.redundant import AGAIN
@@ -31,15 +31,6 @@ from bfsim.kernel.rules import Rule
 FEWEST_ITERATIONS = (
     3  # a loop of so few iterations keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
 )
-
-
-class Use(Enum):
-    """How a narrow value is used: as it was loaded, extended as a factor of a 16-bit product or of the distance of an element, or extended to a word."""
-
-    RAW = auto()
-    FACTOR = auto()
-    DISTANCE = auto()
-    WIDE = auto()
 
 
 class DemandedValues(Folding):
@@ -301,7 +292,7 @@ class DemandedValues(Folding):
     def extended_for_distance(self, load: Instruction) -> bool:
         """Whether a byte that is extended to a word is also extended for the distance of an element, in the same block."""
         rows = next(each.instructions for each in self.flow.routine.blocks if load in each.instructions)
-        near = any(user in rows and _is_distance(user) for user in self._wide_users(load))
+        near = any(user in rows and is_distance(user) for user in self._wide_users(load))
         return near and {Use.DISTANCE, Use.WIDE} <= self._uses(load)
 
     def extended_for_product(self, operand: str) -> bool:
@@ -336,7 +327,7 @@ class DemandedValues(Folding):
             and all(map(self.is_short, user.operands[:2]))
         ):
             return Use.FACTOR if load.bits == BYTE else Use.RAW  # a product takes the low half of a register
-        if _is_distance(user) and load.bits == BYTE and self.profile.applies(Rule.FACTORS):
+        if is_distance(user) and load.bits == BYTE and self.profile.applies(Rule.FACTORS):
             return Use.DISTANCE  # a product, too [convert_mult_to_widen in tree-ssa-math-opts.cc]
         return Use.WIDE
 
@@ -405,8 +396,3 @@ class DemandedValues(Folding):
     def ends_in(self, value: str, call: Instruction) -> bool:
         """Whether `call` is the only use of a value: then it is computed in the argument's register."""
         return value in self.flow.defined and self.users(value) == [call]
-
-
-def _is_distance(each: Instruction) -> bool:
-    """Whether an address takes an index that counts elements of more than a byte."""
-    return each.opcode == "getelementptr" and pointee_nbytes(each) > 1
