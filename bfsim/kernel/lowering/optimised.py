@@ -240,7 +240,7 @@ class _OptimisedLowering:
         start = self.context.evolution.counter_start(loop)
         if start is not None and not is_number(start):
             yield Op.ALU
-        if self.context.evolution.ends_behind_start(loop):
+        if self.context.evolution.may_end_at_once(loop):
             yield from (Op.ALU, Op.COMPARE, Op.IMM, Op.COND_MOVE)
 
     def _leave_block(self, block: BasicBlock, cost: BlockCost) -> None:

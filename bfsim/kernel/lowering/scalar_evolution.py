@@ -220,19 +220,24 @@ class ScalarEvolution:
         return self.first(test.operands[0], loop) if test is not None and test.opcode == "icmp" else None
 
     def ends_behind_start(self, loop: Loop) -> bool:
-        """Whether `loop` ends at a sum of what its counter starts with: `range(x, x + n)`.
-
-        Whether it iterates at all is whether `n` is positive [match.pd of GCC 12], which does not tell later passes that x is below x + n.
-        """
+        """Whether `loop` ends at a sum of what its counter starts with: `range(x, x + n)`, also with less or more."""
         test = self.flow.instruction(self.exit_test(loop) or "")
         start = self.counter_start(loop)
-        bound = self.flow.instruction(test.operands[1]) if test is not None and start is not None else None
-        return (
-            bound is not None
-            and bound.opcode == "add"
-            and start in bound.operands
-            and self.iterations(loop) is None
-        )
+        if test is None or start is None or self.iterations(loop) is not None:
+            return False
+        first = self.affine(start)
+        distance = dict(self.affine(test.operands[1]).plus(first, -1).terms)
+        return bool(first.terms) and distance.keys().isdisjoint(name for name, _ in first.terms)
+
+    def may_end_at_once(self, loop: Loop) -> bool:
+        """Whether what is tested before `loop` does not tell later passes that it iterates.
+
+        For `range(x, x + n)` that is whether `n` is positive [match.pd of GCC 12], and not whether x is below x + n.
+        """
+        test = self.flow.instruction(self.exit_test(loop) or "")
+        bound = self.flow.instruction(test.operands[1]) if test is not None else None
+        is_sum = bound is not None and bound.opcode == "add" and self.counter_start(loop) in bound.operands
+        return is_sum and self.ends_behind_start(loop)
 
     def starts_fixed(self, loop: Loop) -> bool:
         """Whether every counter of `loop` starts at a constant."""
