@@ -27,8 +27,8 @@ from bfsim.kernel.types import Number
 
 SOURCES = (".c", ".s", ".S")
 OBJECTS = (".o", ".elf")
-OPTIONS = ("-O2", "-g2")
-"""-g2: what parameters the functions have, too, which is held against what Python says of them."""
+OPTIONS = ("-O2", "-g2", "-gno-statement-frontiers", "-fno-var-tracking")
+"""-g2: what parameters the functions have, too, which is held against what Python says of them. The others keep the lines of -g1."""
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
 
 
