@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
+from bfsim.machine.bus.tape import Tape
+from bfsim.machine.core import ahead
 from bfsim.machine.program import Main
 from bfsim.trace import BoardRecord
 from tests.machine.kernels import copy, first, negate, spin
@@ -83,3 +86,22 @@ deeds = st.lists(st.tuples(st.sampled_from(DEEDS), st.integers(1, 400)), max_siz
 def test_what_is_done_ahead_is_charged_as_if_it_were_not(deeds: tuple[Deeds, Deeds]) -> None:
     """Rings, own and shared memory, stages, semaphores, and handlers that come in between."""
     assert outcome(deeds) == outcome(deeds, ahead=False)
+
+
+def test_calls_that_meet_nobody_end_a_stretch_before_its_room_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each in a stage of its own, and no wait between: more than there was room for wrote over the other core's, and the run never ended."""
+    lengths: list[int] = []
+    clear = Tape.clear
+
+    def seen(tape: Tape) -> None:
+        lengths.append(tape.noted)
+        clear(tape)
+
+    monkeypatch.setattr(Tape, "clear", seen)
+    deeds: tuple[Deeds, Deeds] = ([("rings", 1), *(60 * [("stage", 5)])], [("rings", 2)])
+    in_step, whole = outcome(deeds, ahead=False), outcome(deeds)
+    assert max(lengths) > 60
+    lengths.clear()
+    monkeypatch.setattr(ahead, "MOST_OPERATIONS", 20)
+    assert outcome(deeds) == whole == in_step
+    assert 20 < max(lengths) < 30

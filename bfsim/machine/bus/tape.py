@@ -47,7 +47,7 @@ def note(state_at: Any, core: int, kind: int, one: int, two: int, three: int, fo
 
 @native_entry("int64", "int64*", "int64", "int64*")
 def note_run(state_at: Any, core: int, work_at: Any) -> int:
-    """Note a call, by the numbers of its `Work`, that has met nobody, as one with those just before it; return 0 if it is the first of all, and not noted."""
+    """Note a call, by the numbers of its `Work`, that has met nobody, as one with those just before it; return how many operations were noted before: if none, it is not noted."""
     state: State = words_at(state_at)
     work: State = words_at(work_at)
     tape = w.TAPES_AT + core * w.TAPE_WORDS

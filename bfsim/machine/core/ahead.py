@@ -22,7 +22,7 @@ from bfsim.kernel import Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import COUNTER_OF
-from bfsim.machine.bus.tape import COPY_WORDS
+from bfsim.machine.bus.tape import COPY_WORDS, MOST_OPERATIONS
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
@@ -122,8 +122,11 @@ class Ahead:
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it behind what is noted, or charge it at once."""
-        if not self.tape.note_run(work.at):
+        noted = self.tape.note_run(work.at)
+        if not noted:
             self._in_step.charge_call(work, call)
+        elif noted > MOST_OPERATIONS:
+            self.is_full = True
 
     def play_call(self, work: Work, call: KnownCall) -> Wait:
         """Play it."""
@@ -143,7 +146,8 @@ class Ahead:
     def catch_up(self) -> simpy.Event | None:
         """Note that the core meets the simulated time, or meet it."""
         if self.runs_ahead:
-            self._meet()
+            if self._meet():
+                self.is_full = True
             return None
         return self._env.process(self.sync()) if self.tape.noted else self._in_step.catch_up()
 
@@ -161,7 +165,8 @@ class Ahead:
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Note it, or let its time pass."""
         if self.runs_ahead or self.tape.noted:
-            self.programming(owner, writes, reads)()
+            if self.programming(owner, writes, reads)():
+                self.is_full = True
         else:
             self._in_step.program_device(owner, writes=writes, reads=reads)
 
