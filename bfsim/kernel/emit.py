@@ -33,9 +33,14 @@ Sites = tuple[Site, ...]
 POINTER = ir.PointerType()
 
 
-def emit(function: Function, inlined: frozenset[InlinedCall] = frozenset()) -> ir.Module:
-    """Emit `function` and every kernel it calls as one module; calls that are to be inlined are marked so."""
-    return _emitted(function, inlined)[0]
+def emit(
+    function: Function, inlined: frozenset[InlinedCall] = frozenset(), *, one_way_back: bool = True
+) -> ir.Module:
+    """Emit `function` and every kernel it calls as one module; calls that are to be inlined are marked so.
+
+    `one_way_back`: whether each way round a `while` joins the others before the test, where GCC makes one loop of them (`subloops`).
+    """
+    return _emitted(function, inlined, one_way_back=one_way_back)[0]
 
 
 def sites_of(function: Function) -> dict[str, Sites]:
@@ -43,20 +48,24 @@ def sites_of(function: Function) -> dict[str, Sites]:
 
     A number, from 1 on, is the column in the debug location of the instruction; what is none of them has column 0.
     """
-    return _emitted(function, frozenset())[1]
+    return _emitted(function, frozenset(), one_way_back=True)[1]
 
 
 def emit_alone(function: Function) -> ir.Module:
     """Emit `function` only; the kernels that it calls are declared."""
     module = _module(function)
-    _emit_into(module, function, frozenset())
+    _emit_into(module, function, frozenset(), one_way_back=True)
     return module
 
 
-def _emitted(function: Function, inlined: frozenset[InlinedCall]) -> tuple[ir.Module, dict[str, Sites]]:
+def _emitted(
+    function: Function, inlined: frozenset[InlinedCall], *, one_way_back: bool
+) -> tuple[ir.Module, dict[str, Sites]]:
     module = _module(function)
     all_of_them = (*function.callees(), function)
-    return module, {each.symbol: _emit_into(module, each, inlined) for each in all_of_them}
+    return module, {
+        each.symbol: _emit_into(module, each, inlined, one_way_back=one_way_back) for each in all_of_them
+    }
 
 
 def _module(function: Function) -> ir.Module:
@@ -83,7 +92,9 @@ def _declare(module: ir.Module, function: Function) -> None:
     declared.attributes.add("nounwind")
 
 
-def _emit_into(module: ir.Module, function: Function, inlined: frozenset[InlinedCall]) -> Sites:
+def _emit_into(
+    module: ir.Module, function: Function, inlined: frozenset[InlinedCall], *, one_way_back: bool
+) -> Sites:
     """Emit the code of a kernel that is declared; return its accesses and divisions."""
     target = module.get_global(function.symbol)
     scope = _debug_scope(module, target, function)
@@ -96,7 +107,7 @@ def _emit_into(module: ir.Module, function: Function, inlined: frozenset[Inlined
         values.slots[name] = builder.alloca(register_type(kind), name=f"{name}.v{number}")
     for name, value in scalars.items():
         builder.store(value, values.slots[name])
-    _Statements(builder, values, function.body).emit(function.body)
+    _Statements(builder, values, function.body, one_way_back).emit(function.body)
     if not builder.block.is_terminated:
         if function.result:
             builder.unreachable()
@@ -161,6 +172,7 @@ class _Statements:
     builder: ir.IRBuilder
     values: Values
     body: tuple[tree.Stmt, ...]
+    one_way_back: bool
     loops: list[tuple[ir.BasicBlock, ir.BasicBlock]] = field(init=False, default_factory=list)
     """Of each open loop: where `continue` and where `break` go."""
 
@@ -210,7 +222,8 @@ class _Statements:
 
     def _while(self, node: tree.While) -> None:
         test, body, after = (self.builder.append_basic_block(name) for name in ("test", "body", "after"))
-        again = test if makes_subloop(node, self.body) else self.builder.append_basic_block("again")
+        joins = self.one_way_back and not makes_subloop(node, self.body)
+        again = self.builder.append_basic_block("again") if joins else test
         self.builder.branch(test)
         self.builder.position_at_end(test)
         self.values.at(node.line)
@@ -219,7 +232,7 @@ class _Statements:
         with self._loop(again, after):
             self.emit(node.body)
         self._fall_to(again)
-        if again is not test:
+        if joins:
             self.builder.position_at_end(again)
             self.builder.branch(test)
         self.builder.position_at_end(after)
