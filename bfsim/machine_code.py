@@ -159,7 +159,7 @@ def _new_function() -> Any:
     return kind(("PyCFunction_NewEx", ctypes.pythonapi))
 
 
-def built_in(address: int, bound: object, flags: int = METH_FASTCALL) -> Callable[..., Any]:
+def python_function(address: int, bound: object, flags: int = METH_FASTCALL) -> Callable[..., Any]:
     """Return machine code as a built-in function of Python, with the C interface of CPython: `bound` is its `self`."""
     made: Callable[..., Any] = _new_function()(ctypes.addressof(_method(address, flags)), bound, None)
     return made

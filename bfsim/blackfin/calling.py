@@ -111,4 +111,4 @@ def bound_call(
         values += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
     block = _Block(pack(f"{len(values)}q", *values))
     block.kept = subroutine, counts, left, log, kept
-    return machine_code.built_in(w.caller(), block, machine_code.METH_O)
+    return machine_code.python_function(w.caller(), block, machine_code.METH_O)

@@ -137,13 +137,6 @@ class AccessTrace:
         self.check_room(count)
         return count
 
-    def keep(self, count: int) -> int:
-        """Keep the `count` entries of the last call in front of those to come; return the number of the first."""
-        words = self._words
-        first: int = words[KEPT]
-        words[ENTRIES] = words[KEPT] = first + count
-        return first
-
     def drop(self) -> None:
         """Keep nothing any more."""
         self._words[ENTRIES] = self._words[KEPT] = 0

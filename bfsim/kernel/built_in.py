@@ -16,7 +16,7 @@ def built_in(address: int, taken: int, *bound: int) -> Callable[..., int]:
     It returns what that returns. All are of 64 bits. Nothing checks that it is given as many as it takes.
     """
     words = pack(f"{1 + len(bound)}q", address, *bound)
-    return machine_code.built_in(_caller(len(bound), taken), words)
+    return machine_code.python_function(_caller(len(bound), taken), words)
 
 
 @cache

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.kernel.modules import import_text
-from tests.kernel.test_partial_redundancies import arguments
+from tests.kernel.beside_gcc import check_estimate
 
 ALONE = """
 def f(a: u32[:], b: u32[:], o: u8[:], n: i32) -> None:
@@ -43,5 +42,4 @@ def f(a: u32[:], b: u32[:], n: i32) -> i32:
 )
 def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; but for the first one they were 17 to 31 % below it."""
-    kernel = import_text(f"@kernel\n{text.lstrip()}", tmp_path).f
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=0.08)
+    check_estimate(text, cycles, 0.08, tmp_path)

@@ -10,8 +10,8 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.profile import PROFILES
 from bfsim.kernel.rules import Rule
+from tests.kernel.beside_gcc import arguments, check_estimate
 from tests.kernel.modules import import_text
-from tests.kernel.test_partial_redundancies import arguments
 
 MEDIAN = """
 def f(a: u8[:], b: u8[:], c: u8[:], o: u8[:], n: i32) -> None:
@@ -80,8 +80,7 @@ def f(a: i16[:], b: i16[:], c: i16[:], n: i32) -> i32:
 )
 def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; those with bundles were 12 to 20 % above it."""
-    kernel = import_text(f"@kernel\n{text.lstrip()}", tmp_path).f
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=0.04)
+    check_estimate(text, cycles, 0.04, tmp_path)
 
 
 def test_what_depends_on_a_load_is_not_issued_with_it(

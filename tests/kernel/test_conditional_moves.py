@@ -8,9 +8,8 @@ import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.isa import Op
-from tests.kernel.modules import import_text
+from tests.kernel.beside_gcc import check_estimate
 from tests.kernel.test_lowering import lowered
-from tests.kernel.test_partial_redundancies import arguments
 
 WRAPPED = """
 def f(a: i32[:], o: i32[:], n: i32, t: i32) -> i32:
@@ -71,8 +70,7 @@ def f(a: {1}[:], b: {1}[:], o: {1}[:], n: i32, t: i32) -> None:
 )
 def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; most estimates were 21 to 66 % below it."""
-    kernel = import_text(f"@kernel\n{text.lstrip()}", tmp_path).f
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=0.05)
+    check_estimate(text, cycles, 0.05, tmp_path)
 
 
 def test_narrow_elements_have_registers_of_their_own(tmp_path: Path) -> None:

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.kernel.modules import import_text
-from tests.kernel.test_partial_redundancies import arguments
+from tests.kernel.beside_gcc import check_estimate
 
 NORMALISED = """
 def f(a: u16[:], o: u16[:], n: i32, t: i32) -> None:
@@ -34,5 +33,4 @@ def f(a: u16[:], o: u16[:], n: i32, t: i32) -> None:
 @pytest.mark.parametrize(("text", "cycles"), [(NORMALISED, 13331), (DIGITS, 27493)])
 def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; the estimates were 149 % above and 55 % below it."""
-    kernel = import_text(f"@kernel\n{text.lstrip()}", tmp_path).f
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=0.05)
+    check_estimate(text, cycles, 0.05, tmp_path)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.isa import Op
-from bfsim.kernel.types import ArrayType
+from tests.kernel.beside_gcc import COUNT, LIMIT, arguments, check_estimate
 from tests.kernel.modules import import_text
 from tests.kernel.test_lowering import lowered
 
-COUNT, LIMIT = 200, 100
 BRANCHES = (Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN)
 LOOP = """
 def f(a: i32[:], b: i32[:], o: i32[:], n: i32, t: i32) -> None:
@@ -41,21 +38,6 @@ def f(data: u8[:], out: u32[:], n: i32) -> None:
 """
 
 
-def arguments(kernel: Kernel) -> list[Any]:
-    """Return numbers by chance, the same each time, and how many of them count."""
-    random = np.random.default_rng(3)
-    found: list[Any] = []
-    for each in kernel.function.parameters:
-        if each.name in ("n", "t"):
-            found.append(COUNT if each.name == "n" else LIMIT)
-            continue
-        assert isinstance(each.type, ArrayType)
-        kind = np.dtype(each.type.element.dtype)
-        low, high = (0, 256) if kind.itemsize == 1 else (0 if kind.kind == "u" else -500, 500)
-        found.append(random.integers(low, high, 256).astype(kind))
-    return found
-
-
 @pytest.mark.parametrize(
     ("text", "cycles"),
     [
@@ -76,8 +58,7 @@ def arguments(kernel: Kernel) -> list[Any]:
 )
 def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; the estimates were 25 to 84 % below it."""
-    kernel = import_text(f"@kernel\n{text.lstrip()}", tmp_path).f
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=0.06)
+    check_estimate(text, cycles, 0.06, tmp_path)
 
 
 def test_what_is_chosen_for_something_else_stays(tmp_path: Path) -> None:

@@ -9,10 +9,9 @@ import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.isa import Op
+from tests.kernel.beside_gcc import arguments, check_estimate, check_meaning
 from tests.kernel.modules import kernel_of
-from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
-from tests.kernel.test_partial_redundancies import arguments
 
 WALK = """
 def f(a: {0}[:], n: i32) -> i32:
@@ -107,19 +106,14 @@ KEPT = {
 @pytest.mark.parametrize("name", CASES)
 def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator."""
-    text, cycles, near = CASES[name]
-    kernel = kernel_of(text, tmp_path)
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
+    check_estimate(*CASES[name], tmp_path)
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 @pytest.mark.parametrize("name", [*CASES, *KEPT])
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """What is costed is what runs: what goes along is what would have been loaded."""
-    kernel = kernel_of({**CASES, **KEPT}[name][0], tmp_path)
-    for count in (0, 1, 2, 3, 4, 5, 90):
-        given = [count if isinstance(each, int) else each for each in arguments(kernel)]
-        check_against_python(kernel, given, profile)
+    check_meaning({**CASES, **KEPT}[name][0], profile, tmp_path, (0, 1, 2, 3, 4, 5, 90))
 
 
 def loads(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> int:

@@ -11,10 +11,9 @@ from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
+from tests.kernel.beside_gcc import check_estimate, check_meaning
 from tests.kernel.modules import kernel_of
-from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
-from tests.kernel.test_partial_redundancies import arguments
 
 WORDS = """
 def f(a: i32[:], b: i32[:], c: i32[:], o: i32[:], n: i32) -> None:
@@ -85,17 +84,14 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator."""
-    text, cycles, near = CASES[name]
-    kernel = kernel_of(text, tmp_path)
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
+    check_estimate(*CASES[name], tmp_path)
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 @pytest.mark.parametrize("name", CASES)
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """What is costed is what runs."""
-    kernel = kernel_of(CASES[name][0], tmp_path)
-    check_against_python(kernel, arguments(kernel), profile)
+    check_meaning(CASES[name][0], profile, tmp_path)
 
 
 def made(name: str, op: Op, folder: Path) -> tuple[int, int]:

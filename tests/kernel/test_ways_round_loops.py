@@ -9,54 +9,32 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, tree
 from bfsim.kernel.isa import Op
 from bfsim.kernel.subloops import makes_subloop
+from tests.kernel.beside_gcc import check_estimate, check_meaning
 from tests.kernel.modules import kernel_of
-from tests.kernel.running import check_against_python
 from tests.kernel.test_lowering import lowered
-from tests.kernel.test_partial_redundancies import arguments
 
-RUNS = """
+SKIPPING = """
 def f(a: u8[:], o: u8[:], n: i32) -> i32:
     k = 0
     x = 0
     while x < n:
-        if a[x] < 128:
+        if a[x] < {0}:
             x += 1
             continue
-        o[k] = x
+        {1}
+        k += 1
+    return k
+"""
+RUN = """o[k] = x
         while x < n and a[x] >= 128:
-            x += 1
-        k += 1
-    return k
-"""
-SKIPPED = """
-def f(a: u8[:], o: u8[:], n: i32) -> i32:
-    k = 0
-    x = 0
-    while x < n:
-        if a[x] < 128:
-            x += 1
-            continue
-        o[k] = a[x]
-        k += 1
-        x += 2
-    return k
-"""
-WORDS = """
-def f(a: u8[:], o: u8[:], n: i32) -> i32:
-    k = 0
-    x = 0
-    while x < n:
-        if a[x] < 40:
-            x += 1
-            continue
-        v = 0
+            x += 1"""
+PIXEL = """o[k] = a[x]
+        x += 2"""
+WORD = """v = 0
         while x < n and a[x] >= 40:
             v = (v * 10 + a[x] - 48) & 4095
             x += 1
-        o[k] = v
-        k += 1
-    return k
-"""
+        o[k] = v"""
 RUNS_IN_ROWS = """
 def f(a: u8[:], o: u8[:], n: i32) -> i32:
     k = 0
@@ -134,9 +112,9 @@ def f(a: u8[:], h: u16[:], n: i32) -> i32:
 
 # of each case: the kernel, cycles of GCC's code in the GNU simulator, and how near the estimate is
 CASES = {
-    "runs": (RUNS, 3374, 0.02),
-    "skipped": (SKIPPED, 2586, 0.02),
-    "words": (WORDS, 3469, 0.08),
+    "runs": (SKIPPING.format(128, RUN), 3374, 0.02),
+    "skipped": (SKIPPING.format(128, PIXEL), 2586, 0.02),
+    "words": (SKIPPING.format(40, WORD), 3469, 0.08),
     "runs in rows": (RUNS_IN_ROWS, 3829, 0.02),
     "the sum of a window": (WINDOW.format("s += a[y * w + x]"), 258, 0.1),
     "the moment of a window": (WINDOW.format(MOMENT), 1039, 0.05),
@@ -149,19 +127,14 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 100 %."""
-    text, cycles, near = CASES[name]
-    kernel = kernel_of(text, tmp_path)
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
+    check_estimate(*CASES[name], tmp_path)
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 @pytest.mark.parametrize("name", CASES)
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """What is costed is what runs."""
-    kernel = kernel_of(CASES[name][0], tmp_path)
-    for count in (0, 1, 2, 17, 90):
-        given = [count if isinstance(each, int) else each for each in arguments(kernel)]
-        check_against_python(kernel, given, profile)
+    check_meaning(CASES[name][0], profile, tmp_path, (0, 1, 2, 17, 90))
 
 
 TAKEN = """

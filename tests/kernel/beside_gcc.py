@@ -1,0 +1,48 @@
+"""Small kernels beside what GCC makes of them: their arguments, how near an estimate is, and that what is estimated computes what Python does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.kernel import CompilerProfile, Kernel
+from bfsim.kernel.types import ArrayType
+from tests.kernel.modules import kernel_of
+from tests.kernel.running import check_against_python
+
+COUNT, LIMIT = 200, 100
+
+
+def arguments(kernel: Kernel) -> list[Any]:
+    """Return numbers by chance, the same each time, and how many of them count."""
+    random = np.random.default_rng(3)
+    found: list[Any] = []
+    for each in kernel.function.parameters:
+        if each.name in ("n", "t"):
+            found.append(COUNT if each.name == "n" else LIMIT)
+            continue
+        assert isinstance(each.type, ArrayType)
+        kind = np.dtype(each.type.element.dtype)
+        low, high = (0, 256) if kind.itemsize == 1 else (0 if kind.kind == "u" else -500, 500)
+        found.append(random.integers(low, high, 256).astype(kind))
+    return found
+
+
+def check_estimate(text: str, cycles: int, near: float, folder: Path) -> None:
+    """Assert that the estimate of the kernel `f` is as near, a part of it, as said to the cycles of GCC's code."""
+    kernel = kernel_of(f"\n{text.lstrip()}", folder)
+    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
+
+
+def check_meaning(text: str, profile: CompilerProfile, folder: Path, counts: Sequence[int] = ()) -> None:
+    """Assert that the kernel `f` leaves what Python does; `counts` in turn are its numbers, or else those of `arguments`."""
+    kernel = kernel_of(f"\n{text.lstrip()}", folder)
+    for count in counts or (None,):
+        given = arguments(kernel)
+        if count is not None:
+            given = [count if isinstance(each, int) else each for each in given]
+        check_against_python(kernel, given, profile)
