@@ -17,7 +17,14 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.emit import emit
 from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import inlined_calls
-from bfsim.kernel.ir_text import Entrance, Routine, SourceLine, inlined_through, read_module
+from bfsim.kernel.ir_text import (
+    Entrance,
+    Routine,
+    SourceLine,
+    inlined_through,
+    read_module,
+    without_marks,
+)
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
@@ -46,7 +53,7 @@ LATER_PASSES = ("jump_threading", *CLEANING)
 def costed(function: Function, profile: CompilerProfile) -> Costs:
     """Cost `function` and its callees."""
     text = optimised(function, profile)
-    routines = read_module(text)
+    routines = tuple(map(without_marks, read_module(text)))
     counters = tuple(each for routine in routines for each in cost(routine, profile))
     return Costs(counters, calls_of(routines), inlined_through(text))
 

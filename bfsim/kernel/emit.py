@@ -44,7 +44,7 @@ def emit(
 
 
 def sites_of(function: Function) -> dict[str, Sites]:
-    """Return, by symbol, the accesses and divisions of `function` and of every kernel it calls, in the order of their numbers.
+    """Return, by symbol, the sites in `function` and in every kernel it calls, in the order of their numbers.
 
     A number, from 1 on, is the column in the debug location of the instruction; what is none of them has column 0.
     """
@@ -95,7 +95,7 @@ def _declare(module: ir.Module, function: Function) -> None:
 def _emit_into(
     module: ir.Module, function: Function, inlined: frozenset[InlinedCall], *, one_way_back: bool
 ) -> Sites:
-    """Emit the code of a kernel that is declared; return its accesses and divisions."""
+    """Emit the code of a kernel that is declared; return its sites."""
     target = module.get_global(function.symbol)
     scope = _debug_scope(module, target, function)
     arrays, scalars = _name_arguments(target, function)
@@ -243,13 +243,15 @@ class _Statements:
         start, stop = self.values.value(node.start), self.values.value(node.stop)
         counter = self.values.entry_slot(I32, f"{node.name}.iteration")
         builder.store(start, counter)
+        if isinstance(node.step, tree.Local):
+            self.values.steps(node, start, stop, self.values.value(node.step))
         test, body, step, after = (
             builder.append_basic_block(name) for name in ("for", "body", "step", "after")
         )
         builder.branch(test)
         builder.position_at_end(test)
         now = builder.load(counter, typ=I32)
-        builder.cbranch(builder.icmp_signed("<" if node.step > 0 else ">", now, stop), body, after)
+        builder.cbranch(builder.icmp_signed("<" if node.goes_up else ">", now, stop), body, after)
         builder.position_at_end(body)
         builder.store(now, self.values.slots[node.name])
         with self._loop(step, after):
@@ -257,8 +259,10 @@ class _Statements:
         self.values.at(node.line)
         self._fall_to(step)
         builder.position_at_end(step)
-        # nsw: the counter cannot wrap before it passes `stop`, unless a step larger than 1 ends beyond 2**31
-        builder.store(builder.add(builder.load(counter, typ=I32), I32(node.step), flags=["nsw"]), counter)
+        now = builder.load(counter, typ=I32)
+        by = self.values.value(node.step) if isinstance(node.step, tree.Local) else I32(node.step)
+        # nsw: the counter cannot wrap before it passes `stop`, unless a constant step larger than 1 ends beyond 2**31
+        builder.store(builder.add(now, by, flags=["nsw"]), counter)
         builder.branch(test)
         builder.position_at_end(after)
 

@@ -1,4 +1,4 @@
-"""Expressions of the typed tree → LLVM IR, as `emit` has them: where each stands, and which accesses and divisions they make."""
+"""Expressions of the typed tree → LLVM IR, as `emit` has them: where each stands, and what of them can go wrong in a run."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
 from bfsim.kernel.intrinsics.meaning import function_type
-from bfsim.kernel.ir_text import ENTERS, NO_HINT
+from bfsim.kernel.ir_text import ENTERS, NO_HINT, STEPS
 from bfsim.kernel.types import FloatType, IntType, Number, u32
 
 InlinedCall = tuple[str, str, int]
 """Symbols of caller and callee, and the line in the caller."""
-Site = tree.Load | tree.Store | tree.Binary
-"""An access or a division: what can go wrong in a run."""
+Site = tree.Load | tree.Store | tree.Binary | tree.For
+"""An access, a division or a loop with a step that is no constant: what can go wrong in a run."""
 I1, I32 = ir.IntType(1), ir.IntType(32)
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
 # [predict.def of GCC 12] hit rates 67 % (continue) and 66 % (early return); both sides even otherwise
@@ -251,12 +251,20 @@ class Values:
         callee = node.callee.symbol
         if (self.function.symbol, callee, node.line) not in self.inlined:
             return ()
-        name = f"{ENTERS}{callee}"
+        self._mark(f"{ENTERS}{callee}")
+        return ("alwaysinline",)
+
+    def steps(self, node: tree.For, *bounds: ir.Value) -> None:
+        """Say where a loop begins whose start, stop and step are to be checked."""
+        with self.site(node):
+            self._mark(STEPS, *bounds)
+
+    def _mark(self, name: str, *given: ir.Value) -> None:
+        """Emit a call that does nothing: it stays in its block, and stands in nothing's way."""
         mark = self.builder.module.globals.get(name)
         if mark is None:
-            mark = ir.Function(self.builder.module, ir.FunctionType(ir.VoidType(), []), name)
-            # it stays in its block, and stands in nothing's way
+            kind = ir.FunctionType(ir.VoidType(), [each.type for each in given])
+            mark = ir.Function(self.builder.module, kind, name)
             mark.attributes.add("inaccessiblememonly")
             mark.attributes.add("nounwind")
-        self.builder.call(mark, [])
-        return ("alwaysinline",)
+        self.builder.call(mark, given)

@@ -11,6 +11,8 @@ from bfsim.kernel.function import Function
 from bfsim.kernel.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, Place
 from bfsim.kernel.types import i32, u32
 
+_, HIGHEST = i32.bounds
+
 
 def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> KernelError:
     """Return the error for a note of `guarded`, the code of `function` and its callees."""
@@ -21,7 +23,7 @@ def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> Kernel
     first, *others = sorted({each.line for each in sites}) or [max(1, here.line)]
     same = f"; or line {' or '.join(str(routine.first_line + each - 1) for each in others)}" if others else ""
     calls = "".join(f"; called at {_place(routines[each.routine], each.line)}" for each in callers)
-    told = _of_divisor if guard.node is tree.Binary else _of_index
+    told = {tree.Binary: _of_divisor, tree.For: _of_steps}.get(guard.node, _of_index)
     what, must_be = told(sites, note[FIRST], note[SECOND])
     return KernelError(
         f"{_place(routine, first)}: {what} in kernel {routine.name}{same}; {must_be}{calls}\n"
@@ -53,7 +55,7 @@ def _sites(guard: Guard, known: Sites) -> Sites:
 
 def _of_index(sites: Sites, index: int, length: int) -> tuple[str, str]:
     """Return what is wrong with an index, and what it must be."""
-    accesses = [each for each in sites if not isinstance(each, tree.Binary)]
+    accesses = [each for each in sites if isinstance(each, (tree.Load, tree.Store))]
     if not accesses:
         return (
             f"index {i32(index)} is outside of an array",
@@ -75,6 +77,16 @@ def _of_divisor(sites: Sites, dividend: int, divisor: int) -> tuple[str, str]:
     is_function = operator.isidentifier()
     shown = f"{operator}({dividend}, {divisor})" if is_function else f"{dividend} {operator} {divisor}"
     return f"{shown} is undefined", f"the divisor must not be {divisor}{condition}"
+
+
+def _of_steps(_sites: Sites, step: int, stop: int) -> tuple[str, str]:
+    """Return what is wrong with the step of a loop, and what it must be."""
+    if step < 1:
+        return f"a range has the step {step}", "a step must be 1 or more, or a negative constant"
+    return (
+        f"a range to {stop} in steps of {step} goes beyond {HIGHEST}",
+        "its counter must stay an i32: take a smaller step, or end it earlier",
+    )
 
 
 def _place(routine: Function, line: int) -> str:

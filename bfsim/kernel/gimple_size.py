@@ -16,7 +16,7 @@ from bfsim import store
 from bfsim.kernel import generic, keys
 from bfsim.kernel.emit import emit_alone
 from bfsim.kernel.function import Function
-from bfsim.kernel.ir_text import Instruction, read_module
+from bfsim.kernel.ir_text import Instruction, read_module, without_marks
 from bfsim.kernel.loops import ControlFlow, pointee_nbytes
 from bfsim.kernel.lowering.frequencies import frequencies
 from bfsim.kernel.lowering.predict import Likelihood
@@ -64,7 +64,7 @@ def estimate(function: Function) -> Estimate:
 def _estimated(function: Function) -> Estimate:
     module = generic.parsed(emit_alone(function))
     generic.run(EARLY_PASSES, module)
-    (routine,) = read_module(str(module))
+    (routine,) = map(without_marks, read_module(str(module)))
     arguments = {each.symbol: len(each.parameters) + len(each.measured) for each in function.callees()}
     return _Estimator(ControlFlow(routine), arguments).run()
 

@@ -1,4 +1,4 @@
-"""Guards, written into the text of the optimised IR: they check every index before its access, and every divisor.
+"""Guards, written into the text of the optimised IR: they check every index before its access, every divisor, and every step.
 
 The IR has been costed by then: guards cost the host time, and the Blackfin nothing. An access goes to the element that its
 distance from the array's first one names, counted modulo 2**32 as the chip's registers count, and only if the array has it.
@@ -14,7 +14,7 @@ from itertools import takewhile
 
 from bfsim.kernel import tree
 from bfsim.kernel.entry import RETURN
-from bfsim.kernel.ir_text import DEFINE, KERNEL_CALL, LABEL
+from bfsim.kernel.ir_text import DEFINE, KERNEL_CALL, LABEL, STEPPING
 from bfsim.kernel.pointers import Origin, Pointers, nbytes_of
 
 ACCESS = re.compile(r"^(  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr )(%[\w.$-]+)(.*)$")
@@ -28,7 +28,7 @@ NUMBER, FIRST, SECOND, CALLS = range(4)
 """Words of the note: the guard that failed and its two values; then, for each routine, the place that called it last."""
 JUMP_WORDS = 128  # no C library's jmp_buf has more
 
-Node = type[tree.Load | tree.Store | tree.Binary | tree.KernelCall]
+Node = type[tree.Load | tree.Store | tree.Binary | tree.For | tree.KernelCall]
 FAIL = """
 declare void @longjmp(ptr, i32) noreturn
 define internal void @bfsim.fail(i64 %number, i64 %first, i64 %second) cold noinline noreturn {{
@@ -74,6 +74,33 @@ defined:
 }}
 """
 
+ENDS = """
+define internal void @bfsim.ends(i32 %start, i32 %stop, i32 %step, i64 %number) alwaysinline {
+  %goes_up = icmp sgt i32 %step, 0
+  br i1 %goes_up, label %up, label %wrong
+up:
+  %from = sext i32 %start to i64
+  %to = sext i32 %stop to i64
+  %by = zext i32 %step to i64
+  %distance = sub i64 %to, %from
+  %less = sub i64 %by, 1
+  %rounded = add i64 %distance, %less
+  %times = sdiv i64 %rounded, %by
+  %way = mul i64 %times, %by
+  %end = add i64 %from, %way
+  %fits = icmp sle i64 %end, 2147483647
+  br i1 %fits, label %right, label %wrong
+wrong:
+  %first = sext i32 %step to i64
+  %second = sext i32 %stop to i64
+  call void @bfsim.fail(i64 %number, i64 %first, i64 %second)
+  unreachable
+right:
+  ret void
+}
+"""
+"""A loop ends if its step is 1 or more, and if the counter that ends it does not wrap."""
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -89,7 +116,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """What a number in the note stands for: an access, a division, or a call of another kernel; `node` says which.
+    """What a number in the note stands for, as `node` says: an access, a division, a loop in steps, or a call of another kernel.
 
     `places`: where it is; if that was inlined, then where that was called, and so on. `array`: the parameter, if it is one.
     """
@@ -114,6 +141,7 @@ class Guarded:
         self._places = _places(rows)
         self._kinds: set[str] = set()
         self._divisions: set[tuple[str, str]] = set()
+        self._has_steps = False
         self._routine = ""
         self.guards: list[Guard] = []
         """Guards and calls by their numbers, which begin with 1."""
@@ -140,6 +168,8 @@ class Guarded:
             signed, extend = ("true", "sext") if sign == "s" else ("false", "zext")
             lowest = -1 << int(kind[1:]) - 1
             rows.append(DIVISIBLE.format(sign=sign, kind=kind, lowest=lowest, signed=signed, extend=extend))
+        if self._has_steps:
+            rows.append(ENDS)
         return "\n".join(rows)
 
     def _module(self, rows: list[str]) -> Iterator[str]:
@@ -167,6 +197,9 @@ class Guarded:
                     yield self._check_index(pointers.origin(access[3]), access[2], number)
                 yield f"{access[1]}{checked[pointer]}{access[4]}"
                 continue
+            if steps := STEPPING.match(row):
+                yield self._check_steps(steps, self._number(row, tree.For))
+                continue
             if division := DIVISION.match(row):
                 yield self._check_divisor(division, self._number(row, tree.Binary))
             elif (call := KERNEL_CALL.search(row)) and call[1] in self.routines:
@@ -184,6 +217,11 @@ class Guarded:
         self._divisions.add((sign, kind))
         values = f"{kind} {dividend}, {kind} {divisor}, i64 {number}"
         return f"  call void @bfsim.divisible.{sign}.{kind}({values})"
+
+    def _check_steps(self, steps: re.Match[str], number: int) -> str:
+        self._has_steps = True
+        start, stop, step = steps.groups()
+        return f"  call void @bfsim.ends(i32 {start}, i32 {stop}, i32 {step}, i64 {number})"
 
     def _note_call(self, callee: str, number: int) -> str:
         word = CALLS + self.routines.index(callee)

@@ -21,7 +21,7 @@ from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.function import Function
 from bfsim.kernel.guards import Guarded
 from bfsim.kernel.intrinsics.meaning import defined
-from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, read_module
+from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, STEPPING, read_module
 from bfsim.kernel.tracing import ROUTINES, SITE, Tracing
 
 # [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
@@ -140,7 +140,7 @@ class _Rewriter:
             yield row
 
     def _instruction(self, row: str) -> Iterator[str]:
-        if ENTRY.match(row):
+        if ENTRY.match(row) or STEPPING.match(row):
             return
         if not self.behind_phis and " = phi " not in row:
             self.behind_phis = True

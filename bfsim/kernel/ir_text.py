@@ -44,6 +44,11 @@ INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 ENTERS = "bfsim.enters."
 """Before the symbol of a kernel: a call that does nothing, where the code of an inlined kernel begins."""
+STEPS = "bfsim.steps"
+"""A call that does nothing, with start, stop and step of the loop behind it, whose step is no constant: `guards` checks them."""
+STEPPING = re.compile(
+    rf"^  (?:tail )?call void @{re.escape(STEPS)}\(i32 ([^,]+), i32 ([^,]+), i32 ([^,)]+)\)"
+)
 ENTRY = re.compile(rf"^  (?:tail )?call void @{re.escape(ENTERS)}([\w.$-]+)\(")
 
 
@@ -100,7 +105,12 @@ class Instruction:
     @property
     def is_call(self) -> bool:
         """Whether it is a call of another kernel."""
-        return self.opcode == "call" and not self.is_computation
+        return self.opcode == "call" and not self.is_computation and not self.is_mark
+
+    @property
+    def is_mark(self) -> bool:
+        """Whether it is no code, and only says what is to be checked here."""
+        return self.opcode == "call" and f"@{STEPS}(" in self.text
 
     @property
     def is_computation(self) -> bool:
@@ -162,6 +172,15 @@ class Routine:
     symbol: str
     parameters: tuple[str, ...]
     blocks: tuple[BasicBlock, ...]
+
+
+def without_marks(routine: Routine) -> Routine:
+    """Return `routine` as the Blackfin has it, which checks nothing."""
+    blocks = (
+        replace(block, instructions=tuple(each for each in block.instructions if not each.is_mark))
+        for block in routine.blocks
+    )
+    return replace(routine, blocks=tuple(blocks))
 
 
 def read_module(text: str) -> tuple[Routine, ...]:

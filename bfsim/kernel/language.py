@@ -290,15 +290,46 @@ class _Reader:
             source.refuse(
                 call, "range takes one to three numbers", "write range(stop) or range(start, stop, step)"
             )
-        step = bounds[2] if len(bounds) == 3 else tree.Const(1, i32, node.lineno)
-        if not isinstance(step, tree.Const) or step.value == 0:
-            source.refuse(
-                call.args[-1], "the step of a range must be a constant other than 0", "use a while loop"
+        if len(bounds) == 1:
+            bounds.insert(0, tree.Const(0, i32, node.lineno))
+        if len(bounds) == 3:
+            return self._stepping(node, node.target.id, bounds, call.args[2])
+        return self._counted(node, node.target.id, (bounds[0], bounds[1], 1), node.body)
+
+    def _stepping(
+        self, node: ast.For, name: str, bounds: list[tree.Expr], written: ast.expr
+    ) -> list[tree.Stmt]:
+        """Read a loop whose step is `written`: a constant, or a number that is found once, before the loop."""
+        start, stop, step = bounds
+        if isinstance(step, tree.Const):
+            if step.value == 0:
+                self.scope.source.refuse(
+                    written, "the step of a range cannot be 0", "write 1 or more, or a negative constant"
+                )
+            return self._counted(node, name, (start, stop, int(step.value)), node.body)
+        if isinstance(written, ast.UnaryOp) and isinstance(written.op, ast.USub):
+            self.scope.source.refuse(
+                written, "a negative step of a range must be a constant", "count upwards, or use a while loop"
             )
-        start, stop = (
-            (bounds[0], bounds[1]) if len(bounds) > 1 else (tree.Const(0, i32, node.lineno), bounds[0])
-        )
-        return self._counted(node, node.target.id, (start, stop, int(step.value)), node.body)
+        names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
+        changed = {each.id for each in names if isinstance(each.ctx, ast.Store)}
+        if isinstance(step, tree.Local) and step.name not in changed:
+            return self._counted(node, name, (start, stop, step), node.body)
+        before: list[tree.Stmt] = []
+        if tree.calls_in(tuple(bounds)):  # start and stop come first: a call may change what the others read
+            start, stop = (
+                self._held(each, "value", before) if tree.reads_array(each) else each
+                for each in (start, stop)
+            )
+        held = self._held(step, f"{name}_step", before)
+        return [*before, *self._counted(node, name, (start, stop, held), node.body)]
+
+    def _held(self, value: tree.Expr, stem: str, before: list[tree.Stmt]) -> tree.Local:
+        """Return a new local that only the compiled code has, which holds `value` from behind the statements `before` on."""
+        name = self._hidden(stem)
+        self.scope.locals[name] = i32
+        before.append(tree.Assign(name, value, value.line))
+        return tree.Local(name, i32, value.line)
 
     def _is_array(self, node: ast.expr) -> TypeGuard[ast.Name]:
         return isinstance(node, ast.Name) and node.id in self.scope.arrays
@@ -317,7 +348,11 @@ class _Reader:
         return self._counted(node, counter, bounds, [first, *node.body])
 
     def _counted(
-        self, node: ast.For, name: str, bounds: tuple[tree.Expr, tree.Expr, int], statements: list[ast.stmt]
+        self,
+        node: ast.For,
+        name: str,
+        bounds: tuple[tree.Expr, tree.Expr, int | tree.Local],
+        statements: list[ast.stmt],
     ) -> list[tree.Stmt]:
         """Read the statements of a loop that counts `name` from a start to before a stop by a step."""
         if self.scope.locals.setdefault(name, i32) is not i32:

@@ -186,14 +186,19 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class For:
-    """`for name in range(start, stop, step)`; step is a constant other than 0."""
+    """`for name in range(start, stop, step)`; step is a constant other than 0, or a local that the loop leaves as it is."""
 
     name: str
     start: Expr
     stop: Expr
-    step: int
+    step: int | Local
     body: tuple[Stmt, ...]
     line: int
+
+    @property
+    def goes_up(self) -> bool:
+        """Whether the counter grows: what is no constant must be positive."""
+        return isinstance(self.step, Local) or self.step > 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,6 +245,11 @@ def first_float(function: Function) -> int | None:
 def calls_in(node: object) -> list[KernelCall]:
     """Every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
     return [each for each in parts(node) if isinstance(each, KernelCall)]
+
+
+def reads_array(node: object) -> bool:
+    """Whether `node`, a part of a tree, loads an element or calls a kernel, which may."""
+    return any(isinstance(each, (Load, KernelCall)) for each in parts(node))
 
 
 def measured_arrays(body: Body) -> frozenset[str]:

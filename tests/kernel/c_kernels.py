@@ -58,6 +58,29 @@ def moving_stop(row: u8[:], n: i32) -> i32:
 
 
 @kernel
+def stepping(row: u8[:], width: i32, n: i32) -> i32:
+    """Count in steps: of a parameter, of what the loop changes, of an element, of a call that changes the stop, of the name itself."""
+    width = (width & 7) + 1
+    total = 0
+    for x in range(row[1] & 7, n & 15, width):
+        total += x * row[x]
+        for y in range(x, WIDTH, 2 * width):  # noqa: B007
+            width += 1
+            total += 1
+        width = (width & 7) + 1
+    for x in range(row[2] & 1, (row[3] & 7) + 8, (take(row, 3) & 3) + 1):
+        row[x] += 1
+    for x in range(0, WIDTH, (row[4] & 3) + 1):
+        if x == 8:
+            continue
+        row[4] = x
+    x = 3
+    for x in range(x, WIDTH, x):  # noqa: B020
+        total += x
+    return total + x
+
+
+@kernel
 def left_first(row: u8[:], x: i32) -> i32:
     row[(take(row, x) + 1) & 15] = take(row, x + 1) + take(row, x) * row[x & 15]
     return row[x & 15] - take(row, x) + max(take(row, 3), row[3])

@@ -221,8 +221,9 @@ class Writer:
             target = self.pick(*LOCALS[SIGNED], f"d[{name} & 15]")
             self.rows.append(f"{margin}for {name}, {target} in enumerate({self.pick(*'abcdf')}):")
         elif form <= 1:
-            start, step = self.draw(st.integers(-3, 9)), self.draw(st.sampled_from((1, 1, 2, 3, -1, -2)))
-            self.rows.append(f"{margin}for {name} in range({start}, {self.value(SIGNED, 1)} & 15, {step}):")
+            start, stop = self.draw(st.integers(-3, 9)), f"{self.value(SIGNED, 1)} & 15"
+            step = self.pick("1", "1", "2", "3", "-1", "-2", f"({self.value(SIGNED, 1)} & 3) + 1")
+            self.rows.append(f"{margin}for {name} in range({start}, {stop}, {step}):")
         else:
             self.rows.append(f"{margin}{name} = i32(0)")
             self.rows.append(

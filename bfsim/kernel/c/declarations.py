@@ -110,7 +110,7 @@ def _blocks(node: tree.Stmt) -> Iterator[Block]:
 def _in_head(node: tree.Stmt, name: str) -> bool:
     """Whether what a statement evaluates before its blocks reads `name`."""
     if isinstance(node, tree.For):
-        return _uses(node.start, name) or _uses(node.stop, name)
+        return any(_uses(each, name) for each in (node.start, node.stop, node.step))
     return isinstance(node, (tree.If, tree.While)) and _uses(node.test, name)
 
 

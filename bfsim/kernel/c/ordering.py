@@ -99,11 +99,11 @@ class _Rewriter:
 
     def group(self, *parts: tree.Expr) -> tuple[tree.Expr, ...]:
         """Rewrite what Python evaluates in this order, and C in any."""
-        conflict = any(map(_writes, parts)) and sum(map(_reads, parts)) > 1
+        conflict = any(map(_writes, parts)) and sum(map(tree.reads_array, parts)) > 1
         found: list[tree.Expr] = []
         for number, each in enumerate(parts, start=1):
             rewritten = self.expression(each)
-            if conflict and number < len(parts) and _reads(rewritten):
+            if conflict and number < len(parts) and tree.reads_array(rewritten):
                 rewritten = self.kept(rewritten)
             found.append(rewritten)
         return tuple(found)
@@ -159,7 +159,3 @@ class _Rewriter:
 
 def _writes(node: tree.Expr) -> bool:
     return any(each.callee.written for each in tree.calls_in(node))
-
-
-def _reads(node: tree.Expr) -> bool:
-    return any(isinstance(each, (tree.Load, tree.KernelCall)) for each in tree.parts(node))

@@ -175,13 +175,21 @@ class Definition:
         counts = id(node) in self.declarations.counting
         counter = self.names.of[node.name] if counts else self.names.another(f"{node.name}_count")
         stop = self._stop(node, indent)
-        sign = "<" if node.step > 0 else ">"
-        steps = {1: f"{counter}++", -1: f"{counter}--"}
-        step = steps.get(node.step, f"{counter} {'+' if node.step > 0 else '-'}= {abs(node.step)}")
+        sign = "<" if node.goes_up else ">"
         start = self.expressions.text(node.start)
-        head = f"for (int32_t {counter} = {start}; {counter} {sign} {stop}; {step})"
+        head = (
+            f"for (int32_t {counter} = {start}; {counter} {sign} {stop}; {self._stepped(counter, node.step)})"
+        )
         taken = [] if counts or node.name not in self.read else [f"{self.names.of[node.name]} = {counter};"]
         self._loop(head, node.body, indent, taken)
+
+    def _stepped(self, counter: str, step: int | tree.Local) -> str:
+        """What counts on at the end of an iteration."""
+        if isinstance(step, tree.Local):
+            return f"{counter} += {self.expressions.text(step)}"
+        if abs(step) == 1:
+            return f"{counter}{'++' if step > 0 else '--'}"
+        return f"{counter} {'+' if step > 0 else '-'}= {abs(step)}"
 
     def _stop(self, node: tree.For, indent: str) -> str:
         """The end of a loop: Python evaluates it once, C each time, so what can change in the loop gets a name."""
