@@ -11,7 +11,8 @@ from typing import Any
 
 from bfsim.api import CameraSettings, Firmware, Frame, FrameSize, Kernel, Row, Work
 from bfsim.chip.boards import CM_BF561
-from bfsim.kernel import VDSP_O2, PreparedCall
+from bfsim.kernel import VDSP_O2
+from bfsim.kernel.decorator import RunnableCall
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.memories import Memories
@@ -91,7 +92,7 @@ class BareCore:
         self._camera = rows[firmware.camera][:height]
         self._frames = iter(frames)
         self._size = size
-        self._calls: dict[tuple[object, ...], PreparedCall] = {}
+        self._calls: dict[tuple[object, ...], RunnableCall] = {}
 
     def array(self, name: str) -> Row:
         """Return the only row of a buffer."""

@@ -75,12 +75,18 @@ def build_of(profile: str) -> Build:
         return build_for(loaded(), profile_named(profile))
 
 
-def run(frames: Sequence[StereoFrame], build: Build = ESTIMATED) -> float:
-    """Run the built-in firmware on the simulated board; return the processor time, in seconds."""
+def board_of(build: Build) -> Board:
+    """Return a board with the built-in firmware."""
     size, firmware = FrameSize(320, 240), loaded().firmware
     with loaded().own.named():
         link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size, build))
-        board = Board(CM_BF561, firmware, size, link_map, build=build)
+        return Board(CM_BF561, firmware, size, link_map, build=build)
+
+
+def run(frames: Sequence[StereoFrame], build: Build = ESTIMATED) -> float:
+    """Run the built-in firmware on the simulated board; return the processor time, in seconds."""
+    board = board_of(build)
+    with loaded().own.named():
         begin = process_time()
         board.run(iter(frames))
         return process_time() - begin

@@ -10,6 +10,7 @@ least time of a turn counts. Compile times are of a process with an empty kernel
 from __future__ import annotations
 
 import argparse
+import ctypes
 import math
 import os
 import statistics
@@ -33,6 +34,10 @@ NAMES = {
 }  # fmt: skip
 
 
+ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
+"""Of a compiled kernel: what it is told besides, its arguments, and what it leaves."""
+
+
 @dataclass(frozen=True, slots=True)
 class Timing:
     """Of one kernel: nanoseconds per call of each variant, milliseconds to compile it cold and to load it warm."""
@@ -47,11 +52,11 @@ class Timing:
 
 
 @numba.njit
-def repeated(entry: Any, times: int) -> int:
+def repeated(entry: Any, arguments: int, left: int, times: int) -> int:
     """Call a compiled kernel many times without coming back to Python."""
     total = 0
     for _ in range(times):
-        total += entry()
+        total += entry(0, arguments, left)
     return total
 
 
@@ -102,11 +107,11 @@ def our_loop(
     code = kernel.compile(VDSP_O2, counted=counted, checked=checked)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
     call = kernel.prepare(code, arrays, code.new_totals())
-    call.run(arguments)  # puts the integers and the argument block in place
+    work = call.run(arguments)  # puts the integers in place
+    entry = ENTRY(code.entry)
 
     def loop(times: int) -> int:
-        code.cell.value = call._at
-        return int(repeated(code.entry, times))
+        return int(repeated(entry, ctypes.addressof(call.block), work.at, times))
 
     loop(1)
     return loop

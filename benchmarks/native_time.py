@@ -11,13 +11,13 @@ from typing import Any
 from unittest.mock import patch
 
 from bfsim.kernel.objects.calls import ObjectCall
-from bfsim.kernel.work import PreparedCall
+from bfsim.kernel.prepared_call import PreparedCall
 from bfsim.machine.bus.woven_bus import WovenBus
 
 
 @dataclass(slots=True)
 class Stopwatch:
-    """How long compiled functions have run in processor time, their calls by ctypes included, some 0.2 µs each."""
+    """How long compiled functions have run in processor time, their calls from Python included, some 0.2 µs each."""
 
     ns: int = 0
     calls: int = 0
@@ -54,7 +54,7 @@ def own_ns() -> float:
 def native_time(kernels: Stopwatch, weave: Stopwatch) -> Iterator[None]:
     """Take the time of kernels and of the weave, in boards that are made inside."""
     with (
-        patch.object(PreparedCall, "__init__", _after(PreparedCall, "_entry", kernels)),
+        patch.object(PreparedCall, "__init__", _after(PreparedCall, "run", kernels)),
         patch.object(ObjectCall, "__init__", _after(ObjectCall, "run", kernels)),
         patch.object(WovenBus, "__init__", _after(WovenBus, "_advance", weave)),
     ):

@@ -1,7 +1,8 @@
 """How fast the simulator is. Run with `pytest benchmarks/test_speed.py --benchmark-columns=median,min,max`.
 
-Compare within one run only: `simulated` against `native` (what its kernels' machine code takes of it) and `floor` (the same
-kernels called from Python on the same pixels, without counters, checks and SimPy), and cold against warm start. Timings are not asserted; the number of events is.
+Compare within one run only: `simulated` against `native` (what its kernels' machine code takes of it), as GCC's own code, which is
+what `bfsim run` has, and as estimated; `floor` (the estimated kernels called from Python on the same pixels, without counters, checks
+and SimPy); and cold against warm start. Timings are not asserted; the number of events is.
 """
 
 from __future__ import annotations
@@ -10,22 +11,17 @@ import os
 import subprocess
 import sys
 from functools import partialmethod
-from itertools import cycle, islice
 from pathlib import Path
 
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from benchmarks.bare import run_bare
+from benchmarks.frame_time import board_of, build_of, frames_of, loaded
 from benchmarks.native_time import Stopwatch, native_time
-from bfsim.api import FrameSize
-from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import Kernel
-from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import Board
-from bfsim.machine.symbols import symbols_of
-from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
+from bfsim.kernel.build import ESTIMATED, Build
+from bfsim.recording import StereoFrame
 from bfsim.trace import BoardRecord
 from tinyphoon import tinyphoon
 
@@ -37,21 +33,26 @@ MOST_EVENTS_PER_FRAME = 50_000  # issue: at most so many SimPy events per stereo
 @pytest.fixture(scope="module")
 def frames() -> list[StereoFrame]:
     """The built-in recording over and over, in memory."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
-        return list(islice(cycle(list(reader.frames())), STEREO_FRAMES))
+    return frames_of(STEREO_FRAMES)
 
 
-def run_simulated(frames: list[StereoFrame]) -> BoardRecord:
+@pytest.fixture(params=["gcc-adi", "estimated"])
+def build(request: pytest.FixtureRequest) -> Build:
+    """GCC's own code, or estimates."""
+    return ESTIMATED if request.param == "estimated" else build_of(request.param)
+
+
+def run_simulated(frames: list[StereoFrame], build: Build) -> BoardRecord:
     """Run the firmware on the simulated board, as `bfsim run` does."""
-    size = FrameSize(320, 240)
-    places = link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon, size))
-    return Board(CM_BF561, tinyphoon, size, places).run(iter(frames))
+    board = board_of(build)
+    with loaded().own.named():
+        return board.run(iter(frames))
 
 
 @pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
-def test_simulated(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
+def test_simulated(benchmark: BenchmarkFixture, frames: list[StereoFrame], build: Build) -> None:
     """All stages on both cores with counters and the whole machine; stereo frames per second in `extra_info`."""
-    outcome = benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=7)
+    outcome = benchmark.pedantic(run_simulated, (frames, build), warmup_rounds=1, rounds=7)
     benchmark.extra_info["stereo frames per second"] = STEREO_FRAMES / benchmark.stats.stats.median
     assert len(outcome.frames) == STEREO_FRAMES
     assert outcome.events <= MOST_EVENTS_PER_FRAME * STEREO_FRAMES
@@ -61,22 +62,22 @@ def test_simulated(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> No
 def test_unchecked(
     benchmark: BenchmarkFixture, frames: list[StereoFrame], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The same without checks of indexes and divisors: what these cost."""
+    """The estimated ones without checks of indexes and divisors: what these cost."""
     monkeypatch.setattr(Kernel, "compile", partialmethod(Kernel.compile, checked=False))
-    benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=7)
+    benchmark.pedantic(run_simulated, (frames, ESTIMATED), warmup_rounds=1, rounds=7)
 
 
 @pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
 def test_floor(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
-    """The same kernels on the same pixels without counters, checks and SimPy."""
+    """The estimated kernels on the same pixels without counters, checks and SimPy."""
     benchmark.pedantic(run_bare, (tinyphoon, frames), warmup_rounds=1, rounds=7)
 
 
 @pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames", timer=lambda: KERNELS.seconds)
-def test_native(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
+def test_native(benchmark: BenchmarkFixture, frames: list[StereoFrame], build: Build) -> None:
     """The machine code of the kernels alone, with counters and checks, in a run on the simulated board."""
     with native_time(KERNELS, Stopwatch()):
-        benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=3)
+        benchmark.pedantic(run_simulated, (frames, build), warmup_rounds=1, rounds=3)
 
 
 def start(cache: Path) -> None:

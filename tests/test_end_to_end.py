@@ -213,7 +213,7 @@ def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
 
 ENDLESS = """
 from pathlib import Path
-from bfsim.api import Buffer, BudgetRow, Firmware, i32, kernel, u8
+from bfsim.api import Buffer, BudgetRow, Firmware, i32, kernel, kernel_from, u8
 
 @kernel
 def spin(x: i32) -> i32:
@@ -235,6 +235,9 @@ fw = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", ro
 """
 
 
+OBJECT_CODE = (
+    f"kernel_from({str(Path(__file__).parent / 'blackfin/data/endless.o')!r}, 'spin', x=i32, result=i32)"
+)
 SURELY_IN_THE_KERNEL_TICKS = 50
 """Of 10 ms each: what Python has to do between the file and the kernel takes less than one, however busy the machine is."""
 
@@ -246,9 +249,10 @@ def cpu_ticks(pid: int) -> int:
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
 @pytest.mark.parametrize("number", [signal.SIGINT, *exhaustive(signal.SIGTERM)])
-def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal.Signals) -> None:
-    """Python hears nothing while the machine code of a kernel runs; the user needs no `kill`."""
-    (tmp_path / "endless.py").write_text(ENDLESS)
+@pytest.mark.parametrize("code", ["spin", OBJECT_CODE])
+def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal.Signals, code: str) -> None:
+    """Python hears nothing while the machine code of a kernel runs, estimated or not; the user needs no `kill`."""
+    (tmp_path / "endless.py").write_text(f"{ENDLESS}\nspin = {code}\n")
     command = [sys.executable, "-m", "bfsim", "run", "--firmware", "endless:fw"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None and not (tmp_path / "begun").exists():

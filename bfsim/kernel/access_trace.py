@@ -128,15 +128,6 @@ class AccessTrace:
         """Whether accesses to memory at a host address are logged: whether it is outside of L1."""
         return bool(self._state[ARENA] <= address < self._state[END])
 
-    def take_count(self) -> int:
-        """Return how many accesses the last call logged, and begin the log anew behind what is kept."""
-        words = self._words
-        kept: int = words[KEPT]
-        count: int = words[ENTRIES] - kept
-        words[ENTRIES] = kept
-        self.check_room(count)
-        return count
-
     def drop(self) -> None:
         """Keep nothing any more."""
         self._words[ENTRIES] = self._words[KEPT] = 0

@@ -19,13 +19,13 @@ from bfsim.errors import BfsimWarning, KernelError
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.costs import costs_of
 from bfsim.kernel.counters import Counter
-from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
+from bfsim.kernel.prepared_call import PreparedCall
 from bfsim.kernel.profile import DEFAULT, GCC_O0, RUN_AS_COMPILED, CompilerProfile, profile_named
 from bfsim.kernel.reading import read_kernel
 from bfsim.kernel.types import ArrayType, FloatType, IntType
-from bfsim.kernel.work import PreparedCall, Work, is_single
+from bfsim.kernel.work import Work, is_single
 from bfsim.machine_code import Effort
 
 if TYPE_CHECKING:
@@ -174,22 +174,7 @@ class Kernel:
 
             return ObjectCall(code, arrays, self.check, totals, access_trace, first_site, stack, memory)
         self._check_overlaps(arrays)
-        slots = self._slots()
-        bound = [(slots[position], each) for position, each in zip(self.array_positions, arrays, strict=True)]
-        integers = [(slots[each], each) for each in self.integer_positions]
-        floats = [(slots[each], each) for each in self.float_positions]
-        result = self.function.result
-        return PreparedCall(
-            code,
-            bound,
-            integers,
-            floats,
-            self.check,
-            result=result,
-            access_trace=access_trace,
-            first_site=first_site,
-            totals=totals,
-        )
+        return PreparedCall(self.function, code, arrays, self.check, totals, access_trace, first_site)
 
     def _refuse_floats(self, profile: CompilerProfile) -> None:
         if profile.floats is not None:
@@ -205,14 +190,6 @@ class Kernel:
                     f"{place}: {each.name} must do without floats, for the profile {profile.name} has no library for "
                     f"them; use fixed point, or another profile\n    {shown}"
                 )
-
-    def _slots(self) -> list[int]:
-        """First word of each parameter in the argument block: two words an array, one an integer."""
-        slots, slot = [], FIRST_ARGUMENT
-        for each in self.function.parameters:
-            slots.append(slot)
-            slot += 2 if isinstance(each.type, ArrayType) else 1
-        return slots
 
     @cached_property
     def arrays_of(self) -> Callable[[Sequence[Any]], Any]:

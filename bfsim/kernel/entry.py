@@ -1,35 +1,27 @@
-"""The entry point of a compiled kernel: what Python calls, and how events become totals and cycles.
+"""The entry point of a compiled kernel: what is called for Python, and how events become totals and cycles.
 
-An entry takes nothing and returns the issue and interlock cycles of one call in one word, because a C call without arguments is the
-cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
-64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
-each integer (or the bits of a float), in traced kernels the access_trace's state and the number of their first site, and last a
-word for the kernel's result.
-A guard that fails comes back to it from wherever it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
+An entry is called by `blackfin.caller` with the address of its arguments and of the numbers that it leaves: issue and interlock cycles
+of the call, and its value. Its arguments are 64-bit words: the address of the totals (one word per counter), then pointer and length of
+each array, each integer (or the bits of a float), and in traced kernels the access_trace's state and the number of their first site.
+It returns 0. A guard that fails comes back to it from wherever it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bfsim.blackfin.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType
 
-FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
-STALL_SHIFT = (
-    32  # of the result of an entry, the lower half is issue cycles and the upper one interlock cycles
-)
-REFUSED = -1  # returned instead of cycles when an integer does not fit in its 32 bits; nothing was run then
-FAILED = -2  # returned when a guard failed, which is noted then; the run was cut short
+FIRST_ARGUMENT = 1
+"""The first word of the arguments behind the totals."""
+STALL_SHIFT = 32
+"""Of the cycles that are added up, the lower half is issue cycles and the upper one interlock cycles."""
 RETURN = "@bfsim.return"
 """Where `setjmp` keeps the way back from a guard."""
-
-
-def cell_name(entry: str) -> str:
-    """Return the name of the variable that holds the address of the argument block."""
-    return f"{entry}_arguments"
 
 
 def running_name(entry: str) -> str:
@@ -38,9 +30,8 @@ def running_name(entry: str) -> str:
 
 
 def globals_of(entry: str, *, traced: bool) -> str:
-    """Return the variables of a counted module: the cell, the totals and the cycles."""
+    """Return the variables of a counted module: whether it runs, the totals and the cycles."""
     rows = [
-        f"@{cell_name(entry)} = global ptr null",
         f"@{running_name(entry)} = global i64 0",
         "@bfsim.totals = internal global ptr null",
         "@bfsim.cclk = internal global i64 0",
@@ -70,11 +61,10 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
 
 
 def entry_point(function: Function, program: Program, entry: str, *, traced: bool, checked: bool) -> str:
-    """Return the entry point of `function`: call it, settle what its callees counted, return the cycles."""
+    """Return the entry point of `function`: call it, settle what its callees counted, leave the cycles and the value."""
     counters = program.counters
     rows = [
         f"  %counts = alloca [{max(1, len(counters))} x i64]",
-        f"  %arguments = load ptr, ptr @{cell_name(entry)}",
         "  %totals = load ptr, ptr %arguments",
         "  store ptr %totals, ptr @bfsim.totals",
         "  store i64 0, ptr @bfsim.cclk",
@@ -88,7 +78,6 @@ def entry_point(function: Function, program: Program, entry: str, *, traced: boo
         slot += 1
         return f"%a{slot - 1}"
 
-    refused = "false"
     for parameter in function.parameters:
         if isinstance(parameter.type, ArrayType):
             values.append(f"ptr {take('ptr')}")
@@ -101,16 +90,9 @@ def entry_point(function: Function, program: Program, entry: str, *, traced: boo
                 f"  {word}.float = bitcast i32 {word}.low to float",
             ]
             values.append(f"float {word}.float")
-            continue
-        rows += [
-            f"  {word}.low = trunc i64 {word} to i32",
-            f"  {word}.wide = {'sext' if parameter.type.signed else 'zext'} i32 {word}.low to i64",
-            f"  {word}.differs = icmp ne i64 {word}, {word}.wide",
-            f"  {word}.refused = or i1 {refused}, {word}.differs",
-        ]
-        values.append(f"i32 {word}.low")
-        refused = f"{word}.refused"
-    rows += [f"  br i1 {refused}, label %refuse, label %accept", "refuse:", f"  ret i64 {REFUSED}", "accept:"]
+        else:
+            rows.append(f"  {word}.low = trunc i64 {word} to i32")
+            values.append(f"i32 {word}.low")
     rows += _begin(entry, checked=checked)
     if traced:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
@@ -131,17 +113,28 @@ def entry_point(function: Function, program: Program, entry: str, *, traced: boo
     else:
         rows.append(f"  call void {call}")
     if function.result:
-        rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
-        rows.append("  store i64 %wide, ptr %result")
+        rows += _leave("%wide", VALUE)
     rows += [
         *_callees(called, counters),
         f"  store volatile i64 0, ptr @{running_name(entry)}",
         "  %cclk = load i64, ptr @bfsim.cclk",
-        "  ret i64 %cclk",
+        f"  %issue = and i64 %cclk, {(1 << STALL_SHIFT) - 1}",
+        f"  %stall = lshr i64 %cclk, {STALL_SHIFT}",
+        *_leave("%issue", ISSUE_CCLK),
+        *_leave("%stall", STALL_CCLK),
+        "  ret i64 0",
     ]
     body = "\n".join(rows)
     head = "declare i32 @_setjmp(ptr) returns_twice\n" if checked else ""
-    return f"{head}define i64 @{entry}() {{\n{body}\n}}\n"
+    return f"{head}define i64 @{entry}(ptr %data, ptr %arguments, ptr %left) {{\n{body}\n}}\n"
+
+
+def _leave(value: str, number: int) -> list[str]:
+    """Leave one of the numbers of a call."""
+    return [
+        f"  {value}.at = getelementptr i64, ptr %left, i64 {number}",
+        f"  store i64 {value}, ptr {value}.at",
+    ]
 
 
 def _begin(entry: str, *, checked: bool) -> list[str]:

@@ -22,7 +22,7 @@ from bfsim.kernel.function import Function
 from bfsim.kernel.guards import Guarded
 from bfsim.kernel.intrinsics.meaning import defined
 from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, STEPPING, read_module
-from bfsim.kernel.tracing import ROUTINES, SITE, Tracing
+from bfsim.kernel.tracing import CLOCK, ROUTINES, SITE, Tracing, hand_clock, take_clock
 
 # [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
 # for what it inlines there, and the program runs no faster.
@@ -130,6 +130,8 @@ class _Rewriter:
             yield row.split(";", maxsplit=1)[0]
             if self.at_first_block:
                 yield from self._allocations()
+                if self.tracing:
+                    yield from self.tracing.needs(self.routine)
             self.here = self.places.get((self.routine, found.group(1)), [])
             if self.tracing:
                 self.tracing.begin(self.routine, found.group(1))
@@ -152,6 +154,8 @@ class _Rewriter:
         if row.startswith("  ret "):
             self.exits += 1
             is_top = self.routine == self.top
+            if self.tracing:
+                yield from hand_clock(f"exit{self.exits}")
             yield from self._leave(f".exit{self.exits}", is_top=is_top)
         if self.tracing:
             yield from self.tracing.at(row)
@@ -168,7 +172,10 @@ class _Rewriter:
         yield f"  {table} = getelementptr i64, ptr {TABLE}, i64 {offset.counter}"
         if self.tracing:
             yield f"  {site} = add i64 {SITE}, {offset.site}"
+            yield from hand_clock(f"call{self.calls}")
         yield _with(row, f"@{callee}(", self._handed(table, site))
+        if self.tracing:
+            yield from take_clock(f"return{self.calls}")
 
     def _handed(self, table: str, site: str) -> str:
         """What a routine is handed behind its own arguments."""
@@ -278,9 +285,9 @@ def _pass_time(here: list[_NumberedCounter], terminator: str) -> list[str]:
             amount = f"{name}.amount"
             rows += [*before, f"  {amount} = select i1 {truth}, i64 {cclk}, i64 0"]
         rows += [
-            f"  {name}.old = load i64, ptr @bfsim.clock",
+            f"  {name}.old = load i64, ptr {CLOCK}",
             f"  {name}.new = add i64 {name}.old, {amount}",
-            f"  store i64 {name}.new, ptr @bfsim.clock",
+            f"  store i64 {name}.new, ptr {CLOCK}",
         ]
     return rows
 

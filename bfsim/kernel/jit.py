@@ -19,20 +19,17 @@ from bfsim.kernel import crashes, keys
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costs import Costs, costs_of
 from bfsim.kernel.counters import Counter
-from bfsim.kernel.entry import cell_name, running_name
+from bfsim.kernel.entry import running_name
 from bfsim.kernel.function import Function
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.machine_code import Effort
 
-ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
-
 
 @dataclass(frozen=True, slots=True)
 class CompiledKernel:
-    """A kernel ready to run. `entry()` returns the cycles of a call (see `entry`); `cell` holds the address of its arguments."""
+    """A kernel ready to run: the address of its entry point (see `entry`)."""
 
-    entry: ctypes._CFunctionType
-    cell: ctypes.c_int64
+    entry: int
     program: Program
     failure: Callable[[], KernelError]
     """Returns what a guard has noted in the last call; see `guards`."""
@@ -86,8 +83,7 @@ def compile_kernel(
         machine_code.add(code)
     crashes.watch(machine_code.address_of(running_name(entry)), function)
     return CompiledKernel(
-        ENTRY(machine_code.address_of(entry)),
-        ctypes.c_int64.from_address(machine_code.address_of(cell_name(entry))),
+        machine_code.address_of(entry),
         program,
         partial(_failure, function, profile, entry),
         (*function.callees(), function),

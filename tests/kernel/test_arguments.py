@@ -105,6 +105,34 @@ def test_a_prepared_call_keeps_its_arrays_alive() -> None:
     assert [call.run((None,)).value for call in calls] == [10_000 * n for n in range(8)]
 
 
+@kernel
+def levels(row: u8[:], first: u8, second: i16) -> i16:
+    row[0] = first
+    return second - 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        ((None, 256, 0), "first must be an int in 0..255, not 256"),
+        ((None, -1, 0), "first must be an int in 0..255, not -1"),
+        ((None, 0, 1 << 15), "second must be an int in -32768..32767, not 32768"),
+        ((None, 0, 1 << 70), "second must be an int in -32768..32767, not 1180591620717411303424"),
+        ((None, 0, 1.0), "second must be an int in -32768..32767, not 1.0"),
+        ((None, 0), "levels must get row, first, second, not 2 arguments"),
+    ],
+)
+def test_a_prepared_call_refuses_what_its_types_do_not_hold(arguments: tuple[Any, ...], what: str) -> None:
+    """As the call of a kernel does, and nothing is run; the next call is as ever."""
+    code, row = levels.compile(VDSP_O2), np.full(4, 9, np.uint8)
+    call = levels.prepare(code, [row], code.new_totals())
+    with pytest.raises(KernelError, match=re.escape(what)):
+        call.run(arguments)
+    assert row[0] == 9
+    assert call.run((None, 255, -(1 << 15) + 1)).value == -(1 << 15)
+    assert row[0] == 255
+
+
 def test_totals_add_up_over_calls() -> None:
     """The totals that a call was prepared with hold the events of all its runs; each run reports its own cycles."""
     code = total.compile(VDSP_O2)

@@ -10,18 +10,18 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.caller import Kind
-from bfsim.blackfin.calling import Argument, Counts, Log, bound_call
+from bfsim.blackfin.calling import Taken
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import catch_always
-from bfsim.blackfin.left import FAILED, NO_ROOM, WORD_BITS, Left, Result
+from bfsim.blackfin.left import FAILED
+from bfsim.blackfin.object_calls import Counts, subroutine_call
 from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, Subroutine, placed
 from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.kernel import crashes
-from bfsim.kernel.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject
-from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
+from bfsim.kernel.python_calls import Check, left_by, log_of, words_of
 from bfsim.kernel.work import Work
 
 
@@ -35,7 +35,7 @@ class ObjectCall:
         self,
         code: CompiledObject,
         arrays: Sequence[NDArray[Any]],
-        check: Callable[[Sequence[object]], None],
+        check: Check,
         totals: NDArray[np.int64],
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
@@ -57,7 +57,7 @@ class ObjectCall:
         else:
             from_host = space.window(memory) - memory.ctypes.data
             addresses = [each.ctypes.data + from_host for each in arrays]
-        log = None
+        trace, followed = None, []
         if access_trace:
             followed = [
                 Followed(address, array.nbytes, array.ctypes.data, first_site + number)
@@ -67,62 +67,36 @@ class ObjectCall:
             if stack is not None:
                 followed.append(_followed_stack(stack, first_site + len(arrays)))
             trace = block_of(access_trace.address(), followed)
-            logged, before, room = (access_trace.address_of(word) for word in (ENTRIES, KEPT, ROOM))
-            log = Log(ctypes.addressof(trace), logged, before, room, (trace, access_trace))
         _catch_faults()
-        work = Work(0, 0)  # one for all runs: to make it takes Python longer than to run a short kernel
-        left = Left(
-            work, work.at, *_result(function), partial(_refuse, check, code.subroutine, access_trace, work)
-        )
-        counts = Counts(totals[: len(code.order)], code.order)
-        given, taken = len(function.parameters), _arguments(function, arrays, addresses)
         self.stays_in_l1 = access_trace is None
         """Whether no access of it can leave L1."""
-        kept = arrays, memory
-        self.run: Callable[[Sequence[Any]], Work] = bound_call(
-            code.subroutine, taken, given, parts, counts, left, log, kept
+        self.run: Callable[[Sequence[Any]], Work] = subroutine_call(
+            code.subroutine,
+            _arguments(function, arrays, addresses),
+            len(function.parameters),
+            parts,
+            Counts(totals[: len(code.order)], code.order),
+            left_by(function, access_trace, check, partial(_refuse, code.subroutine)),
+            ctypes.addressof(trace) if trace else 0,
+            log_of(access_trace),
+            kept=(arrays, memory, trace, access_trace),
         )
         """Runs the code now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
 
 
-def _refuse(
-    check: Callable[[Sequence[object]], None], subroutine: Subroutine, access_trace: AccessTrace | None, work: Work,
-    arguments: Sequence[object],
-) -> NoReturn:  # fmt: skip
-    """Raise KernelError for a call that failed: `work` says why."""
-    if access_trace and work.issue_cclk == NO_ROOM:
-        access_trace.check_room(work.accesses)
-    check(arguments)
-    subroutine.refuse(Event(FAILED - work.issue_cclk))
-
-
-def _result(function: Function) -> tuple[Result, int]:
-    """Return what R0 is when a function returns, and of how many bits: of a narrow type it has the lower ones."""
-    kind = function.result
-    if isinstance(kind, IntType):
-        return (Result.SIGNED if kind.signed else Result.UNSIGNED), kind.bits
-    return (Result.FLOAT if kind else Result.NONE), WORD_BITS
+def _refuse(subroutine: Subroutine, failure: int) -> NoReturn:
+    """Raise KernelError for the event that ended a call."""
+    subroutine.refuse(Event(FAILED - failure))
 
 
 def _arguments(
     function: Function, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
-) -> list[Argument]:
+) -> list[int | Taken]:
     """Return what the code takes: of an array its address, and behind the parameters the lengths that it asks for."""
     places = iter(addresses)
-    found = []
-    for each in function.parameters:
-        if isinstance(each.type, ArrayType):
-            found.append(_fixed(next(places)))
-        elif isinstance(each.type, FloatType):
-            found.append(Argument(Kind.FLOAT, *u32.bounds))
-        else:
-            found.append(Argument(Kind.INTEGER, *each.type.bounds))
     named = zip(function.array_names, arrays, strict=True)
-    return found + [_fixed(len(array)) for name, array in named if name in function.measured]
-
-
-def _fixed(value: int) -> Argument:
-    return Argument(Kind.FIXED, value, value)
+    lengths = (len(array) for name, array in named if name in function.measured)
+    return [*words_of(function, 0, lambda: [next(places)]), *lengths]
 
 
 @cache

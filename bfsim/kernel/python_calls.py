@@ -1,0 +1,59 @@
+"""What machine code takes from a call of Python's, and what it leaves, by what a kernel declares (`blackfin.calling`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn
+
+from bfsim.blackfin.caller import Kind
+from bfsim.blackfin.calling import Log, Taken
+from bfsim.blackfin.left import NO_ROOM, WORD_BITS, Left, Result
+from bfsim.kernel.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
+from bfsim.kernel.function import Function
+from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
+from bfsim.kernel.work import Work
+
+Check = Callable[[Sequence[object]], None]
+"""Raises the error when the arguments of a call are wrong."""
+
+
+def taken_from(position: int, kind: IntType | FloatType, word: int) -> Taken:
+    """Return how the argument at a position is taken, into a word."""
+    if isinstance(kind, FloatType):
+        return Taken(position, word, Kind.FLOAT, *u32.bounds)
+    return Taken(position, word, Kind.INTEGER, *kind.bounds)
+
+
+def words_of(function: Function, first: int, array: Callable[[], Sequence[int]]) -> list[int | Taken]:
+    """Return what is handed over for the parameters, from word `first` on: the next `array` in so many words, and each number in one."""
+    words: list[int | Taken] = []
+    for position, each in enumerate(function.parameters):
+        if isinstance(each.type, ArrayType):
+            words += array()
+        else:
+            words.append(taken_from(position, each.type, first + len(words)))
+    return words
+
+
+def left_by(
+    function: Function, access_trace: AccessTrace | None, check: Check, refuse: Callable[[int], NoReturn]
+) -> Left:
+    """Return what a call leaves. One that fails raises KernelError: with what is wrong with its arguments, else by `refuse`, which is told why."""
+    work = Work(0, 0)  # one for all runs: to make it takes Python longer than to run a short kernel
+
+    def fail(arguments: Sequence[Any]) -> NoReturn:
+        if access_trace and work.issue_cclk == NO_ROOM:
+            access_trace.check_room(work.accesses)
+        check(arguments)
+        refuse(work.issue_cclk)
+
+    kind, bits = function.result, WORD_BITS
+    result = Result.FLOAT if kind else Result.NONE
+    if isinstance(kind, IntType):
+        result, bits = (Result.SIGNED if kind.signed else Result.UNSIGNED), kind.bits
+    return Left(work, work.at, result, bits, fail)
+
+
+def log_of(access_trace: AccessTrace | None) -> Log | None:
+    """Return where accesses are logged, if they are."""
+    return Log(*map(access_trace.address_of, (ENTRIES, KEPT, ROOM))) if access_trace else None
