@@ -16,7 +16,7 @@ from functools import cache
 from bfsim import machine_code
 from bfsim.blackfin.address_space import SPAN_BYTES
 from bfsim.blackfin.event import Event
-from bfsim.blackfin.native_code import native_code
+from bfsim.machine_code.native_code import native_code
 
 RUNNER = f"""
 @bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16

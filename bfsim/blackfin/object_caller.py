@@ -8,14 +8,14 @@ from __future__ import annotations
 from functools import cache
 
 from bfsim import machine_code
-from bfsim.blackfin.caller import field, loop
 from bfsim.blackfin.event import Event
-from bfsim.blackfin.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
-from bfsim.blackfin.native_code import native_code
 from bfsim.blackfin.processor import OUTSIDE
 from bfsim.blackfin.registers import SLOTS
 from bfsim.blackfin.subroutines import REGISTERS
 from bfsim.blackfin.subroutines import RESULT as RESULT_REGISTER
+from bfsim.machine_code.caller import field, loop
+from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
+from bfsim.machine_code.native_code import native_code
 
 (
     RUN, CODE, MEMORY, STATE, COUNTS, COUNTED,  # what runs native code, the code, its memory, registers and counts, and how many these are

@@ -15,12 +15,12 @@ from bfsim import machine_code, store
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.native_code import native_code
 from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.errors import BfsimError
 from bfsim.machine_code import Effort
+from bfsim.machine_code.native_code import native_code
 
 if TYPE_CHECKING:
     from bfsim.blackfin.blocks import Code

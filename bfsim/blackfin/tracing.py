@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from bfsim import machine_code
-from bfsim.blackfin.native_code import native_code
+from bfsim.machine_code.native_code import native_code
 
 TRACER = "bfsim_trace_object"
 IR = f"""

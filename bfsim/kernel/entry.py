@@ -1,6 +1,6 @@
 """The entry point of a compiled kernel: what is called for Python, and how events become totals and cycles.
 
-An entry is called by `blackfin.caller` with the address of its arguments and of the numbers that it leaves: issue and interlock cycles
+An entry is called by `machine_code.caller` with the address of its arguments and of the numbers that it leaves: issue and interlock cycles
 of the call, and its value. Its arguments are 64-bit words: the address of the totals (one word per counter), then pointer and length of
 each array, each integer (or the bits of a float), and in traced kernels the access_trace's state and the number of their first site.
 It returns 0. A guard that fails comes back to it from wherever it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bfsim.blackfin.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType
+from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 
 FIRST_ARGUMENT = 1
 """The first word of the arguments behind the totals."""

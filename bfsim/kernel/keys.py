@@ -80,9 +80,9 @@ def compiled_with(function: Function, profile: CompilerProfile) -> tuple[Functio
 
 
 def sources() -> list[Path]:
-    """Files that decide what a kernel becomes: all of this package, what instructions do, and what makes its IR machine code."""
-    packages = (Path(__file__).parent, Path(blackfin.__file__).parent)
-    return [*(path for each in packages for path in sorted(each.rglob("*.py"))), Path(machine_code.__file__)]
+    """Files that decide what a kernel becomes: all of this package, what instructions do, and what makes its IR machine code and calls it."""
+    packages = (Path(__file__), Path(blackfin.__file__), Path(machine_code.__file__))
+    return [path for each in packages for path in sorted(each.parent.rglob("*.py"))]
 
 
 @cache

@@ -9,13 +9,13 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.calling import Called, Taken, bound_call
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.kernel.python_calls import Check, left_by, log_of, words_of
 from bfsim.kernel.work import Work
+from bfsim.machine_code.calling import Called, Taken, bound_call
 
 
 class PreparedCall:

@@ -1,17 +1,17 @@
-"""What machine code takes from a call of Python's, and what it leaves, by what a kernel declares (`blackfin.calling`)."""
+"""What machine code takes from a call of Python's, and what it leaves, by what a kernel declares (`machine_code.calling`)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
-from bfsim.blackfin.caller import Kind
-from bfsim.blackfin.calling import Log, Taken
-from bfsim.blackfin.left import NO_ROOM, WORD_BITS, Left, Result
 from bfsim.kernel.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
 from bfsim.kernel.work import Work
+from bfsim.machine_code.caller import Kind
+from bfsim.machine_code.calling import Log, Taken
+from bfsim.machine_code.left import NO_ROOM, WORD_BITS, Left, Result
 
 Check = Callable[[Sequence[object]], None]
 """Raises the error when the arguments of a call are wrong."""

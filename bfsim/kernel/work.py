@@ -8,8 +8,8 @@ from typing import NoReturn
 
 import numpy as np
 
-from bfsim.blackfin import left
 from bfsim.errors import FirmwareError
+from bfsim.machine_code import left
 
 FLOAT = struct.Struct("<f")
 ISSUE_CCLK, STALL_CCLK, ACCESSES = left.ISSUE_CCLK, left.STALL_CCLK, left.ACCESSES

@@ -106,7 +106,7 @@ def test_a_prepared_call_keeps_its_arrays_alive() -> None:
 
 
 @kernel
-def levels(row: u8[:], first: u8, second: i16) -> i16:
+def levels(row: u8[:], first: u32, second: i32) -> i32:
     row[0] = first
     return second - 1
 
@@ -114,11 +114,11 @@ def levels(row: u8[:], first: u8, second: i16) -> i16:
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
-        ((None, 256, 0), "first must be an int in 0..255, not 256"),
-        ((None, -1, 0), "first must be an int in 0..255, not -1"),
-        ((None, 0, 1 << 15), "second must be an int in -32768..32767, not 32768"),
-        ((None, 0, 1 << 70), "second must be an int in -32768..32767, not 1180591620717411303424"),
-        ((None, 0, 1.0), "second must be an int in -32768..32767, not 1.0"),
+        ((None, 1 << 32, 0), "first must be an int in 0..4294967295, not 4294967296"),
+        ((None, -1, 0), "first must be an int in 0..4294967295, not -1"),
+        ((None, 0, 1 << 31), "second must be an int in -2147483648..2147483647, not 2147483648"),
+        ((None, 0, 1 << 70), "second must be an int in -2147483648..2147483647, not 1180591620717411303424"),
+        ((None, 0, 1.0), "second must be an int in -2147483648..2147483647, not 1.0"),
         ((None, 0), "levels must get row, first, second, not 2 arguments"),
     ],
 )
@@ -129,7 +129,7 @@ def test_a_prepared_call_refuses_what_its_types_do_not_hold(arguments: tuple[Any
     with pytest.raises(KernelError, match=re.escape(what)):
         call.run(arguments)
     assert row[0] == 9
-    assert call.run((None, 255, -(1 << 15) + 1)).value == -(1 << 15)
+    assert call.run((None, (1 << 32) - 1, -(1 << 31) + 1)).value == -(1 << 31)
     assert row[0] == 255
 
 

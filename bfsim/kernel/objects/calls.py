@@ -10,10 +10,8 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.calling import Taken
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import catch_always
-from bfsim.blackfin.left import FAILED
 from bfsim.blackfin.object_calls import Counts, subroutine_call
 from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, Subroutine, placed
 from bfsim.blackfin.tracing import Followed, block_of
@@ -23,6 +21,8 @@ from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject
 from bfsim.kernel.python_calls import Check, left_by, log_of, words_of
 from bfsim.kernel.work import Work
+from bfsim.machine_code.calling import Taken
+from bfsim.machine_code.left import FAILED
 
 
 class ObjectCall:

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from bfsim.kernel import access_trace as log
 from bfsim.kernel import work as numbers
-from bfsim.kernel.built_in import built_in
 from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
+from bfsim.machine_code.built_in import built_in
 
 (PLAN, FROM, TO, NUMBER, NBYTES) = range(5)
 """Of a copy: its plan, NONE if it has none yet, where it begins to read and to write, what is noted behind that, and how long it is."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from bfsim import machine_code
-from bfsim.kernel.built_in import built_in
+from bfsim.machine_code.built_in import built_in
 
 DIGITS = """
 define i64 @digits_of_four(i64 %a, i64 %b, i64 %c, i64 %d) {

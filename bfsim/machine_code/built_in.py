@@ -7,7 +7,7 @@ from functools import cache
 from struct import pack
 
 from bfsim import machine_code
-from bfsim.blackfin.native_code import native_code
+from bfsim.machine_code.native_code import native_code
 
 
 def built_in(address: int, taken: int, *bound: int) -> Callable[..., int]:

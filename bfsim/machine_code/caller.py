@@ -10,8 +10,8 @@ from enum import IntEnum
 from functools import cache
 
 from bfsim import machine_code
-from bfsim.blackfin.left import ACCESSES, NO_ROOM, UNFIT, VALUE, Result
-from bfsim.blackfin.native_code import native_code
+from bfsim.machine_code.left import ACCESSES, NO_ROOM, UNFIT, VALUE, Result
+from bfsim.machine_code.native_code import native_code
 
 (
     CALLED, DATA,  # what is called, and what it is told besides

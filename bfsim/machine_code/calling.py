@@ -10,8 +10,8 @@ from struct import pack
 from typing import Any, NamedTuple
 
 from bfsim import machine_code
-from bfsim.blackfin import caller as w
-from bfsim.blackfin.left import VALUE_NAME, WORD_BITS, Left
+from bfsim.machine_code import caller as w
+from bfsim.machine_code.left import VALUE_NAME, WORD_BITS, Left
 
 
 class Called(NamedTuple):
