@@ -140,8 +140,7 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         module = own.modules.get(place)
         if module is None:
             module, own = import_own(*located(parted(name, FIRMWARE.must_be)[0]))
-        meant = [getattr(module, attribute, None)] if attribute else vars(module).values()
-        found = [each for each in meant if isinstance(each, Kernel)]
+        found = _kernels_called(attribute, module)
     if len(found) != 1:
         advice = (
             _apart(found, place) if found else _nearest(attribute, {each.name for each in kernels_of(own)})
@@ -149,6 +148,15 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         told = cut(name) or shown(name)  # an empty word would not be seen
         raise FirmwareError(f"{told} must name one kernel, but names {len(found) or 'none'}; {advice}")
     return found[0]
+
+
+def _kernels_called(name: str, module: ModuleType) -> list[Kernel]:
+    """Return the kernel that a module has under a name, or else those of that name, as a profile has it; all without one."""
+    kernels = list({each: None for each in vars(module).values() if isinstance(each, Kernel)})
+    named = getattr(module, name, None) if name else None
+    if isinstance(named, Kernel):
+        return [named]
+    return [each for each in kernels if each.name == name] if name else kernels
 
 
 def kernels_of(own: OwnModules) -> set[Kernel]:

@@ -12,6 +12,9 @@ from bfsim.errors import KernelError
 FILE = Path(__file__).parent / "blackfin" / "data" / "prototypes.o"
 SUM = "int sum(const unsigned char *row, int n)"
 STEP = "void step(const short int *gains, struct state *state, void *scratch, float by, enum pace pace)"
+WIDE = "double wide(double x, int n)"
+TICKS = "long long int ticks(int n)"
+AT = "int at(struct state state)"
 STEPPED = {"gains": i16[:], "state": i32[:], "scratch": u8[:], "by": f32, "pace": i32}
 
 
@@ -35,6 +38,31 @@ def test_what_c_has_otherwise_is_refused(name: str, declared: dict[str, object],
         kernel_from(FILE, name, **declared)
     assert why in str(refused.value)
     assert str(refused.value).endswith(f"; in prototypes.o it is `{SUM if name == 'sum' else STEP}`")
+
+
+@pytest.mark.parametrize(
+    ("name", "declared", "what", "prototype"),
+    [
+        ("wide", {"x": f32, "n": i32, "result": f32}, "x of wide", WIDE),
+        ("ticks", {"n": i32, "result": i32}, "the result of ticks", TICKS),
+        ("at", {"state": i32, "result": i32}, "state of at", AT),
+    ],
+)
+def test_what_takes_more_than_a_register_is_refused(
+    name: str, declared: dict[str, object], what: str, prototype: str
+) -> None:
+    """A double is in two registers, which no declaration says: half of it would be taken for a float, and 3.0 / 2 be 1e-19."""
+    with pytest.raises(KernelError) as refused:
+        kernel_from(FILE, name, **declared)
+    must_be = f"{what} must be a number of at most 32 bits or a pointer in C, not "
+    assert str(refused.value).startswith(must_be)
+    assert str(refused.value).endswith(f"; in prototypes.o it is `{prototype}`")
+
+
+def test_an_array_of_doubles_is_told_from_one_of_floats() -> None:
+    """It said that the array must be f32[:], not f32[:]."""
+    with pytest.raises(KernelError, match=r"values of halve must be an array of 64-bit floats, not f32\[:\]"):
+        kernel_from(FILE, "halve", values=f32[:], n=i32)
 
 
 @pytest.mark.parametrize(

@@ -230,6 +230,14 @@ def calls(row: u8[:], out: i32[:]) -> i32:
         load_kernel("fw_calls:calls", f"{tmp_path}/fw_calls.py:firmware")
 
 
+def test_a_kernel_is_found_by_the_name_that_a_profile_has(tmp_path: Path) -> None:
+    """By that of the function, too, where Python calls it otherwise: "sums must name one kernel, but names none; the nearest is sums"."""
+    text = SUMS.replace("sums =", "windows =")
+    (tmp_path / "fw_windows.py").write_text(f"from bfsim.api import u8\n{text}")
+    for name in ("windows", "sums"):
+        assert load_kernel(f"{tmp_path}/fw_windows.py:{name}", "tinyphoon").name == "sums"
+
+
 def test_a_source_needs_a_compiler_or_kept_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What would be compiled by what, and how one gets it."""
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))

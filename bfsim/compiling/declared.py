@@ -10,14 +10,17 @@ from bfsim.errors import KernelError
 from bfsim.kernel.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, Number
 
+REGISTER_BYTES = 4
+ONE_REGISTER = "a number of at most 32 bits or a pointer in C"
+
 
 def require_declared(
     image: Image, place: str, name: str, parameters: Sequence[Parameter], result: Number | None
 ) -> None:
     """Raise KernelError unless parameters and result are as C has them, where the debugging information tells.
 
-    A number may be of another size than C's, an array be of numbers where C has a struct or void, a pointer be the number 0,
-    and a result be left alone.
+    A number may be shorter in C, an array be of numbers where C has a pointer to a struct or to void, a pointer be the number 0,
+    and a result be left alone. What takes more than one register in C, a number of 64 bits or a struct itself, cannot be declared.
     """
     prototype = prototype_of(image, name)
     if prototype is None:
@@ -29,17 +32,25 @@ def require_declared(
 
 def _differences(c: CPrototype, parameters: Sequence[Parameter], result: Number | None) -> Iterator[str]:
     for (name, kind), declared in zip(c.parameters, parameters, strict=False):
+        called = declared.name if declared.name == name else f"{declared.name} ({name} in C)"
+        if not _is_one_register(kind):
+            yield f"{called} of {c.name} must be {ONE_REGISTER}, not {kind.text}"
         must_be = _what_fits(kind, declared.type)
         if must_be:
-            called = declared.name if declared.name == name else f"{declared.name} ({name} in C)"
             yield f"{called} of {c.name} must be {must_be}, not {declared.type}"
     if len(c.parameters) != len(parameters):
         told = ", ".join(each.name for each in parameters) or "none"
         yield f"{c.name} must be declared with {_counted(len(c.parameters))}, not {len(parameters)} ({told})"
     if result is not None and c.result is None:
         yield f"{c.name} must have no `result`, for it returns nothing"
+    elif result is not None and c.result is not None and not _is_one_register(c.result):
+        yield f"the result of {c.name} must be {ONE_REGISTER}, not {c.result.text}"
     elif result is not None and c.result is not None and isinstance(result, FloatType) != c.result.is_float:
         yield f"the result of {c.name} must be {'f32' if c.result.is_float else 'an integer'}, not {result}"
+
+
+def _is_one_register(kind: CType) -> bool:
+    return kind.target is not None or 0 < kind.nbytes <= REGISTER_BYTES
 
 
 def _counted(count: int) -> str:
@@ -62,4 +73,4 @@ def _elements_that_fit(target: CType, declared: ArrayType) -> str:
     is_same = element.nbytes == target.nbytes and isinstance(element, FloatType) == target.is_float
     if is_same or target.target is not None or not target.nbytes:
         return ""
-    return "f32[:]" if target.is_float else f"an array of {8 * target.nbytes}-bit integers"
+    return f"an array of {8 * target.nbytes}-bit {'floats' if target.is_float else 'integers'}"

@@ -214,10 +214,13 @@ def _rest_of(output: OutputSection, segment: Segment) -> Iterator[str]:
             if each.expression.is_number and each.symbol != ".":
                 yield f"         {_assigned(each)}"
             continue
+        inputs = [_input(source) for source in each.inputs if source.files]  # a filter may leave no file
+        if not inputs:
+            continue
         if each.align != align:
             align = each.align
             yield f"         INPUT_SECTION_ALIGN({align})"
-        yield f"         INPUT_SECTIONS({' '.join(map(_input, each.inputs))})"
+        yield f"         INPUT_SECTIONS({' '.join(inputs)})"
     yield f"      }} > {_plain(segment)}"
 
 

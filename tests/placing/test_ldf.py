@@ -112,7 +112,8 @@ SHARED_MEMORY { MASTERS(p0 p1)
 PROCESSOR p0 {
    MEMORY { DATA { START(0xFF800000) LENGTH(16K) } CODE { START(0xFFA00000) LENGTH(16K) } PAD { START(0xFFB00000) LENGTH(4K) } }
    SECTIONS {
-      data { INPUT_SECTION_ALIGN(8) INPUT_SECTIONS_PIN($OBJECTS(L1_data_a)) RESERVE(heap, heap_length, 1K, 8) } > DATA
+      data { INPUT_SECTIONS($OBJECTS{prefersMem("internal")}(data1)) INPUT_SECTION_ALIGN(8) INPUT_SECTIONS_PIN($OBJECTS(L1_data_a))
+             INPUT_SECTIONS($OBJECTS{prefersMem("internal")}(bsz) spare.doj(bsz)) RESERVE(heap, heap_length, 1K, 8) } > DATA
       code { INPUT_SECTIONS($OBJECTS(program)) } > CODE
       pad { INPUT_SECTIONS($OBJECTS(L1_scratch)) } > PAD
       rest { INPUT_SECTIONS($OBJECTS(L1_* data1 bsz)) RESERVE_EXPAND(pool, pool_length = 0, 64, 32) } > L2
@@ -128,7 +129,7 @@ PROCESSOR p1 {
 
 
 def test_an_odd_ldf_comes_back(tmp_path: Path) -> None:
-    """Segments of one name on each core or of no memory, reserves that cut memory, take the rest or expand, pins, quotes."""
+    """Segments of one name on each core or of no memory, reserves that cut memory, take the rest or expand, pins, quotes, filters."""
     board = BOARDS["cm-bf561"]
     (tmp_path / "odd.ldf").write_text(ODD)
     script = read_placement(tmp_path / "odd.ldf", board, {}, ())
