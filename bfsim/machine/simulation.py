@@ -7,9 +7,11 @@ if somebody waits for it.
 
 from __future__ import annotations
 
+from heapq import heappush
 from typing import Protocol
 
 import simpy
+from simpy.events import NORMAL, EventPriority
 
 from bfsim.machine.timeline import Timeline
 
@@ -55,6 +57,18 @@ class Simulation(simpy.Environment):
         event._ok = True  # noqa: SLF001  # as simpy.Timeout does
         event._value = None  # noqa: SLF001
         self.schedule(event, delay=max(0, tick - self.tick))
+
+    def schedule(
+        self, event: simpy.Event, priority: EventPriority = NORMAL, delay: simpy.core.SimTime = 0
+    ) -> None:
+        """Put an event on the queue; but Ctrl-C, which SimPy would keep as the failure of a process, ends the simulation at once.
+
+        Until that failure had its turn, another core could begin what does not end. (To call SimPy's own for the rest takes as long as
+        an event does.)
+        """
+        if not event._ok and isinstance(event._value, KeyboardInterrupt):  # noqa: SLF001  # the process has not happened yet
+            raise event._value  # noqa: SLF001
+        heappush(self._queue, (self._now + delay, priority, next(self._eid), event))
 
     def step(self) -> None:
         """Play the bus up to the next event, or to an end before it that somebody waits for; then process the event."""

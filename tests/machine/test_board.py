@@ -156,6 +156,22 @@ def test_ctrl_c_reports_the_frames_done(core: str, how: Any) -> None:
     assert [each.index for each in outcome.frames] == [0, 1, 2]
 
 
+def test_after_ctrl_c_no_core_begins_anything() -> None:
+    """What it began might not end: Ctrl-C and SIGTERM ended the endless loop of one core, and the other one went into its own."""
+    began = []
+
+    def interrupted(core: Core) -> Generator[Any, Any, None]:
+        press_it()
+        yield from core.next_frame()
+
+    def other(core: Core) -> Generator[Any, Any, None]:
+        began.append(core.name)
+        yield from core.next_frame()
+
+    outcome = run(interrupted, other, frames=1)
+    assert (outcome.interrupted, outcome.frames, began) == (True, (), [])
+
+
 def test_a_kernel_that_began_in_the_interrupted_frame_is_in_no_record() -> None:
     """Records are of the frames that are done."""
 
