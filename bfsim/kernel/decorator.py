@@ -206,7 +206,8 @@ class Kernel:
         """Raise KernelError unless there is one argument per parameter and every integer fits its type."""
         if len(arguments) != len(self.function.parameters):
             names = ", ".join(each.name for each in self.function.parameters)
-            raise KernelError(f"{self.name} must get {names}, not {len(arguments)} arguments ({self.place})")
+            counted = "1 argument" if len(arguments) == 1 else f"{len(arguments)} arguments"
+            raise KernelError(f"{self.name} must get {names}, not {counted} ({self.place})")
         for position, low, high in self._ranges:
             value = arguments[position]
             if not isinstance(value, (int, np.integer)) or not low <= value <= high:

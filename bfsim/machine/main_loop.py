@@ -8,6 +8,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.progress import Wait
+from bfsim.machine.firmware_lines import place_of
 from bfsim.machine.program import Main
 
 
@@ -30,8 +31,8 @@ class MainLoop:
             raise tasks.told(error) from error
         if not isinstance(task, Generator):
             raise FirmwareError(
-                f"core {self._core.name}: the main loop must be a generator function, not {self.main!r}: "
-                "it waits with `yield from core.next_frame()`, and runs kernels with `yield core.run(...)`"
+                f"core {self._core.name}: the main loop must be a generator function, which has a `yield` in it: it waits with "
+                f"`yield from core.next_frame()`, and runs kernels with `yield core.run(...)` ({place_of(self.main)})"
             )
         yield from tasks.perform(task)
         yield from self._parts.progress.sync()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from mmap import mmap
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,13 @@ class Row:
     def is_in_l1(self) -> bool:
         """Whether it lies in the L1 of a core."""
         return self.memory.startswith("CORE")
+
+    def __getitem__(self, where: object) -> NoReturn:
+        """Raise FirmwareError: elements and parts of a row have names of their own."""
+        raise FirmwareError(
+            f"a row of {self.buffer} must be handed to kernels whole, or as a part of it, `core.part([row], first, count)[0]`; "
+            "`row.array[0]` is one of its elements, for which a core takes no cycles"
+        )
 
     def __repr__(self) -> str:
         return f"<row of {self.buffer} at 0x{self.address:08X} in {self.memory}>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -286,11 +287,23 @@ def test_a_main_loop_that_ends_before_the_recording_is_told() -> None:
 
 
 def test_a_main_loop_without_a_yield_is_refused() -> None:
-    """A plain function is called and over."""
-    with pytest.raises(
-        FirmwareError, match="core A: the main loop must be a generator function, not <function"
-    ):
+    """A plain function is called and over; it is told by its line, and not by an address of this process."""
+    message = r"core A: the main loop must be a generator function, which has a `yield` in it: .* \(.*test_mistakes.py:\d+\)$"
+    with pytest.raises(FirmwareError, match=message):
         run(lambda core: None)  # type: ignore[arg-type,return-value]
+
+
+@pytest.mark.parametrize("what", [lambda row: row[:4], lambda row: row[0], list])
+def test_a_row_is_not_taken_apart_by_a_main_loop(what: Callable[[Any], object]) -> None:
+    """It was a TypeError, which does not say how a kernel gets a part of a row."""
+
+    def look(core: Core, frame: Frame) -> Play:
+        yield core.run(first, core.rows("single_row")[0])
+        what(core.rows("single_row")[0])
+
+    message = r"a row of single_row must be handed to kernels whole, or as a part of it, .*core.part\(.*\(.*test_mistakes.py:\d+\)$"
+    with pytest.raises(FirmwareError, match=message):
+        run(every_frame(look))
 
 
 def test_a_core_without_a_main_loop_is_told() -> None:
