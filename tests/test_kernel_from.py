@@ -244,7 +244,7 @@ def test_a_source_needs_a_compiler_or_kept_code(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(file_code, "blackfin_compiler", lambda: None)
     (tmp_path / "sums.c").write_text("int sums(void) { return 1; }")
     with pytest.raises(
-        ConfigError, match="bfin-elf-gcc must be on the PATH, for of sums.c no code of GCC 12.2.0 is kept"
+        ConfigError, match="bfin-elf-gcc must be on the PATH to compile sums.c, of which no code of GCC 12.2.0 is kept"
     ):
         sums(tmp_path, "sums.c")
 
@@ -378,6 +378,15 @@ def test_a_word_lies_at_a_multiple_of_its_bytes() -> None:
     kernel = kernel_from(DATA / "wild.o", "wild", at=i32)
     with pytest.raises(
         KernelError, match=r"_wild must run .* accesses an address that is no multiple of the 2 or 4 bytes"
+    ):
+        kernel(0x20000002)
+
+
+def test_the_line_of_an_access_that_is_not_aligned_is_told() -> None:
+    """In C nobody knows the addresses of instructions."""
+    kernel = kernel_from(DATA / "prototypes.o", "state_of", state=i32, result=i32)
+    with pytest.raises(
+        KernelError, match=r"from 0xFFA[0-9A-F]{5} on \(prototypes.c:35\) it accesses an address"
     ):
         kernel(0x20000002)
 

@@ -145,7 +145,7 @@ class Subroutine:
                 )
         elif event is Event.MISALIGNED:
             what = (
-                f"in the instructions from 0x{address:08X} on it accesses an address that is no multiple of the 2 or 4 bytes "
+                f"in the instructions from 0x{address:08X} on{self._line_at(address)} it accesses an address that is no multiple of the 2 or 4 bytes "
                 "accessed, for which the Blackfin raises an exception"
             )
         elif event is Event.UNKNOWN_TARGET:
@@ -153,6 +153,13 @@ class Subroutine:
         else:
             what = f"at 0x{address:08X} there is {event.name.lower()}"
         raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
+
+    def _line_at(self, address: int) -> str:
+        """Return the source line of the code at an address, as ` (file:line)`; nothing where the file does not tell."""
+        from bfsim.blackfin.lines import lines_of  # few calls fail
+
+        found = lines_of(self.image).at(address)
+        return f" ({found.file}:{found.line})" if found and found.line else ""
 
 
 @dataclass(frozen=True, slots=True)

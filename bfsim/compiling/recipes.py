@@ -61,7 +61,7 @@ def code_of(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str]:
         first, *others = recipe.sources
         what = f"{first} and {len(others)} more files" if others else first
         raise ConfigError(
-            f"{GCC} must be on the PATH, for of {what} no code of GCC {KEPT_COMPILER.version} is kept; {ADVICE}"
+            f"{GCC} must be on the PATH to compile {what}, of which no code of GCC {KEPT_COMPILER.version} is kept; {ADVICE}"
         )
     return found
 

@@ -15,7 +15,10 @@ from bfsim.linker.source import Place
 def check_chip(script: LinkerScript, chip: str) -> None:
     """Raise LinkError for an LDF of another chip, or with other processors than it has."""
     if script.chip != chip.upper():
-        raise LinkError(f"{script.path}: ARCHITECTURE must be {chip}, the board's chip, not {script.chip}")
+        raise LinkError(
+            f"{script.path}: ARCHITECTURE must be {chip}, the board's chip, not {script.chip}; --board takes another board, of those "
+            "that `bfsim boards` lists"
+        )
     cores = script.core_of_processor
     for block in script.blocks:
         for name in block.processors:

@@ -108,7 +108,8 @@ def test_every_blackfin_is_read(parse: Parse, chip: str) -> None:
     assert script.chip == f"ADSP-{chip}"
     assert link(script, [], chip=f"ADSP-{chip}").placements == ()
     with pytest.raises(
-        LinkError, match=rf"ARCHITECTURE must be ADSP-BF999, the board's chip, not ADSP-{chip}"
+        LinkError,
+        match=rf"ARCHITECTURE must be ADSP-BF999, the board's chip, not ADSP-{chip}; --board takes another",
     ):
         link(script, [], chip="ADSP-BF999")
 

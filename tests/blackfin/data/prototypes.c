@@ -31,3 +31,5 @@ void halve(double *values, int n)
     for (int i = 0; i < n; i++)
         values[i] /= 2;
 }
+
+int state_of(const struct state *state) { return state->at; }
