@@ -41,7 +41,8 @@ def test_code_is_made_once_for_each_compiler_and_level() -> None:
 def test_without_a_compiler_code_must_be_kept() -> None:
     """What is missing, whose code it would be, and what helps."""
     with pytest.raises(
-        ConfigError, match=r"bfin-elf-gcc must be on the PATH to compile c_kernels.c, of which no code of GCC 12"
+        ConfigError,
+        match=r"bfin-elf-gcc must be on the PATH to compile c_kernels.c, of which no code of GCC 12",
     ):
         object_code(KERNELS, KERNELS, GCC_O2, None)
 

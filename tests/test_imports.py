@@ -263,7 +263,7 @@ MACHINE = {
     },
     "symbols": {"buffers", "code", "firmware_lines", "program"},
     "loader": {"buffers", "bus", "cameras", "memories", "program", "symbols"},
-    "main_loop": {"core", "program"},
+    "main_loop": {"core", "firmware_lines", "program"},
     "finished_frames": {"calls", "main_loop"},
     "listeners": {"bus", "finished_frames", "simulation", "timeline"},
     "main_loops": {"firmware_lines", "listeners", "main_loop", "simulation"},

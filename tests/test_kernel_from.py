@@ -244,7 +244,8 @@ def test_a_source_needs_a_compiler_or_kept_code(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(file_code, "blackfin_compiler", lambda: None)
     (tmp_path / "sums.c").write_text("int sums(void) { return 1; }")
     with pytest.raises(
-        ConfigError, match="bfin-elf-gcc must be on the PATH to compile sums.c, of which no code of GCC 12.2.0 is kept"
+        ConfigError,
+        match="bfin-elf-gcc must be on the PATH to compile sums.c, of which no code of GCC 12.2.0 is kept",
     ):
         sums(tmp_path, "sums.c")
 

@@ -32,6 +32,8 @@ from bfsim.linker.script import (
 from bfsim.linker.source import Place
 from bfsim.linker.values import Key, Values
 
+PLACE_IT = "`bfsim place --ldf` with this LDF writes one in which it lies elsewhere, if there is room"
+
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
@@ -188,7 +190,7 @@ class _Linker:
         if len(waiting) > 1:
             nbytes = sum(other.nbytes for other in waiting)
             message += f"; in all {len(waiting)} symbols, {nbytes} bytes, are left without a place"
-        return LinkError(message + self._of_other_files(symbol))
+        return LinkError(f"{message}{self._of_other_files(symbol)}; {PLACE_IT}")
 
     def _not_taken(self, symbol: Symbol) -> LinkError:
         """Return the LinkError for a symbol whose input section no output section takes from its file."""

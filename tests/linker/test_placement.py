@@ -143,7 +143,9 @@ def test_pinned_sections_wait_for_their_place(parse: Parse) -> None:
     placed = link(parse(PINNED), symbols)
     homes = {p.symbol.name: p.output_section for p in placed.placements}
     assert homes == {"a": "first", "b1": "second", "c": "second", "b2": "third"}
-    with pytest.raises(LinkError, match=r"section 'second' \[li1040\]: symbol 'c2' .* 4 of 16 bytes free$"):
+    with pytest.raises(
+        LinkError, match=r"section 'second' \[li1040\]: symbol 'c2' .* 4 of 16 bytes free; `bfsim place"
+    ):
         link(parse(PINNED), [*symbols, symbol("c2", "c", 8)])
 
 

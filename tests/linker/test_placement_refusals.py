@@ -32,7 +32,7 @@ def test_out_of_memory_names_section_memory_sizes_and_lines(parse: Parse) -> Non
         r"1048576 of 1048576 bytes free; "
         r"nor in MEM_A: 56 of 256 bytes free \('a_fast', line 13\); "
         r"nor in MEM_L2: 1024 of 1024 bytes free \('a_l2', line 14\); "
-        r"in all 2 symbols, 5242880 bytes, are left without a place$"
+        r"in all 2 symbols, 5242880 bytes, are left without a place; `bfsim place --ldf` with this LDF .*$"
     )
     with pytest.raises(LinkError, match=message):
         link(parse(TWO_CORES), symbols)
