@@ -8,6 +8,7 @@ from dataclasses import fields, replace
 from functools import partial, wraps
 from inspect import signature
 from pathlib import Path
+from threading import RLock
 from types import MappingProxyType
 from typing import Any, ParamSpec, TypeVar
 
@@ -51,12 +52,17 @@ Given = ParamSpec("Given")
 Choice = TypeVar("Choice", Feed, Fidelity)
 
 
+_ONE_AT_A_TIME = RLock()
+"""Held by the thread whose run it is: kernels have variables of their own in machine code, and modules of firmware names that others may have."""
+
+
 def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
     """Return what also tells the run that it returns how to make it again."""
 
     @wraps(simulate)
     def repeatable(*arguments: Given.args, **options: Given.kwargs) -> Run:
-        done = simulate(*arguments, **options)
+        with _ONE_AT_A_TIME:
+            done = simulate(*arguments, **options)
         bound = signature(simulate).bind(*arguments, **options)
         bound.apply_defaults()
         what = {
@@ -112,7 +118,8 @@ def simulate(
     file, which is then played in place of the firmware: the same records on another board or LDF, sooner; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
     time in seconds; `on_spans` with what the cores and devices did since the last time; `on_call`
-    with each kernel and its arguments before it runs. Ctrl-C ends the run with the frames done. Raises a
+    with each kernel and its arguments before it runs. Runs of several threads come one after the other: use processes, as `bfsim sweep`
+    does. Ctrl-C ends the run with the frames done. Raises a
     BfsimError for anything that is wrong with what was given. A crash in native code ends the process, a notebook's, too;
     standard error then has the name of the kernel.
     """
