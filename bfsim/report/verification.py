@@ -30,7 +30,7 @@ def verification_report(found: Verification, top: int) -> RenderableType:
     left_out = len(found.kernels) - len(table.rows)
     note = (
         f"Issue cycles, both cores, without memory and interlocks; {found.played:,} calls "
-        f"of {len(found.kernels)} kernels were played, spread evenly over {found.frames} frame{'s' if found.frames > 1 else ''}."
+        f"of {len(found.kernels)} kernel{'s' if len(found.kernels) > 1 else ''} were played, spread evenly over {found.frames} frame{'s' if found.frames > 1 else ''}."
         + (f" {left_out} more with --top {len(found.kernels)}." if left_out else "")
     )
     return stacked(Text(verdict(found)), table, Text(note))

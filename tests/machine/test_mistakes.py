@@ -151,7 +151,7 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         (gone_line, FirmwareError, "line 0 is not in ring in_ring", 3),
         (division, FirmwareError, "core A: firmware failed with ZeroDivisionError: integer division", 2),
         (end_of_all, FirmwareError, "core A: firmware failed with SystemExit: 0", 3),
-        (float_result, FirmwareError, "core A: firmware failed with TypeError: 'float' object cannot be", 2),
+        (float_result, FirmwareError, "core A: the result share must be an integer, not 0.5; ", 2),
     ],
 )
 def test_the_message_ends_with_the_line_of_the_mistake(

@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from operator import index
 from typing import Any
 
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.types import Number
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
@@ -139,8 +139,16 @@ class Core:
         self._pictures.at(rows, columns)
 
     def publish(self, **results: int) -> None:
-        """Add numbers to the record of the current frame."""
-        self._pictures.publish(**{name: index(value) for name, value in results.items()})
+        """Add numbers to the record of the current frame. Raises FirmwareError for one that is no integer."""
+        self._pictures.publish(**{name: self._integer(name, value) for name, value in results.items()})
+
+    def _integer(self, name: str, value: int) -> int:
+        try:
+            return index(value)
+        except TypeError:
+            raise FirmwareError(
+                f"core {self.name}: the result {name} must be an integer, not {shown(value)}; with a fraction, publish it in a smaller unit"
+            ) from None
 
     def remark(self, text: str) -> None:
         """Add a sentence about the current frame to the report."""
