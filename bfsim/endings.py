@@ -72,8 +72,8 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
             else "the system must allow what bfsim asks of it"
         )
         return _mistake(f"{what}: {error.strerror or error}")
-    except (KeyboardInterrupt, click.Abort):
-        click.echo("bfsim: interrupted", err=True)
+    except (KeyboardInterrupt, click.Abort) as error:  # which may say where
+        click.echo(f"bfsim: interrupted{error}", err=True)
         return interrupted_code()
     return code if isinstance(code, int) else 0
 

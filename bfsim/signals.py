@@ -9,9 +9,10 @@ from __future__ import annotations
 import os
 import signal
 import socket
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import Event, Thread, current_thread, main_thread
+from threading import Event, Thread, current_thread, get_ident, main_thread
 from types import FrameType
 
 from bfsim.drafts import discard_all
@@ -77,10 +78,15 @@ def uninterrupted() -> Iterator[None]:
 
 
 @contextmanager
-def ending_deaf_kernels() -> Iterator[None]:
-    """Let signals end Python from inside a kernel that loops for ever: machine code, which hears of no exception."""
+def ending_deaf_kernels(line_in: Callable[[FrameType], str]) -> Iterator[None]:
+    """Let signals end Python from inside a kernel that loops for ever: machine code, which hears of no exception.
+
+    `line_in` says which line of the firmware has called what runs in a frame of Python.
+    """
     heard_here = {int(number) for number in _SIGNALS if signal.getsignal(number) is _hear}
-    if not heard_here:  # ignored, or another's: in the background, or in a debugger
+    if (
+        not heard_here or current_thread() is not main_thread()
+    ):  # ignored, or another's: in the background, or in a debugger
         yield
         return
 
@@ -88,9 +94,13 @@ def ending_deaf_kernels() -> Iterator[None]:
         while number := pressed.recv(1):  # Python's own part of a handler writes the signal's number
             if number[0] in heard_here and not _heard.wait(DEAF_S):
                 discard_all()
-                os.write(2, b"bfsim: interrupted in a kernel that does not end\n")
+                line = line_in(sys._current_frames()[main])  # noqa: SLF001  # of another thread
+                os.write(
+                    2, f"bfsim: interrupted in a kernel that does not end ({line})\n".encode(errors="replace")
+                )
                 os._exit(BY_SIGNAL + number[0])
 
+    main = get_ident()
     pressed, press = socket.socketpair()
     press.settimeout(0)
     watcher = Thread(target=watch, daemon=True)

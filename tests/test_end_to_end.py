@@ -174,40 +174,45 @@ def test_profile_by_buffer_shows_the_memories() -> None:
         assert words in result.stdout
 
 
-STOPS_IN_FRAME_3 = FIRMWARE.replace(
+STOPS_IN_A_FRAME = FIRMWARE.replace(
     "        bright = 0\n",
     """        bright = 0
-        if core.name == "A" and frame.index == 3:
+        if core.name == "A" and frame.index == {frame}:
             import time, pathlib
             pathlib.Path("begun").touch()
-            while True:
-                time.sleep(0.01)
+            while True: time.sleep(0.01)
 """,
 )
 
 
-def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
-    """An interrupted run prints what it has and exits with 130."""
-    (tmp_path / "eyes.py").write_text(STOPS_IN_FRAME_3)
-    command = [
-        sys.executable,
-        "-m",
-        "bfsim",
-        "run",
-        record(tmp_path / "drive.mcap", 5),
-        "--firmware",
-        "eyes.py",
-    ]
+def interrupted_in(frame: int, folder: Path) -> tuple[int, str, str]:
+    """Interrupt a run in a frame that does not end; return its exit code and what it has printed."""
+    (folder / "eyes.py").write_text(STOPS_IN_A_FRAME.replace("{frame}", str(frame)))
+    recording = record(folder / "drive.mcap", 5)
+    command = [sys.executable, "-m", "bfsim", "run", recording, "--firmware", "eyes.py"]
     with subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
-        while process.poll() is None and not (tmp_path / "begun").exists():
+        while process.poll() is None and not (folder / "begun").exists():
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate()
-    assert process.returncode == 130
-    assert "frames/s" in out
-    assert "interrupted after 3 frames" in err
+    return process.returncode, out, err
+
+
+@pytest.mark.parametrize(
+    ("frame", "told", "shown"),
+    [(3, "interrupted after 3 frames", "frames/s"), (0, "interrupted before the first frame was done", "")],
+)
+def test_ctrl_c_ends_with_the_report_of_the_frames_done(
+    tmp_path: Path, frame: int, told: str, shown: str
+) -> None:
+    """An interrupted run prints what it has, says which line of the firmware was at work, and exits with 130."""
+    code, out, err = interrupted_in(frame, tmp_path)
+    line = STOPS_IN_A_FRAME.splitlines().index("            while True: time.sleep(0.01)") + 1
+    assert code == 130
+    assert shown in out
+    assert f"bfsim: {told} ({tmp_path}/eyes.py:{line})\n" in err
     assert "Traceback" not in err
 
 
@@ -262,7 +267,9 @@ def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal
             time.sleep(0.05)
         process.send_signal(number)
         _, err = process.communicate()
-    assert (process.returncode, err) == (128 + number, "bfsim: interrupted in a kernel that does not end\n")
+    line = ENDLESS.splitlines().index("        yield core.run(spin, 1)") + 1
+    told = f"bfsim: interrupted in a kernel that does not end ({tmp_path}/endless.py:{line})\n"
+    assert (process.returncode, err) == (128 + number, told)
 
 
 def write_recording(path: Path, width: int = 16, height: int = 8) -> Path:

@@ -41,8 +41,8 @@ class _Bfsim(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
-        except KeyboardInterrupt:  # click would begin a new line
-            raise click.Abort from None
+        except KeyboardInterrupt as error:  # click would begin a new line
+            raise click.Abort(str(error)) from None
 
 
 @click.group(cls=_Bfsim, context_settings={"help_option_names": ["-h", "--help"]})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 
@@ -38,6 +38,7 @@ from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.finished_frames import FinishedFrames
+from bfsim.machine.firmware_lines import line_of, running_line
 from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loop import MainLoop
@@ -50,6 +51,7 @@ from bfsim.machine.program import Firmware, View
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
+from bfsim.signals import ending_deaf_kernels
 from bfsim.trace import BoardRecord, FrameRecord, Later
 
 
@@ -153,19 +155,20 @@ class Board:
             self.cores[name] = self.core(parts)
             self.main_loops[name] = MainLoop(parts, self.cores[name], self.firmware.mains[name])
         loops = MainLoops(self._env, self.main_loops, self._shared.turns, announcer)
-        interrupted = False
+        interrupted, where = False, ""
         try:
-            with rarely_collected():
+            with rarely_collected(), ending_deaf_kernels(running_line):
                 loops.play()
                 loops.check_end(len(frames.records), has_more=capture.has_more)
                 for each in self._peripherals.values():
                     for last in each.busy:
                         loops.play_until(last)
-        except KeyboardInterrupt:
-            interrupted = True
+        except KeyboardInterrupt as error:
+            interrupted, where = True, line_of(error)
             announcer.tell_seen()
         announcer.tell_end()
-        return self._record(capture, frames.records, calls, interrupted=interrupted)
+        record = self._record(capture, frames.records, calls)
+        return replace(record, interrupted=interrupted, interrupted_at=where)
 
     # ---- wiring
 
@@ -256,14 +259,11 @@ class Board:
         capture: Capture,
         frames: Sequence[FrameRecord],
         calls: Mapping[str, CallCache],
-        *,
-        interrupted: bool,
     ) -> BoardRecord:
         counted = [each.records() for each in calls.values()]
         return BoardRecord(
             frames=tuple(frames),
             missed=tuple(sorted(capture.missed)),
-            interrupted=interrupted,
             kernels=Later(lambda: [each for core in counted for each in core.kernels()]),
             accesses=Later(lambda: [each for core in counted for each in core.accesses()]),
             paths=Later(lambda: [each for core in counted for each in core.paths()]),

@@ -7,15 +7,16 @@ import os
 import sys
 import traceback
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__, "<frozen importlib")
 """Where the code lies that firmware calls."""
 
 
-def running_line() -> str:
-    """Return the innermost line of the firmware that has called here, such as firmware/core_a.py:41."""
-    frame = sys._getframe()  # noqa: SLF001  # the way to one's callers
+def running_line(of: FrameType | None = None) -> str:
+    """Return the innermost line of the firmware that has called here, or what runs in a frame of Python, such as firmware/core_a.py:41."""
+    frame = of or sys._getframe()  # noqa: SLF001  # the way to one's callers
     while frame.f_back is not None and frame.f_code.co_filename.startswith(NOT_FIRMWARE):
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"

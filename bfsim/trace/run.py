@@ -100,12 +100,12 @@ class BoardRecord:
 
     `messages` went over peripherals; `device_notes` are what the devices there had to say at the end, by peripheral. `interrupts` were
     taken, by core and source. `object_share` is the part of the kernels' issue cycles that instructions of object code took.
-    When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished.
+    When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished; `interrupted_at` is the line of
+    the firmware that was at work then, as ` (file:line)`, if one was.
     """
 
     frames: tuple[FrameRecord, ...]
     missed: tuple[int, ...]
-    interrupted: bool
     kernels: Sequence[KernelRecord]
     accesses: Sequence[AccessRecord]
     paths: Sequence[PathRecord]
@@ -117,6 +117,8 @@ class BoardRecord:
     interrupts: Mapping[str, int]
     events: int
     object_share: float = 0.0
+    interrupted: bool = False
+    interrupted_at: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

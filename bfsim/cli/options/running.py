@@ -13,7 +13,7 @@ from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
 from bfsim.shipped import FIRMWARE, LDFS
-from bfsim.signals import ending_deaf_kernels, interrupted_code
+from bfsim.signals import interrupted_code
 from bfsim.terminal import progress_bar
 from bfsim.watchers import Watchers, calling
 
@@ -101,7 +101,7 @@ def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
     from bfsim.run import Feed, Fidelity, simulate
 
     watchers = watchers or Watchers()
-    with progress_bar("Simulating frames", unit="ms simulated") as bar, ending_deaf_kernels():
+    with progress_bar("Simulating frames", unit="ms simulated") as bar:
         done = simulate(
             feed=Feed(feed),
             fidelity=Fidelity(fidelity),
@@ -113,7 +113,7 @@ def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
             **what,
         )
     if done.interrupted and not done.frames:
-        raise KeyboardInterrupt
+        raise KeyboardInterrupt(f" before the first frame was done{done.interrupted_at}")
     if not done.frames:
         raise ConfigError("a run must have at least one frame to report on, and this one finished none")
     for each in watchers.done:
@@ -150,5 +150,5 @@ def warn(done: RunRecord) -> None:
 def exit_if_interrupted(done: RunRecord) -> None:
     """End the command with the exit code of what interrupted the run, if something did."""
     if done.interrupted:
-        click.echo(f"bfsim: interrupted after {len(done.frames)} frames", err=True)
+        click.echo(f"bfsim: interrupted after {len(done.frames)} frames{done.interrupted_at}", err=True)
         raise SystemExit(interrupted_code())
