@@ -155,7 +155,10 @@ def test_code_is_timed_as_the_default_profile_says() -> None:
 def test_code_that_nobody_has_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What would be compiled, and how one gets a compiler."""
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
-    with pytest.raises(ConfigError, match=r"bfin-elf-gcc must be on the PATH, .*; CONTRIBUTING.md says how"):
+    with pytest.raises(
+        ConfigError,
+        match=r"bfin-elf-gcc must be on the PATH to compile test_assembly.c, .*; CONTRIBUTING.md says how",
+    ):
         find_code(_alone, load_firmware("tinyphoon"), GCC_O2, None)
 
 

@@ -35,6 +35,10 @@ STATEMENTS = {
 """What to do instead of a statement, by its first word."""
 
 
+Bounds = tuple[tree.Expr, tree.Expr, int | tree.Local]
+"""Of a loop: its start, its stop and its step."""
+
+
 class Read(NamedTuple):
     """What is read of a `def`."""
 
@@ -348,11 +352,7 @@ class _Reader:
         return self._counted(node, counter, bounds, [first, *node.body])
 
     def _counted(
-        self,
-        node: ast.For,
-        name: str,
-        bounds: tuple[tree.Expr, tree.Expr, int | tree.Local],
-        statements: list[ast.stmt],
+        self, node: ast.For, name: str, bounds: Bounds, statements: list[ast.stmt]
     ) -> list[tree.Stmt]:
         """Read the statements of a loop that counts `name` from a start to before a stop by a step."""
         if self.scope.locals.setdefault(name, i32) is not i32:

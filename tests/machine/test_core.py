@@ -279,7 +279,7 @@ def wrong_elements(core: Core, frame: Frame) -> Play:
         (unknown_buffer, FirmwareError, "core A has no buffer 'camara'; it has camera, image, in_l2"),
         (array_of_many_rows, FirmwareError, r"buffer image has 8 rows; use core\.rows\('image'\)"),
         (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'"),
-        (one_argument_too_few, KernelError, "copy must get source, out, not 1 arguments"),
+        (one_argument_too_few, KernelError, r"copy must get source, out, not 1 argument \("),
         (wrong_elements, KernelError, "source must be one contiguous row of int32, not uint8"),
     ],
 )

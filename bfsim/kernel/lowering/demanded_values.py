@@ -196,10 +196,7 @@ class DemandedValues(Folding):
         return each.operands
 
     def _of_compare(self, each: Instruction) -> tuple[str, ...]:
-        """A counter that only walks and is compared with a bound that ends the loop: the pointer is compared instead.
-
-        Not where its step is no constant: the number of iterations is not known then [may_eliminate_iv in tree-ssa-loop-ivopts.cc].
-        """
+        """A counter that only walks by a constant and is compared with a bound that ends the loop: the pointer is compared instead."""
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
         if (
@@ -211,7 +208,9 @@ class DemandedValues(Folding):
         ):
             return self.compared(each)
         gains = [self.evolution.increment(operand, loop) for operand in each.operands[:2]]
-        moving = [gain for gain in gains if gain is None or gain.moves]
+        moving = [
+            gain for gain in gains if gain is None or gain.moves
+        ]  # may_eliminate_iv in tree-ssa-loop-ivopts.cc
         if None in gains or len(moving) != 1 or moving[0] is None or moving[0].symbolic:
             return self.compared(each)
         return tuple(
