@@ -38,7 +38,7 @@ from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.finished_frames import FinishedFrames
-from bfsim.machine.firmware_lines import line_of, running_line
+from bfsim.machine.firmware_lines import line_at_work, running_line
 from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loop import MainLoop
@@ -164,7 +164,7 @@ class Board:
                     for last in each.busy:
                         loops.play_until(last)
         except KeyboardInterrupt as error:
-            interrupted, where = True, line_of(error)
+            interrupted, where = True, line_at_work(error)
             announcer.tell_seen()
         announcer.tell_end()
         record = self._record(capture, frames.records, calls)

@@ -6,12 +6,15 @@ import contextlib
 import os
 import sys
 import traceback
+from itertools import takewhile
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__, "<frozen importlib")
 """Where the code lies that firmware calls."""
+TASKS = str(Path(__file__).parent / "core" / "tasks.py")
+"""What goes on with the generators of the firmware."""
 
 
 def running_line(of: FrameType | None = None) -> str:
@@ -37,6 +40,15 @@ def line_at(task: Any) -> str:
             place = f" ({code.co_filename}:{task.gi_frame.f_lineno})"
         task = task.gi_yieldfrom
     return place
+
+
+def line_at_work(interruption: KeyboardInterrupt) -> str:
+    """Return the line of the firmware that was at work when a run was interrupted, as ` (file:line)`; nothing if the simulator itself was."""
+    calls = traceback.extract_tb(interruption.__traceback__)
+    tasks = [number for number, each in enumerate(calls) if each.filename == TASKS and each.name == "perform"]
+    called = calls[tasks[-1] + 1 :] if tasks else []
+    own = list(takewhile(lambda each: not each.filename.startswith(NOT_FIRMWARE), called))
+    return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
 
 
 def line_of(error: BaseException) -> str:

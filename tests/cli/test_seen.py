@@ -182,7 +182,7 @@ def test_ctrl_c_before_the_first_frame_is_seen(tmp_path: Path, monkeypatch: pyte
     interrupted = replace(edge_run(100), frames=(), interrupted=True)
     monkeypatch.setattr("bfsim.run.simulate", lambda **_: interrupted)
     result = run("--overlay", tmp_path / "seen.gif", "--mcap", tmp_path / "seen.mcap")
-    assert (result.exit_code, result.stderr) == (130, "bfsim: interrupted\n")
+    assert (result.exit_code, result.stderr) == (130, "bfsim: interrupted before the first frame was done\n")
     assert not list(tmp_path.iterdir())
 
 
