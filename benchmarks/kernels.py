@@ -102,16 +102,19 @@ def our_loop(
     kernel: Any, arguments: tuple[Any, ...], *, counted: bool, checked: bool
 ) -> Callable[[int], Any]:
     """Return a machine-code loop of our kernel on these arguments."""
-    from bfsim.kernel import VDSP_O2
+    from bfsim.kernel import VDSP_O2, Work
+    from bfsim.kernel.prepared_call import words_of_entry
+    from bfsim.machine_code.calling import Taken
 
     code = kernel.compile(VDSP_O2, counted=counted, checked=checked)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
-    call = kernel.prepare(code, arrays, code.new_totals())
-    work = call.run(arguments)  # puts the integers in place
-    entry = ENTRY(code.entry)
+    totals, work, entry = code.new_totals(), Work(0, 0), ENTRY(code.entry)
+    words = words_of_entry(kernel.function, arrays, totals)
+    given = [arguments[each.position] if isinstance(each, Taken) else each for each in words]
+    block = (ctypes.c_int64 * len(given))(*given)
 
-    def loop(times: int) -> int:
-        return int(repeated(entry, ctypes.addressof(call.block), work.at, times))
+    def loop(times: int, _kept: object = (arrays, totals)) -> int:  # the words have only their addresses
+        return int(repeated(entry, ctypes.addressof(block), work.at, times))
 
     loop(1)
     return loop

@@ -84,10 +84,8 @@ def ending_deaf_kernels(line_in: Callable[[FrameType], str]) -> Iterator[None]:
     `line_in` says which line of the firmware has called what runs in a frame of Python.
     """
     heard_here = {int(number) for number in _SIGNALS if signal.getsignal(number) is _hear}
-    if (
-        not heard_here or current_thread() is not main_thread()
-    ):  # ignored, or another's: in the background, or in a debugger
-        yield
+    if not heard_here or current_thread() is not main_thread():
+        yield  # signals are ignored, or another's: in the background, or in a debugger
         return
 
     def watch() -> None:
@@ -95,9 +93,8 @@ def ending_deaf_kernels(line_in: Callable[[FrameType], str]) -> Iterator[None]:
             if number[0] in heard_here and not _heard.wait(DEAF_S):
                 discard_all()
                 line = line_in(sys._current_frames()[main])  # noqa: SLF001  # of another thread
-                os.write(
-                    2, f"bfsim: interrupted in a kernel that does not end ({line})\n".encode(errors="replace")
-                )
+                told = f"bfsim: interrupted in a kernel that does not end ({line})\n"
+                os.write(2, told.encode(errors="replace"))
                 os._exit(BY_SIGNAL + number[0])
 
     main = get_ident()

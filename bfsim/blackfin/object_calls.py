@@ -43,8 +43,7 @@ def subroutine_call(
     its arrays.
     """
     translated, state = subroutine.translated, subroutine.processor.state
-    count = max(len(REGISTERS), len(arguments))
-    handed = (ctypes.c_int64 * count)(*(0 if isinstance(each, Taken) else each for each in arguments))
+    handed = [*arguments, *([0] * (len(REGISTERS) - len(arguments)))]
     values = {
         w.RUN: runner().guarded,
         w.CODE: translated.entry,
@@ -56,8 +55,8 @@ def subroutine_call(
         w.ORDER: counts.order.ctypes.data,
         w.TOTALLED: len(counts.order),
         w.ADDRESS: subroutine.address,
-        w.TOP: STACK + STACK_BYTES - WORD_BYTES * count,
-        w.WORDS: count,
+        w.TOP: STACK + STACK_BYTES - WORD_BYTES * len(handed),
+        w.WORDS: len(handed),
         w.PARTS: len(parts),
         w.TRACE: trace,
     }
@@ -65,10 +64,5 @@ def subroutine_call(
     for each in parts:
         words += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
     data = (ctypes.c_int64 * len(words))(*words)
-    called = Called(
-        w.object_caller(),
-        ctypes.addressof(data),
-        ctypes.addressof(handed),
-        (data, handed, subroutine, counts, kept),
-    )
-    return bound_call(called, given, [each for each in arguments if isinstance(each, Taken)], left, log)
+    called = Called(w.object_caller(), ctypes.addressof(data), (data, subroutine, counts, kept))
+    return bound_call(called, handed, given, left, log)

@@ -296,9 +296,9 @@ class _Reader:
             )
         if len(bounds) == 1:
             bounds.insert(0, tree.Const(0, i32, node.lineno))
-        if len(bounds) == 3:
-            return self._stepping(node, node.target.id, bounds, call.args[2])
-        return self._counted(node, node.target.id, (bounds[0], bounds[1], 1), node.body)
+        if len(bounds) == 2:
+            bounds.append(tree.Const(1, i32, node.lineno))
+        return self._stepping(node, node.target.id, bounds, call.args[-1])
 
     def _stepping(
         self, node: ast.For, name: str, bounds: list[tree.Expr], written: ast.expr

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
 from bfsim.kernel.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
@@ -17,21 +17,17 @@ Check = Callable[[Sequence[object]], None]
 """Raises the error when the arguments of a call are wrong."""
 
 
-def taken_from(position: int, kind: IntType | FloatType, word: int) -> Taken:
-    """Return how the argument at a position is taken, into a word."""
-    if isinstance(kind, FloatType):
-        return Taken(position, word, Kind.FLOAT, *u32.bounds)
-    return Taken(position, word, Kind.INTEGER, *kind.bounds)
-
-
-def words_of(function: Function, first: int, array: Callable[[], Sequence[int]]) -> list[int | Taken]:
-    """Return what is handed over for the parameters, from word `first` on: the next `array` in so many words, and each number in one."""
+def words_of(function: Function, arrays: Iterable[Sequence[int]]) -> list[int | Taken]:
+    """Return what is handed over for the parameters: an array as the words of the next of `arrays`, a number in one word."""
     words: list[int | Taken] = []
+    following = iter(arrays)
     for position, each in enumerate(function.parameters):
         if isinstance(each.type, ArrayType):
-            words += array()
+            words += next(following)
+        elif isinstance(each.type, FloatType):
+            words.append(Taken(position, Kind.FLOAT, *u32.bounds))
         else:
-            words.append(taken_from(position, each.type, first + len(words)))
+            words.append(Taken(position, Kind.INTEGER, *each.type.bounds))
     return words
 
 

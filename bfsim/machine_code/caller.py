@@ -1,7 +1,7 @@
 """The native function that calls machine code for Python: numbers are taken from its arguments, counts and a value are left in a `Work`.
 
 What it is bound to (`self`) is words of 64 bits with all that it needs: HEAD of them, and behind these, of all numbers that are taken,
-the POSITIONS among Python's arguments, then the PLACES where they are put, the kinds, and the least and the largest values.
+their positions among Python's arguments, then the words where they are put, the kinds, and the least and the largest values.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ class Kind(IntEnum):
     FLOAT = 1
 
 
-def field(name: str, number: int, kind: str = "i64", block: str = "%block") -> str:
-    """Return what loads word `number` of a block as `%NAME`."""
-    return f"  %{name}.at = getelementptr i64, ptr {block}, i64 {number}\n  %{name} = load {kind}, ptr %{name}.at\n"
+def field(name: str, number: int, kind: str) -> str:
+    """Return what loads word `number` of `%block` as `%NAME`."""
+    return f"  %{name}.at = getelementptr i64, ptr %block, i64 {number}\n  %{name} = load {kind}, ptr %{name}.at\n"
 
 
 def loop(name: str, count: str, body: str, after: str) -> str:
@@ -188,15 +188,15 @@ define ptr @{ENTRY}(ptr %self, ptr %arguments) {{
 take:
 {loop("argument", "%taken", TAKE, "run")}\
   %thread = call ptr @PyEval_SaveThread()
-  %event = call i64 %called(ptr %data, ptr %handed, ptr %cost)
+  %status = call i64 %called(ptr %data, ptr %handed, ptr %cost)
   call void @PyEval_RestoreThread(ptr %thread)
-  %has.failed = icmp slt i64 %event, 0
+  %has.failed = icmp slt i64 %status, 0
   br i1 %has.failed, label %fail, label %done
 unfit:
   call void @PyErr_Clear()
   br label %fail
 fail:
-  %failure = phi i64 [ %event, %run ], [ {UNFIT}, %unfit ], [ {NO_ROOM}, %count_logged ]
+  %failure = phi i64 [ %status, %run ], [ {UNFIT}, %unfit ], [ {NO_ROOM}, %count_logged ]
   store i64 %failure, ptr %cost
   %raised = call ptr (ptr, ...) @PyObject_CallFunctionObjArgs(ptr %refuse, ptr %arguments, ptr null)
   ret ptr %raised

@@ -5,32 +5,34 @@ It has the C interface of CPython: to go through ctypes takes longer than many a
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Sequence
 from struct import pack
+from sys import intern
 from typing import Any, NamedTuple
 
 from bfsim import machine_code
 from bfsim.machine_code import caller as w
-from bfsim.machine_code.left import VALUE_NAME, WORD_BITS, Left
+from bfsim.machine_code.left import WORD_BITS, Left
+
+VALUE = intern("value")
 
 
 class Called(NamedTuple):
-    """What is called: the address of a function that gets those of `data`, of the numbers that are `handed` to it, and of what it leaves.
+    """What is called: the address of a function that gets those of `data`, of words that are handed to it, and of what it leaves.
 
-    It returns a negative number if it fails. All of these live as long as what is `kept`.
+    It returns a negative number if it fails. It needs what is `kept`.
     """
 
     function: int
     data: int
-    handed: int
     kept: object
 
 
 class Taken(NamedTuple):
-    """A number that is taken from the argument at a position, and put into a word of those that are handed over."""
+    """A number that is taken from the argument at a position."""
 
     position: int
-    word: int
     kind: w.Kind
     least: int
     largest: int
@@ -51,13 +53,22 @@ class _Block(bytes):
 
 
 def bound_call(
-    called: Called, given: int, taken: Sequence[Taken], left: Left, log: Log | None
+    called: Called, words: Sequence[int | Taken], given: int, left: Left, log: Log | None
 ) -> Callable[[Sequence[Any]], Any]:
-    """Return a function to be called with `given` arguments; of these only the numbers that are `taken` are read."""
+    """Return a function to be called with `given` arguments; of these only the numbers that are taken are read.
+
+    `words` are handed over, of 64 bits each: what is always the same, or is taken from an argument of each call.
+    """
+    handed = (ctypes.c_int64 * len(words))(*(0 if isinstance(each, Taken) else each for each in words))
+    taken = [
+        (each.position, word, each.kind, each.least, each.largest)
+        for word, each in enumerate(words)
+        if isinstance(each, Taken)
+    ]
     head = {
         w.CALLED: called.function,
         w.DATA: called.data,
-        w.HANDED: called.handed,
+        w.HANDED: ctypes.addressof(handed),
         w.GIVEN: given,
         w.TAKEN: len(taken),
         w.LOGGED: log.logged if log else 0,
@@ -65,15 +76,15 @@ def bound_call(
         w.ROOM: log.room if log else 0,
         w.LEFT: id(left.work),
         w.COST: left.cost,
-        w.NAME: id(VALUE_NAME),
+        w.NAME: id(VALUE),
         w.RESULT: left.result,
         w.SHIFT: WORD_BITS - left.bits,
         w.REFUSE: id(left.refuse),
     }
     values = [
         *(head[each] for each in range(w.HEAD)),
-        *(word for column in zip(*taken, strict=True) for word in column),
+        *(each for column in zip(*taken, strict=True) for each in column),
     ]
     block = _Block(pack(f"{len(values)}q", *values))
-    block.kept = called, left
+    block.kept = called, handed, left
     return machine_code.python_function(w.caller(), block, machine_code.METH_O)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from enum import IntEnum
-from sys import intern
 from typing import Any, NamedTuple, NoReturn
 
 WORD_BITS = 64
@@ -14,7 +13,6 @@ UNFIT, NO_ROOM = -1, -2
 """Left in place of cycles: an argument does not fit, and nothing was run; there are more accesses than can be logged."""
 FAILED = -3
 """Less the number of an event, left where that ended the code before it returned."""
-VALUE_NAME = intern("value")
 
 
 class Result(IntEnum):

@@ -196,7 +196,10 @@ class DemandedValues(Folding):
         return each.operands
 
     def _of_compare(self, each: Instruction) -> tuple[str, ...]:
-        """A counter that only walks by a constant and is compared with a bound that ends the loop: the pointer is compared instead."""
+        """A counter that only walks by a constant and is compared with a bound that ends the loop: the pointer is compared instead.
+
+        [may_eliminate_iv in tree-ssa-loop-ivopts.cc]
+        """
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
         if (
@@ -207,15 +210,11 @@ class DemandedValues(Folding):
             )
         ):
             return self.compared(each)
-        gains = [self.evolution.increment(operand, loop) for operand in each.operands[:2]]
-        moving = [
-            gain for gain in gains if gain is None or gain.moves
-        ]  # may_eliminate_iv in tree-ssa-loop-ivopts.cc
-        if None in gains or len(moving) != 1 or moving[0] is None or moving[0].symbolic:
+        gains = {operand: self.evolution.increment(operand, loop) for operand in each.operands[:2]}
+        moving = [gain for gain in gains.values() if gain is None or gain.moves]
+        if len(moving) != 1 or moving[0] is None or moving[0].symbolic:
             return self.compared(each)
-        return tuple(
-            operand for operand, gain in zip(each.operands[:2], gains, strict=True) if gain and not gain.moves
-        )
+        return tuple(operand for operand, gain in gains.items() if gain and not gain.moves)
 
     # Divisions
 

@@ -57,7 +57,7 @@ class ObjectCall:
         else:
             from_host = space.window(memory) - memory.ctypes.data
             addresses = [each.ctypes.data + from_host for each in arrays]
-        trace, followed = None, []
+        trace = None
         if access_trace:
             followed = [
                 Followed(address, array.nbytes, array.ctypes.data, first_site + number)
@@ -93,10 +93,9 @@ def _arguments(
     function: Function, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
 ) -> list[int | Taken]:
     """Return what the code takes: of an array its address, and behind the parameters the lengths that it asks for."""
-    places = iter(addresses)
     named = zip(function.array_names, arrays, strict=True)
     lengths = (len(array) for name, array in named if name in function.measured)
-    return [*words_of(function, 0, lambda: [next(places)]), *lengths]
+    return [*words_of(function, ([each] for each in addresses)), *lengths]
 
 
 @cache
