@@ -174,13 +174,13 @@ def test_profile_by_buffer_shows_the_memories() -> None:
         assert words in result.stdout
 
 
+ENDLESS_LINE = '            while True: pathlib.Path("begun").touch(); time.sleep(0.01)'
 STOPS_IN_A_FRAME = FIRMWARE.replace(
     "        bright = 0\n",
-    """        bright = 0
-        if core.name == "A" and frame.index == {frame}:
+    f"""        bright = 0
+        if core.name == "A" and frame.index == {{frame}}:
             import time, pathlib
-            pathlib.Path("begun").touch()
-            while True: time.sleep(0.01)
+{ENDLESS_LINE}
 """,
 )
 
@@ -209,7 +209,7 @@ def test_ctrl_c_ends_with_the_report_of_the_frames_done(
 ) -> None:
     """An interrupted run prints what it has, says which line of the firmware was at work, and exits with 130."""
     code, out, err = interrupted_in(frame, tmp_path)
-    line = STOPS_IN_A_FRAME.splitlines().index("            while True: time.sleep(0.01)") + 1
+    line = STOPS_IN_A_FRAME.splitlines().index(ENDLESS_LINE) + 1
     assert code == 130
     assert shown in out
     assert f"bfsim: {told} ({tmp_path}/eyes.py:{line})\n" in err
