@@ -56,7 +56,7 @@ class File:
         """Return a LinkError about the character `offset`: place, source line, caret."""
         line_start = self.written.rfind("\n", 0, offset) + 1
         rest = self.written[line_start : max(offset, line_start) + _LONGEST_EXCERPT]
-        line = "".join(map(_visible, rest.partition("\n")[0]))
+        line = "".join(map(_visible, rest.partition("\n")[0].removesuffix("\r")))
         column = offset - line_start + 1
         cut = max(0, column - _LONGEST_EXCERPT)
         via = f" (included from {self.included_at})" if self.included_at else ""

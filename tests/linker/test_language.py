@@ -177,6 +177,13 @@ def test_what_a_terminal_would_obey_is_not_shown(parse: Parse) -> None:
     assert caret_line == "^"
 
 
+def test_a_line_of_windows_is_shown_as_others_are(parse: Parse) -> None:
+    """Most LDFs are from there: their lines end with a carriage return, too, which stood behind them as a box."""
+    with pytest.raises(LinkError) as error:
+        parse('\r\n#include "VDK.h"\r\nMEMORY { M { WITH(8) } }\r\n')
+    assert str(error.value).splitlines()[1:] == ['#include "VDK.h"', "^"]
+
+
 def test_caret_points_into_the_file_as_written(parse: Parse) -> None:
     """Line, column and caret hold although a comment, a macro and a continued line come first."""
     text = "/* two\n lines */\n#define A \\\n 1\nMEMORY { M { START(A) /* é */ LENGTH(8) WITH(8) } }\n"
