@@ -39,7 +39,9 @@ class Expressions(Names):
             self.source.refuse(
                 node,
                 f"a kernel cannot use {in_words(node)}",
-                "write it with numbers, array elements, + - * // % << >> & | ^ ~, comparisons, min, max and abs",
+                "give the name its value on a line before"
+                if isinstance(node, ast.NamedExpr)
+                else "write it with numbers, array elements, + - * // % << >> & | ^ ~, comparisons, min, max and abs",
             )
         result: tree.Expr = method(node)
         return result

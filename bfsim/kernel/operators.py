@@ -61,6 +61,6 @@ def in_words(node: ast.AST) -> str:
     """What `node` is, in words."""
     names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",
              "dict": "dictionaries", "lambda": "lambda", "namedexpr": "`:=`",
-             "pow": "**", "matmult": "@", "is": "`is`", "in": "`in`"}  # fmt: skip
+             "pow": "**", "matmult": "@", "is": "`is`", "isnot": "`is not`", "in": "`in`", "notin": "`not in`"}  # fmt: skip
     name = type(node).__name__.lower()
     return names.get(name, f"`{name}`")

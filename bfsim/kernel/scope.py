@@ -58,6 +58,8 @@ class KernelScope(Expressions):
         if target is sqrt and len(node.args) == 1:
             return tree.Unary("sqrt", self.number(node.args[0], f32), f32, node.lineno)
         name = ast.unparse(node.func)
+        if target in (abs, sqrt):
+            self._refuse_call(node, f"give {name} one argument")
         self._refuse_call(
             node, f"give {name} two arguments" if known else f"make {name} a @kernel, or inline it"
         )
