@@ -38,6 +38,13 @@ def test_code_is_made_once_for_each_compiler_and_level() -> None:
     assert made.symbol_of(c_kernels.narrowed.function) == "_narrowed"
 
 
+def test_what_a_compiler_says_of_a_file_obeys_no_terminal(tmp_path: Path) -> None:
+    """It quotes lines of a file that is no source, escape sequences and all."""
+    tools = Toolchain(("sh", "-c", r"printf 'x.c:1:1: error\n    1 | \033[2J\n' >&2; exit 1"))
+    with pytest.raises(ConfigError, match=r"says: x.c:1:1: error\n    1 \| \\x1b\[2J$"):
+        tools.build(tmp_path, (), ())
+
+
 def test_without_a_compiler_code_must_be_kept() -> None:
     """What is missing, whose code it would be, and what helps."""
     with pytest.raises(

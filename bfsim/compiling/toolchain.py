@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, printable
 
 GCC, SIMULATOR = "bfin-elf-gcc", "bfin-elf-run"
 CPU = ("-mcpu=bf561", "-msim")
@@ -74,7 +74,8 @@ class Toolchain:
             command, check=False, capture_output=True, text=True, cwd=folder
         )
         if done.returncode:
-            said = "\n".join(done.stderr.splitlines()[:10]) or f"exit code {done.returncode}"
+            lines = [printable(each) for each in done.stderr.splitlines()[:10]]  # of a file that is no source
+            said = "\n".join(lines) or f"exit code {done.returncode}"
             raise ConfigError(f"{command[0]} must run without an error, but says: {said}")
         return done.stdout
 
