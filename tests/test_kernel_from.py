@@ -193,13 +193,22 @@ def test_code_without_a_name_is_refused() -> None:
         ("sums.txt", {}, r"must come from a file .c, .s, .S, .o, .elf, not from sums.txt"),
         ("nowhere.o", {}, r"nowhere.o must be a file that can be read \(No such file or directory\)"),
         ("sums.o", {"row": "u8"}, r"row of sums must have a type such as i32 or u8\[:\], not 'u8'"),
-        ("sums.o", {"result": u8[:]}, r"the result of sums must have a type such as i32"),
+        ("sums.o", {"row": int}, r"row of sums must have a type such as i32 or u8\[:\], not int$"),
+        ("sums.o", {"result": u8[:]}, r"the result of sums must have a type such as i32, not u8\[:\]$"),
+        ("undefined.o", {}, r"at 0x[0-9A-F]+ of .text R9, which is nowhere defined, is out of reach"),
+        ("traps.o", {}, r"traps.o must define _sums, but has only _trap, _idle"),
     ],
 )
 def test_what_is_no_kernel_is_refused(file: str, what: dict, why: str) -> None:
     """Other files, files that are not there, types that are none."""
     with pytest.raises(KernelError, match=why):
         kernel_from(DATA / file, "sums", **what)
+
+
+def test_a_file_has_a_path() -> None:
+    """Anything else was told as what Python cannot divide."""
+    with pytest.raises(KernelError, match="the file of sums must be a path, not None"):
+        kernel_from(None, "sums")  # type: ignore[arg-type]
 
 
 def test_arguments_are_checked_as_those_of_other_kernels() -> None:
@@ -390,6 +399,24 @@ def test_the_line_of_an_access_that_is_not_aligned_is_told() -> None:
         KernelError, match=r"from 0xFFA[0-9A-F]{5} on \(prototypes.c:35\) it accesses an address"
     ):
         kernel(0x20000002)
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [
+        ("trap", r"at 0xFFA00000 \(traps.s:6\) there is an exception \(EXCPT\), which nothing handles"),
+        ("idle", r"at 0xFFA00004 \(traps.s:13\) there is an instruction for the system, such as IDLE"),
+        ("nothing", r"at 0xFFA00008( \(traps.s:[0-9]+\))? there is no instruction of the Blackfin"),
+        (
+            "halt",
+            r"at 0xFFA0000C \(traps.s:25\) there is an instruction for simulators \(OUTC, HLT or ABORT\)",
+        ),
+    ],
+)
+def test_what_ends_code_is_told_in_words(name: str, what: str) -> None:
+    """With its line, for in C nobody knows the addresses of instructions."""
+    with pytest.raises(KernelError, match=f"_{name} must run and return to its caller, but {what}"):
+        kernel_from(DATA / "traps.o", name)()
 
 
 def test_a_wild_access_is_refused() -> None:

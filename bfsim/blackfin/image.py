@@ -14,8 +14,8 @@ from bfsim.errors import KernelError, cut
 
 MOST_NAMES = 5
 """As many names are listed of what is missing."""
-
-
+LINKED_WITH = "bfin-elf-gcc -r -nostdlib ... -lm -lc -lgcc"
+"""What joins an object file to the parts of the libraries that it calls."""
 NOWHERE = 0xFFC00000
 """[HRM] Where the system's registers are: no code is there, and no data of a program."""
 NOWHERE_BYTES = 256
@@ -97,9 +97,8 @@ class Image:
         if symbol not in self.symbols:
             names = ", ".join(cut(each.name) for each in self.routines[:MOST_NAMES])
             more = f" and {len(self.routines) - MOST_NAMES} more" if len(self.routines) > MOST_NAMES else ""
-            raise KernelError(
-                f"{self.name} must define {cut(symbol)}, but has only {names or 'no function'}{more}"
-            )
+            has = f"only {names}{more}" if names else "no function"
+            raise KernelError(f"{self.name} must define {cut(symbol)}, but has {has}")
         return self.symbols[symbol]
 
 

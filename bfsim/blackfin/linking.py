@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
 
-from bfsim.blackfin.image import MOST_NAMES, NOWHERE, NOWHERE_BYTES, Image, Routine, Segment, Use
+from bfsim.blackfin.image import LINKED_WITH, MOST_NAMES, NOWHERE, NOWHERE_BYTES, Image, Routine, Segment, Use
 from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol
 from bfsim.blackfin.relocations import FIELDS, Kind
 from bfsim.errors import KernelError, cut
@@ -90,7 +90,7 @@ def _missing(file: ObjectFile, *, is_whole: bool) -> dict[int, str]:
         names = ", ".join(map(cut, missing[:MOST_NAMES]))
         raise KernelError(
             f"{file.name} must define all that it uses, but not {names}; link it with what does "
-            "(bfin-elf-gcc -r -nostdlib ... -lgcc)"
+            f"({LINKED_WITH})"
         )
     return {NOWHERE + number * NOWHERE_BYTES: name for number, name in enumerate(missing)}
 
@@ -171,7 +171,9 @@ def _apply(each: Relocation, file: ObjectFile, places: tuple[int, ...], contents
     shifted, mask = value >> field.shift, (1 << field.bits) - 1
     lowest = -(1 << field.bits - 1)
     if not field.is_part and not lowest <= shifted <= (mask if not field.relative else -lowest - 1):
-        raise _refused(file, section, each, f"{cut(file.symbols[each.symbol].name)} is out of reach")
+        symbol = file.symbols[each.symbol]
+        undefined = "" if symbol.is_defined else ", which is nowhere defined,"
+        raise _refused(file, section, each, f"{cut(symbol.name)}{undefined} is out of reach")
     word = int.from_bytes(body[at : at + field.nbytes], "little")
     if field.before:  # the address of a long jump: its high bits are in the first halfword
         word = word & 0xFF00 | shifted >> 16 & 0xFF | (shifted & 0xFFFF) << 16

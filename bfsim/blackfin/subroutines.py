@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.image import Image
+from bfsim.blackfin.image import LINKED_WITH, Image
 from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.errors import KernelError
@@ -39,6 +39,20 @@ ARRAY_ALIGN = 16
 WORD_BYTES = 4
 REGISTERS = ("R0", "R1", "R2")
 RESULT = "R0"
+
+ENDS = {
+    Event.ILLEGAL: (0, "no instruction of the Blackfin"),
+    Event.EXCEPTION: (2, "an exception (EXCPT), which nothing handles"),
+    Event.SYSTEM: (
+        2,
+        "an instruction for the system, such as IDLE, RAISE or RTI, of which a kernel has none",
+    ),
+    Event.ASSERTION: (4, "an assertion for simulators (DBGA, DBGAL or DBGAH) that does not hold"),
+} | dict.fromkeys(
+    (Event.OUTPUT, Event.HALT, Event.ABORT),
+    (2, "an instruction for simulators (OUTC, HLT or ABORT), which the Blackfin has not"),
+)
+"""Instructions at which code ends: how many bytes PC is behind one, and what it is."""
 
 
 @dataclass
@@ -133,7 +147,7 @@ class Subroutine:
         if missing := self.image.missing_at(place):
             what = (
                 f"it comes to {missing.removeprefix('_')}, which {self.image.name} does not define; define it there, or do "
-                "without it (an object file is linked with what has it: bfin-elf-gcc -r -nostdlib ... -lgcc)"
+                f"without it (an object file is linked with what has it: {LINKED_WITH})"
             )
         elif event is Event.FAULT:
             fault = runner().fault.value
@@ -151,7 +165,9 @@ class Subroutine:
         elif event is Event.UNKNOWN_TARGET:
             what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names"
         else:
-            what = f"at 0x{address:08X} there is {event.name.lower()}"
+            nbytes, told = ENDS[event]
+            at = address - nbytes
+            what = f"at 0x{at:08X}{self._line_at(at)} there is {told}"
         raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
 
     def _line_at(self, address: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from bfsim.errors import KernelError
+from bfsim.errors import KernelError, shown
 from bfsim.kernel import Kernel
 from bfsim.kernel.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number
@@ -25,13 +25,24 @@ def kernel_from(
     Raises KernelError for a file that is no code for the Blackfin or has no such function, and ConfigError where there is no
     compiler, or with what it says.
     """
+    if not isinstance(file, (str, Path)):
+        raise KernelError(f"the file of {name} must be a path, not {shown(file)}")
     for parameter, kind in parameters.items():
         if not isinstance(kind, (*NUMBERS, ArrayType)):
-            raise KernelError(f"{parameter} of {name} must have a type such as i32 or u8[:], not {kind!r}")
+            raise KernelError(
+                f"{parameter} of {name} must have a type such as i32 or u8[:], not {_written(kind)}"
+            )
     if result is not None and not isinstance(result, NUMBERS):
-        raise KernelError(f"the result of {name} must have a type such as i32, not {result!r}")
+        raise KernelError(f"the result of {name} must have a type such as i32, not {_written(result)}")
     from bfsim.compiling.file_code import file_kernel  # firmware that is all Python needs none of it
 
     beside = Path(sys._getframe(1).f_globals.get("__file__", "")).parent  # noqa: SLF001
     declared = tuple(Parameter(each, kind) for each, kind in parameters.items())
     return file_kernel(beside / file, name, declared, result)
+
+
+def _written(kind: object) -> str:
+    """Return what was given as a type, as one writes it."""
+    if isinstance(kind, type):
+        return kind.__name__
+    return str(kind) if isinstance(kind, ArrayType) else shown(kind)
