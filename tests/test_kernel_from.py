@@ -221,6 +221,23 @@ def test_arguments_are_checked_as_those_of_other_kernels() -> None:
         kernel(ROW, ROW, 32, 2)
 
 
+def test_what_must_not_be_changed_is_not() -> None:
+    """Nobody knows before what object code stores into: what it left in a read-only array was lost without a word."""
+    kernel, row, out = sums(), ROW.copy(), np.zeros(32, np.int32)
+    row.flags.writeable = False
+    kernel(row, out, 32, 2)
+    np.testing.assert_array_equal(out, expected(ROW))
+    out[:] = 0
+    out.flags.writeable = False
+    with pytest.raises(
+        KernelError, match=r"out must be writeable, because the kernel stores into it \(out of sums"
+    ):
+        kernel(row, out, 32, 2)
+    with pytest.raises(KernelError, match="out must be writeable"):
+        kernel.cost(row, out, 32, 2)
+    assert not out.any()
+
+
 def test_a_kernel_in_python_cannot_call_it(tmp_path: Path) -> None:
     """Its code is its own: the call is refused when the kernel is read. It was taken for Python, with a traceback in a run."""
     (tmp_path / "fw_calls.py").write_text(

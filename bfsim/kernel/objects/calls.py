@@ -15,6 +15,7 @@ from bfsim.blackfin.guard import catch_always
 from bfsim.blackfin.object_calls import Counts, subroutine_call
 from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, Subroutine, placed
 from bfsim.blackfin.tracing import Followed, block_of
+from bfsim.errors import KernelError
 from bfsim.kernel import crashes
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.function import Function
@@ -82,11 +83,39 @@ class ObjectCall:
             kept=(arrays, memory, trace, access_trace),
         )
         """Runs the code now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
+        if memory is None:
+            kept_as_they_are = [
+                (name, array, space.at(address, array.nbytes))
+                for name, array, address in zip(function.array_names, arrays, addresses, strict=True)
+                if not array.flags.writeable and code.may_write(name)
+            ]
+            if kept_as_they_are:
+                self.run = partial(_run_beside, self.run, function, kept_as_they_are)
 
 
 def _refuse(subroutine: Subroutine, failure: int) -> NoReturn:
     """Raise KernelError for the event that ended a call."""
     subroutine.refuse(Event(FAILED - failure))
+
+
+def _run_beside(
+    run: Callable[[Sequence[Any]], Work],
+    function: Function,
+    read_only: Sequence[tuple[str, NDArray[Any], NDArray[np.uint8]]],
+    arguments: Sequence[Any],
+) -> Work:
+    """Run code that may store into arrays that must not be changed; raise KernelError if it did so in their copies.
+
+    `read_only`: the name of each, itself, and the bytes of its copy.
+    """
+    work = run(arguments)
+    for name, array, copied in read_only:
+        if not np.array_equal(array.view(np.uint8), copied):
+            raise KernelError(
+                f"{name} must be writeable, because the kernel stores into it ({name} of {function.name}, "
+                f"{function.file}:{function.first_line})"
+            )
+    return work
 
 
 def _arguments(
