@@ -374,6 +374,20 @@ def test_explain_shows_the_lines_of_c() -> None:
     assert {each.line for each in shown.lines if each.operations} >= {17, 18, 21}
 
 
+def test_a_hardware_loop_may_be_set_up_without_lsetup() -> None:
+    """Code that wrote LB, LT and LC itself ran once through such a loop, without a word. Cycles: of the GNU simulator."""
+    kernel = kernel_from(DATA / "labels.o", "turns", x=i32, result=i32)
+    assert [kernel(each) for each in (1, 2, 5, 13)] == [4, 10, 40, 208]
+    assert [kernel.cost(each, profile="gcc") for each in (1, 2, 5, 13)] == [16, 18, 24, 40]
+
+
+def test_a_label_is_called_by_its_address() -> None:
+    """Assembler need not say what is a function: such a call was refused, for nothing named the address."""
+    kernel = kernel_from(DATA / "labels.o", "twice", x=i32, result=i32)
+    assert kernel(21) == 42
+    assert kernel.cost(21, profile="gcc") == 20
+
+
 def test_a_function_may_go_on_in_the_next_one() -> None:
     """The block that both are in is of the first, its lines are of both; accesses are reported with their lines."""
     kernel = kernel_from(DATA / "falling.o", "before", row=u8[:], result=i32)

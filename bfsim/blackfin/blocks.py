@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from bfsim.blackfin.decode import Instruction, InstructionError, decode
+from bfsim.blackfin.halves import PutTogether
 
 Fetch = Callable[[int], bytes]
 """Returns the 8 bytes of code at an address, or as many as there are."""
@@ -31,6 +32,8 @@ NEVER_RESUMED = NEVER_ON | (EVENTS - ASSERTIONS)
 """Nor behind these, where nobody goes on behind an event."""
 MOST_INSTRUCTIONS = 1 << 18
 """[ours] Two and a half times all of GCC's and newlib's libraries. A wild jump into memory that is zero meets millions of NOPs."""
+LOOP_ENDS = {"LB0": 0, "LB1": 1}
+"""The registers that say where a hardware loop ends, with the numbers of their counters."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
 """An instruction with one of these begins a block: it must know the cycles of what was executed before it."""
 
@@ -109,10 +112,23 @@ class Code:
                 waiting.append(instruction.end)
             if is_clocked(instruction):
                 leaders.add(address)
+        for end, counter, start in self._written_loops():
+            self.loop_starts.setdefault((end, counter), set()).add(start)
+            leaders.add(start)
         for end, _ in self.loop_starts:
             if isinstance(last := self._decoded.get(end), Instruction) and last.end in self._decoded:
                 leaders.add(last.end)
         return leaders
+
+    def _written_loops(self) -> Iterator[tuple[int, int, int]]:
+        """Yield end, counter and start of each loop that code may set up without LSETUP, by writing LB and LT itself."""
+        known = {at: each for at, each in self._decoded.items() if isinstance(each, Instruction)}
+        moves = (each.operations[0] for each in known.values() if does(each) == "move")
+        counters = {LOOP_ENDS[each] for move in moves if (each := str(move.operands["d"])) in LOOP_ENDS}
+        if counters:
+            put_together = PutTogether(known.values())
+            places = [at for at in known if at in put_together]
+            yield from ((end, each, start) for each in counters for end in places for start in places)
 
     def _decode(self, address: int) -> Instruction | InstructionError:
         try:

@@ -82,6 +82,10 @@ class Image:
                 return each.octets[first - each.address : end - each.address]
         return b""
 
+    def is_code(self, address: int) -> bool:
+        """Whether code is at an address."""
+        return any(each.use is Use.CODE and each.address <= address < each.end for each in self.segments)
+
     def routine_at(self, address: int) -> Routine | None:
         """Return the function that an address is in, or None outside of all."""
         number = bisect_right(self.routines, address, key=lambda each: each.address)
