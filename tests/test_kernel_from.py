@@ -388,6 +388,13 @@ def test_a_label_is_called_by_its_address() -> None:
     assert kernel.cost(21, profile="gcc") == 20
 
 
+@pytest.mark.parametrize("file", ["labels.o", "labels.elf"])
+def test_a_table_of_labels_may_stand_in_code(file: str) -> None:
+    """A linked program has no relocations any more that say so: its jumps were refused."""
+    kernel = kernel_from(DATA / file, "chosen", x=i32, result=i32)
+    assert [kernel(each) for each in range(3)] == [10, 20, 30]
+
+
 def test_a_function_may_go_on_in_the_next_one() -> None:
     """The block that both are in is of the first, its lines are of both; accesses are reported with their lines."""
     kernel = kernel_from(DATA / "falling.o", "before", row=u8[:], result=i32)

@@ -140,13 +140,14 @@ def _pointers(file: ObjectFile, places: tuple[int, ...]) -> Iterator[int]:
 
 
 def _likely_pointers(segments: Iterable[Segment]) -> Iterator[int]:
-    """Yield the words of data that may be addresses of code, whose relocations are gone."""
+    """Yield the words that may be addresses of code, whose relocations are gone: of data, and of tables that stand in code."""
     segments = list(segments)
     code = [each for each in segments if each.use is Use.CODE]
-    for data in segments:
-        if data.use is Use.DATA and data.address % WORD_BYTES == 0:
-            whole = len(data.octets) // WORD_BYTES * WORD_BYTES
-            for (word,) in struct.iter_unpack("<I", data.octets[:whole]):
+    for segment in segments:
+        if segment.use is not Use.NOTES:
+            before = -segment.address % WORD_BYTES
+            whole = (len(segment.octets) - before) // WORD_BYTES * WORD_BYTES
+            for (word,) in struct.iter_unpack("<I", segment.octets[before : before + whole]):
                 if word % 2 == 0 and any(each.address <= word < each.end for each in code):
                     yield word
 

@@ -163,7 +163,7 @@ class Subroutine:
                 "accessed, for which the Blackfin raises an exception"
             )
         elif event is Event.UNKNOWN_TARGET:
-            what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names"
+            what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names; put its label into a table"
         else:
             nbytes, told = ENDS[event]
             at = address - nbytes

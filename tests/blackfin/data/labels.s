@@ -1,4 +1,5 @@
-// Code that names labels by their halves: a hardware loop that no LSETUP sets up, and a call of what is not said to be a function.
+// Code that names labels by their halves: a hardware loop that no LSETUP sets up, and a call of what is not said to be a function;
+// and a table of labels that stands in code.
   .text
   .global _turns
   .type _turns, STT_FUNC
@@ -31,3 +32,25 @@ _twice:
   RETS = [SP++];
   RTS;
   .size _twice, .-_twice
+  .global _chosen
+  .type _chosen, STT_FUNC
+_chosen:
+  P0.L = table;
+  P0.H = table;
+  P1 = R0;
+  P0 = P0 + (P1 << 2);
+  P0 = [P0];
+  JUMP (P0);
+  .align 4
+table:
+  .long ten, twenty, thirty
+ten:
+  R0 = 10;
+  RTS;
+twenty:
+  R0 = 20;
+  RTS;
+thirty:
+  R0 = 30;
+  RTS;
+  .size _chosen, .-_chosen
