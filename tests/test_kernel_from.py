@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from bfsim.api import Kernel, f32, i32, kernel_from, u8
+from bfsim.blackfin import lines, pointers
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import read_object
@@ -19,6 +20,7 @@ from bfsim.compiling import file_code
 from bfsim.errors import ConfigError, KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2
+from bfsim.kernel.objects import compiled
 from bfsim.loading import load_kernel
 from bfsim.machine.memories import Memories
 
@@ -468,3 +470,24 @@ def test_a_wild_access_is_refused() -> None:
     assert (
         kernel.cost(0x20000000) == 7 + 4
     )  # the address waits for its register, which the default profile counts
+
+
+def lines_of_costs(folder: Path) -> set[int]:
+    """The lines that `sums` in a folder has cycles for, as a process finds that has just started."""
+    compiled._READ.clear()  # noqa: SLF001  # what another process does not have
+    found = explain(sums(folder), GCC_O2)
+    return {each.line for each in found.lines if each.operations}
+
+
+def test_what_object_code_costs_is_worked_out_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another start finds it in the cache, and works it out anew once a source file is another one."""
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))
+    for name in ("sums.o", "sums.c"):
+        shutil.copy(DATA / name, tmp_path)
+    before = lines_of_costs(tmp_path)
+    with monkeypatch.context() as without:
+        without.setattr(lines, "lines_of", None)
+        without.setattr(pointers, "arrays_accessed", None)
+        assert lines_of_costs(tmp_path) == before
+    (tmp_path / "sums.c").unlink()  # now its instructions are its lines
+    assert lines_of_costs(tmp_path) != before

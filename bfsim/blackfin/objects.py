@@ -6,6 +6,7 @@ Files come from users, so nothing in one is believed: whatever the reader makes 
 from __future__ import annotations
 
 import io
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,8 @@ MACHINE = "EM_BLACKFIN"
 RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
 MOST_BYTES = 64 << 20
 """[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
+RELOCATION = struct.Struct("<IIi")
+"""[ELF] Of 32 bits, with an addend: its offset, the number of its symbol above the 8 bits of its kind, the addend."""
 FUNCTIONS = (("STT_NOTYPE", "STB_GLOBAL"), ("STT_NOTYPE", "STB_WEAK"))
 """Of assembler without .type: names that other files see, if they are of code."""
 
@@ -170,5 +173,5 @@ def _relocations(part: RelocationSection, sections: tuple[Section, ...], name: s
         raise KernelError(
             f"{name} must have relocations with addends, of its own sections ({cut(part.name)})"
         )
-    for each in part.iter_relocations():
-        yield Relocation(target, each["r_offset"], each["r_info_type"], each["r_info_sym"], each["r_addend"])
+    for offset, info, addend in RELOCATION.iter_unpack(part.data()):  # libraries have thousands
+        yield Relocation(target, offset, info & 0xFF, info >> 8, addend)

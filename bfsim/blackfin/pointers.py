@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
+from heapq import heappop, heappush
 from itertools import groupby
 
 from bfsim.blackfin.blocks import CALLS, Code, does
-from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.flow import Way, edges
-from bfsim.blackfin.origins import Origin, made_by
+from bfsim.blackfin.origins import Made, Origin, made_by
 from bfsim.blackfin.subroutines import REGISTERS, WORD_BYTES
 
 KEPT = frozenset({"R4", "R5", "R6", "R7", "P3", "P4", "P5", "SP", "FP"})
@@ -52,15 +53,19 @@ class _State:
     words: dict[int, Pointer] = field(default_factory=dict)
 
     def joined(self, other: _State) -> _State:
-        names = self.registers.keys() | other.registers.keys()
-        one, two = self.registers, other.registers
-        return _State(
-            {each: one.get(each, NUMBER).joined(two.get(each, NUMBER)) for each in names},
-            {
-                each: self.words[each].joined(other.words[each])
-                for each in self.words.keys() & other.words.keys()
-            },
-        )
+        """What is known of one or the other; itself if the other one says nothing new."""
+        registers, words = _joined(self.registers, other.registers), self._words_joined(other)
+        if registers is self.registers and words is self.words:
+            return self
+        return _State(registers, words)
+
+    def _words_joined(self, other: _State) -> dict[int, Pointer]:
+        """A word of the stack is known only where both know it."""
+        if self.words == other.words:
+            return self.words
+        both = self.words.keys() & other.words.keys()
+        found = {each: self.words[each].joined(other.words[each]) for each in both}
+        return self.words if found == self.words else found
 
     def behind_call(self) -> _State:
         """What is known where a call comes back to."""
@@ -81,9 +86,9 @@ class _State:
             {place - top: moved(each) for place, each in self.words.items() if place >= top},
         )
 
-    def execute(self, instruction: Instruction) -> Accesses:
-        """Change as an instruction does; return its accesses."""
-        made, known = made_by(instruction), dict(self.registers)
+    def execute(self, made: Made) -> Accesses:
+        """Change as an instruction does that has `made` this; return its accesses."""
+        known = dict(self.registers) if made.accesses else self.registers  # with what is loaded
         found: list[tuple[bool, frozenset[str]]] = []
         stores: list[tuple[Pointer, int, Pointer]] = []
         for each in made.accesses:
@@ -107,6 +112,16 @@ class _State:
             self.words.pop(place, None)
         if nbytes == WORD_BYTES:
             self.words[address.frame] = value
+
+
+def _joined(one: dict[str, Pointer], two: dict[str, Pointer]) -> dict[str, Pointer]:
+    """What is known of registers, of those that are not named a number; the first if the second says nothing new."""
+    found: dict[str, Pointer] = {}
+    for name in one.keys() | two.keys():
+        here, there = one.get(name, NUMBER), two.get(name, NUMBER)
+        if here is not there and (joined := here.joined(there)) != here:
+            found[name] = joined
+    return {**one, **found} if found else one
 
 
 def _of(origin: Origin, known: Mapping[str, Pointer]) -> Pointer:
@@ -135,15 +150,16 @@ def arrays_accessed(code: Code, entry: int, arguments: Sequence[str]) -> dict[in
     words = {WORD_BYTES * number: each for number, each in enumerate(places) if number >= len(REGISTERS)}
     begins = {entry: _State({**registers, "SP": Pointer(frame=0)}, words)}
     ways = {source: list(each) for source, each in groupby(edges(code), lambda edge: edge.source)}
-    waiting = [entry]
+    made = cache(lambda start: [(each.address, made_by(each)) for each in code.blocks[start].instructions])
+    waiting = [entry]  # a heap: what comes first in the code most often comes first in time, too
     found: dict[int, Accesses] = {}
     while waiting:
-        start = waiting.pop()
+        start = heappop(waiting)
         state = _State(dict(begins[start].registers), dict(begins[start].words))
         block = code.blocks[start]
-        for each in block.instructions:
+        for address, each in made(start):
             if reached := state.execute(each):
-                found[each.address] = reached
+                found[address] = reached
         behind = [
             (each.target, state if each.way is not Way.RETURNS else state.behind_call())
             for each in ways.get(start, ())
@@ -156,7 +172,8 @@ def arrays_accessed(code: Code, entry: int, arguments: Sequence[str]) -> dict[in
         for target, new in behind:
             before = begins.get(target)
             joined = new if before is None else before.joined(new)
-            if before is None or joined != before:
+            if joined is not before:
                 begins[target] = joined
-                waiting.append(target)
+                if target not in waiting:
+                    heappush(waiting, target)
     return found

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from bfsim import store
 from bfsim.blackfin.image import Image
 from bfsim.blackfin.prototypes import CPrototype, CType, prototype_of
 from bfsim.errors import KernelError
+from bfsim.kernel import keys
 from bfsim.kernel.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, Number
 
@@ -22,12 +24,19 @@ def require_declared(
     A number may be shorter in C, an array be of numbers where C has a pointer to a struct or to void, a pointer be the number 0,
     and a result be left alone. What takes more than one register in C, a number of 64 bits or a struct itself, cannot be declared.
     """
-    prototype = prototype_of(image, name)
-    if prototype is None:
-        return
-    wrong = next(_differences(prototype, parameters, result), None)
+    key = keys.object_key(image.digest, name, "", f"told apart from {tuple(parameters)} {result}")
+    wrong, prototype = store.kept(key, lambda: _otherwise(image, name, parameters, result))
     if wrong:
         raise KernelError(f"{wrong}; in {place} it is `{prototype}`")
+
+
+def _otherwise(
+    image: Image, name: str, parameters: Sequence[Parameter], result: Number | None
+) -> tuple[str, str]:
+    """Return what is declared otherwise, and how C has it; nothing where that is nothing."""
+    prototype = prototype_of(image, name)
+    wrong = next(_differences(prototype, parameters, result), None) if prototype else None
+    return wrong or "", str(prototype or "")
 
 
 def _differences(c: CPrototype, parameters: Sequence[Parameter], result: Number | None) -> Iterator[str]:

@@ -94,13 +94,10 @@ def compiled_object(
         found = counters(counted.counters, places, timing, accessed, arrays)
         return Costs(tuple(found), calls(counted.code, places, subroutine.address, function.array_names))
 
-    key = keys.object_key(*about, f"costs of {function.symbol}")
-    if is_checked:  # lines of files that may change are looked up anew
-        counted = _counted(function, made())
-    else:  # each run binds the code to another board: what it costs is read once
-        if key not in _READ:
-            _READ[key] = _counted(function, kept_costs(key, made))
-        counted = _READ[key]
+    key = keys.object_key(*about, f"costs of {function.symbol} {function.parameters} {places.sources_digest}")
+    if key not in _READ:  # each run binds the code to another board: what it costs is read once
+        _READ[key] = _counted(function, kept_costs(key, made))
+    counted = _READ[key]
     if traced:
         subroutine.processor.tracing = Tracing(_site_of(counted.program, places), WRITE)
     functions = tuple(map(places.function_called, counted.symbols))

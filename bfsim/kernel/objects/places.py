@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from bfsim import store
 from bfsim.blackfin.image import Image, Routine
+from bfsim.kernel import keys
 from bfsim.kernel.function import Body, Function, Parameter
 from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, source_of
+from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, file_lines, source_of
 from bfsim.kernel.types import Number
 
 if TYPE_CHECKING:
@@ -35,10 +38,26 @@ class Places:
 
     @cached_property
     def lines(self) -> LineTable:
-        """What the debugging information says of addresses."""
-        from bfsim.blackfin.lines import lines_of  # most starts find all that depends on it
+        """What the debugging information says of addresses, which takes seconds to read where libraries have some."""
+        from bfsim.blackfin.lines import (
+            Line,
+            LineTable,
+            Row,
+            lines_of,
+        )  # most starts find all that depends on it
 
-        return lines_of(self.image)
+        key = keys.object_key(self.image.digest, "", "", "lines")
+        rows = store.kept(key, lambda: [(each.address, each.line) for each in lines_of(self.image).rows])
+        return LineTable(tuple([Row(address, Line(*line) if line else None) for address, line in rows]))
+
+    @cached_property
+    def sources_digest(self) -> str:
+        """Digest of all source files that functions may be shown from; nothing where none are looked for."""
+        if self.files is None:
+            return ""
+        named = sorted({each.line.file for each in self.lines.rows if each.line})
+        texts = [path and file_lines(path) for path in map(self.files.named, named)]
+        return hashlib.sha256(repr((named, texts)).encode(errors="surrogatepass")).hexdigest()
 
     def line_of(self, address: int) -> SourceLine:
         """Return the line of the instruction at an address."""
