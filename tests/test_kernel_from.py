@@ -474,7 +474,7 @@ def test_a_wild_access_is_refused() -> None:
 
 def lines_of_costs(folder: Path) -> set[int]:
     """The lines that `sums` in a folder has cycles for, as a process finds that has just started."""
-    compiled._READ.clear()  # noqa: SLF001  # what another process does not have
+    compiled._READ.clear()  # what another process does not have
     found = explain(sums(folder), GCC_O2)
     return {each.line for each in found.lines if each.operations}
 
