@@ -21,7 +21,7 @@ from bfsim.terminal import print_report, progress_bar
 if TYPE_CHECKING:
     from bfsim.recording.sources import SourceFormat
 
-SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video", "rosbag")
+SOURCE_FORMATS = ("images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag")
 """Those of bfsim.recording, which takes its time to import."""
 
 _SKIPPED_LISTED = 10
@@ -56,7 +56,9 @@ def record() -> None:
     type=click.Choice(SOURCE_FORMATS),
     help="What the sources are, if names do not tell.",
 )
-@click.option("--size", type=Size(), metavar="WxH", help="Size of the frames in raw UYVY and I420 files.")
+@click.option(
+    "--size", type=Size(), metavar="WxH", help="Size of the frames in raw UYVY, YUYV and I420 files."
+)
 @click.option(
     "--resize",
     type=Size(),
@@ -113,7 +115,7 @@ def import_command(
     """Make the recording OUTPUT from pictures.
 
     A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
-    (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera. A bag of ROS (.bag of
+    (.uyvy, .yuyv, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera. A bag of ROS (.bag of
     ROS 1, .mcap, .db3 or the folder of ROS 2) is one source with both: pictures are paired by their time stamps, and
     camera_info becomes geometry and rectification. Needs rosbags: pip install "bfsim[ros]".
     Images that cannot be read, those without a picture of the other camera by their names (left_07 goes with

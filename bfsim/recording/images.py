@@ -156,6 +156,8 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(file, formats=formats) as image:
+                # A phone may keep a smaller copy of the picture behind it (MPO).
+                count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
                 image.load()
                 mode = image.mode
                 upright = ImageOps.exif_transpose(image)
@@ -165,6 +167,11 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
     # Pillow's decoders report damage with any of these.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
         raise RecordingError(f"image must be readable: {error}") from None
+    if count > 1:
+        raise RecordingError(
+            f"image must be one picture, not {count}; `--format video` reads GIF and animated PNG, and "
+            "`magick in.webp -coalesce %03d.png` makes one file of each picture of others"
+        )
     if mode not in _EIGHT_BIT_MODES:
         raise RecordingError(
             f"image must have 8 bits a channel, not the pixel format {mode}; make 8 of the bits that the camera uses, of 16 "

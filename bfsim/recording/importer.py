@@ -18,7 +18,7 @@ from bfsim.recording.images import open_image_pair, open_images
 from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_pair
 from bfsim.recording.layout import table_from_npy
 from bfsim.recording.planes import YuvPlanes, fit_matrix
-from bfsim.recording.raw import open_i420, open_uyvy, open_y4m
+from bfsim.recording.raw import open_i420, open_uyvy, open_y4m, open_yuyv
 from bfsim.recording.rosbag import BagPictures, open_bag
 from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, Skipped, SourceFormat, guess_format
 from bfsim.recording.video import open_video
@@ -34,7 +34,7 @@ Progress = Callable[[int, int | None], None]
 """Called after each stereo frame with the frames done and, where known, the frames there are."""
 
 _FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
-_RAW_OPENERS = {"uyvy": open_uyvy, "i420": open_i420}
+_RAW_OPENERS = {"uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420}
 
 
 @dataclass(frozen=True, slots=True)

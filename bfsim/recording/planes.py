@@ -82,6 +82,11 @@ class YuvPlanes:
         return cls(uyvy[:, 1::2], uyvy[:, 0::4], uyvy[:, 2::4])
 
     @classmethod
+    def from_yuyv(cls, yuyv: NDArray[np.uint8]) -> YuvPlanes:
+        """The planes (4:2:2) of a picture of shape (height, 2 * width), as cameras on USB send it: Y before U and V."""
+        return cls(yuyv[:, 0::2], yuyv[:, 1::4], yuyv[:, 3::4])
+
+    @classmethod
     def from_image(cls, image: Image.Image) -> YuvPlanes:
         """The planes (4:4:4) of an image of 8 bits a channel."""
         rgb = np.asarray(image.convert("RGB"), np.int32)

@@ -1,4 +1,4 @@
-"""Pictures from files without a container: raw UYVY and I420 frames back to back, and YUV4MPEG2 (.y4m).
+"""Pictures from files without a container: raw UYVY, YUYV and I420 frames back to back, and YUV4MPEG2 (.y4m).
 
 Their bytes are kept as they are. Only a y4m file that says XCOLORRANGE=LIMITED is stretched to full range.
 YUV4MPEG2: the MJPEG Tools' yuv4mpeg(5) manual page, with FFmpeg's X parameters.
@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
 from bfsim.recording.planes import YuvPlanes
@@ -58,14 +59,26 @@ class _Layout:
 
 def open_uyvy(source: str, size: tuple[int, int]) -> PictureSource:
     """Raw UYVY frames of `size` (width, height) in pixels."""
+    return _open_packed(source, "UYVY", size, YuvPlanes.from_uyvy)
+
+
+def open_yuyv(source: str, size: tuple[int, int]) -> PictureSource:
+    """Raw YUYV frames, also called YUY2, of `size` (width, height) in pixels."""
+    return _open_packed(source, "YUYV", size, YuvPlanes.from_yuyv)
+
+
+def _open_packed(
+    source: str, name: str, size: tuple[int, int], planes_of: Callable[[NDArray[np.uint8]], YuvPlanes]
+) -> PictureSource:
+    """Two bytes a pixel, two pixels with one colour."""
     width, height = size
     if width % 2:
-        raise RecordingError(f"{source}: width of UYVY frames must be even, not {width}")
+        raise RecordingError(f"{source}: width of {name} frames must be even, not {width}")
 
     def planes(data: bytes) -> YuvPlanes:
-        return YuvPlanes.from_uyvy(np.frombuffer(data, np.uint8).reshape(height, 2 * width))
+        return planes_of(np.frombuffer(data, np.uint8).reshape(height, 2 * width))
 
-    return _open_raw(source, "UYVY", size, 2 * width * height, planes)
+    return _open_raw(source, name, size, 2 * width * height, planes)
 
 
 def open_i420(source: str, size: tuple[int, int]) -> PictureSource:

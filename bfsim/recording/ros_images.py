@@ -54,9 +54,7 @@ def planes_of(message: Any, kind: str) -> YuvPlanes:
         return YuvPlanes.from_image(Image.fromarray(cv2.cvtColor(np.ascontiguousarray(pixels), code)))
     if width % 2:
         raise RecordingError(f"{encoding} must have an even width, not {width}")
-    if _YUV[encoding] == "YUYV":
-        pixels = pixels.reshape(height, width, 2)[..., ::-1].reshape(height, 2 * width)
-    return YuvPlanes.from_uyvy(pixels)
+    return YuvPlanes.from_yuyv(pixels) if _YUV[encoding] == "YUYV" else YuvPlanes.from_uyvy(pixels)
 
 
 def _pixels(message: Any, pixel_bytes: int) -> NDArray[np.uint8]:

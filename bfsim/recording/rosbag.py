@@ -108,11 +108,16 @@ def _pair(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) ->
         pairs = [(each.name, other) for each in lefts if (other := _other_side(each.name, "left")) in found]
         pairs = [each for each in pairs if found[each[1]].kind in IMAGE_TYPES]
         if len(pairs) != 1:
+            of_one = "; `--mono` takes the one camera for both sides" if _count_of_images(found) == 1 else ""
             raise RecordingError(
-                f"{name}: `--topics LEFT RIGHT` must name two image topics, of {_listed(found)}"
+                f"{name}: `--topics LEFT RIGHT` must name two image topics, of {_listed(found)}{of_one}"
             )
         topics = pairs[0]
     return tuple(_picture_topic(name, found, each) for each in topics)
+
+
+def _count_of_images(found: dict[str, Topic]) -> int:
+    return sum(each.kind in IMAGE_TYPES for each in found.values())
 
 
 def _other_side(topic: str, side: str) -> str:

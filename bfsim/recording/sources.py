@@ -11,16 +11,17 @@ from typing import TYPE_CHECKING, Literal, get_args
 if TYPE_CHECKING:
     from bfsim.recording.planes import YuvPlanes
 
-SourceFormat = Literal["images", "uyvy", "i420", "y4m", "video", "rosbag"]
+SourceFormat = Literal["images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag"]
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
 
 IMAGE_SUFFIXES = frozenset({".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"})
 
 _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ".uyvy": "uyvy", ".422": "uyvy",
+    ".yuyv": "yuyv", ".yuy2": "yuyv",
     ".i420": "i420", ".yuv": "i420", ".yuv420": "i420",
     ".y4m": "y4m",
-    ".avi": "video", ".m4v": "video", ".mkv": "video", ".mov": "video", ".mp4": "video", ".mpg": "video",
+    ".apng": "video", ".avi": "video", ".gif": "video", ".m4v": "video", ".mkv": "video", ".mov": "video", ".mp4": "video", ".mpg": "video",
     ".mpeg": "video", ".ogv": "video", ".ts": "video", ".webm": "video", ".wmv": "video",
     ".bag": "rosbag", ".db3": "rosbag", ".mcap": "rosbag",
 }  # fmt: skip

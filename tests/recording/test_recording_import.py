@@ -140,6 +140,16 @@ def test_raw_uyvy_keeps_every_byte(tmp_path: Path) -> None:
         np.testing.assert_array_equal(frame.right, pixels[1, k])
 
 
+@pytest.mark.parametrize("suffix", ["yuyv", "yuy2"])
+def test_raw_yuyv_is_uyvy_with_its_bytes_the_other_way_round(tmp_path: Path, suffix: str) -> None:
+    """As cameras on USB send it: Y before U and V."""
+    pixels = noise((3, 6, 8, 2))
+    (tmp_path / f"a.{suffix}").write_bytes(pixels[..., ::-1].tobytes())
+    import_recording([tmp_path / f"a.{suffix}"], tmp_path / "a.mcap", size=(8, 6), mono=True)
+    for k, frame in enumerate(frames_of(tmp_path / "a.mcap")):
+        np.testing.assert_array_equal(frame.left, pixels[k].reshape(6, 16))
+
+
 def test_raw_i420(tmp_path: Path) -> None:
     """I420 keeps its brightness; a row of colour serves two rows of pixels."""
     y, u, v = noise((4, 8)), noise((2, 4), 1), noise((2, 4), 2)
@@ -248,6 +258,37 @@ def test_video(tmp_path: Path) -> None:
     frames = frames_of(tmp_path / "a.mcap")
     assert [set(frame.left[:, 1::2].flat) for frame in frames] == [{0}, {255}]
     assert set(frames[0].left[:, 0::4].flat) == {128}
+
+
+def animation(path: Path, format: str) -> None:
+    """Write three pictures that differ."""
+    pictures = [Image.fromarray(each) for each in noise((3, 4, 8, 3))]
+    pictures[0].save(path, format, save_all=True, append_images=pictures[1:], duration=100)
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.apng"])
+def test_all_pictures_of_an_animation_are_a_video(tmp_path: Path, name: str) -> None:
+    """A GIF was refused by its name, and of a PNG with three pictures one came."""
+    pytest.importorskip("av", reason="needs the optional extra: video")
+    animation(tmp_path / name, "GIF" if name == "a.gif" else "PNG")
+    summary = import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True)
+    assert (summary.frame_count, summary.fps) == (3, 10)
+
+
+@pytest.mark.parametrize(("name", "format"), [("a.png", "PNG"), ("a.webp", "WEBP"), ("a.tiff", "TIFF")])
+def test_a_picture_of_several_is_refused(tmp_path: Path, name: str, format: str) -> None:
+    """The first one came, and the others were lost without a word."""
+    animation(tmp_path / name, format)
+    with pytest.raises(
+        RecordingError, match=r"a\.\w+: image must be one picture, not 3; `--format video` reads"
+    ):
+        import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True)
+
+
+def test_a_jpeg_with_a_copy_behind_it_is_one_picture(tmp_path: Path) -> None:
+    """Phones put a smaller copy behind the picture."""
+    animation(tmp_path / "a.jpg", "MPO")
+    assert import_recording([tmp_path / "a.jpg"], tmp_path / "a.mcap", mono=True).frame_count == 1
 
 
 @pytest.mark.parametrize(("degrees", "corner"), [(90, (15, 0)), (180, (7, 15)), (-90, (0, 7))])

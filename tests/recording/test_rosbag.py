@@ -340,6 +340,15 @@ def test_another_size_is_refused_unless_pictures_are_fitted(tmp_path: Path) -> N
 
 
 @each_kind
+def test_a_bag_of_one_camera_asks_for_mono(kind: str, tmp_path: Path) -> None:
+    """It asked for two topics of the one that there is."""
+    ros = Ros(kind)
+    path = ros.write(tmp_path, [each for each in grey_pair(ros, range(2)) if "left" in each[0]])
+    with pytest.raises(RecordingError, match=r"\(sensor_msgs/Image, 2\); `--mono` takes the one camera for"):
+        imported(path)
+
+
+@each_kind
 def test_topics_are_listed_where_they_must_be_chosen(kind: str, tmp_path: Path) -> None:
     """With types and counts, pictures first."""
     ros = Ros(kind)
