@@ -50,6 +50,13 @@ class Row:
             "`row.array[0]` is one of its elements, for which a core takes no cycles"
         )
 
+    def __setitem__(self, where: object, value: object) -> NoReturn:
+        """Raise FirmwareError: kernels write rows, which takes their cycles."""
+        raise FirmwareError(
+            f"a row of {self.buffer} must be written by a kernel, or by a DMA, not with `row[...] =`; `row.array[0] = 3` sets one of "
+            "its elements, for which a core takes no cycles"
+        )
+
     def __repr__(self) -> str:
         return f"<row of {self.buffer} at 0x{self.address:08X} in {self.memory}>"
 

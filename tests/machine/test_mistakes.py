@@ -306,6 +306,18 @@ def test_a_row_is_not_taken_apart_by_a_main_loop(what: Callable[[Any], object]) 
         run(every_frame(look))
 
 
+def test_a_row_is_not_written_by_a_main_loop() -> None:
+    """It was a TypeError, which does not say what writes rows."""
+
+    def look(core: Core, frame: Frame) -> Play:
+        yield core.run(first, core.rows("single_row")[0])
+        core.rows("single_row")[0][:] = core.rows("single_row")[0]  # type: ignore[index]
+
+    message = r"a row of single_row must be written by a kernel, .*\(.*test_mistakes.py:\d+\)$"
+    with pytest.raises(FirmwareError, match=message):
+        run(every_frame(look))
+
+
 def test_a_core_without_a_main_loop_is_told() -> None:
     """The chip has two cores; one that has nothing to do says so."""
     board = load(see_all)
