@@ -292,6 +292,15 @@ def test_other_frames_are_compared_without_lines() -> None:
         difference_of(first, run(kernel(line(12, 1, 30)), index=7))
 
 
+def test_fewer_frames_are_told_as_such() -> None:
+    """The digest of a recording is of the frames that ran: with fewer it looked like another recording."""
+    first, second = run(kernel(line(12, 1, 10))), run(kernel(line(12, 1, 30)), index=1)
+    longer = replace(first.run, frames=(*first.run.frames, *second.run.frames))
+    longer = replace(longer, identity=replace(IDENTITY, recording_digest="0" * 64))
+    found = difference_of(first, result_of(longer, {}))
+    assert [(each.what, each.before, each.after) for each in found.configuration] == [("frames", "1", "2")]
+
+
 def test_the_configuration_comes_first() -> None:
     """Names in full, digests cut."""
     one = run(kernel(line(12, 1, 10)))

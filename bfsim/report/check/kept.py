@@ -10,7 +10,7 @@ from bfsim.report.check.figures import OBJECTS, RESULTS, Name
 from bfsim.report.check.requirement import parse_requirement
 from bfsim.report.diff.pairs import SMALL
 from bfsim.report.diff.result_side import result_side
-from bfsim.report.diff.side import SEPARATOR, Line, Owner, Side, Source, Stall
+from bfsim.report.diff.side import FRAMES, SEPARATOR, Line, Owner, Side, Source, Stall
 from bfsim.report.result_file import Result
 
 KEPT_SHARE = 0.001
@@ -83,6 +83,7 @@ def kept_side(case: Case) -> Side:
         f"{key}: content" if key in digests else key.replace("_", " "): str(value)
         for key, value in on.model_dump(include={*digests, "bfsim_version", "llvm_version", "code"}).items()
     } | {
+        FRAMES: str(on.frames),
         "board numbers": SEPARATOR.join(on.board_numbers),
         "compiler numbers": SEPARATOR.join(on.compiler_numbers),
     }

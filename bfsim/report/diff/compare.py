@@ -9,12 +9,13 @@ from bfsim.errors import ConfigError
 from bfsim.report.diff.contributions import contributions_of
 from bfsim.report.diff.difference import NOTHING, Change, Difference, FrameChange, SeenChange
 from bfsim.report.diff.result_side import result_side
-from bfsim.report.diff.side import SEPARATOR, Side
+from bfsim.report.diff.side import FRAMES, SEPARATOR, Side
 from bfsim.report.result_file import Result
 
 DIGEST_SHOWN = 12
 """Digits of a digest that are shown."""
 CONTENT = ": content"
+RECORDING_CONTENT = f"recording{CONTENT}"
 
 
 def difference_of(before: Result, after: Result) -> Difference:
@@ -53,9 +54,10 @@ def difference_between(before: Side, after: Side) -> Difference:
 
 
 def _configuration(before: Side, after: Side) -> Iterator[Change]:
+    as_many = before.configuration.get(FRAMES) == after.configuration.get(FRAMES)
     for what, text in before.configuration.items():
         old, new = text, after.configuration.get(what, text)
-        if old == new:
+        if old == new or (what == RECORDING_CONTENT and not as_many):
             continue
         if what.endswith(("files", "numbers")):
             one, other = old.split(SEPARATOR), new.split(SEPARATOR)

@@ -8,7 +8,7 @@ from dataclasses import fields
 
 from bfsim.report.budget import frame_rate_hz
 from bfsim.report.diff.library import with_callers
-from bfsim.report.diff.side import SEPARATOR, Line, Owner, Side, Source, Stall
+from bfsim.report.diff.side import FRAMES, SEPARATOR, Line, Owner, Side, Source, Stall
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.report.result_file import Result
 from bfsim.report.seen_json import name_of_object
@@ -32,7 +32,7 @@ def result_side(result: Result, chosen: Collection[int]) -> Side:
     owned, sources = with_callers(owners, _sources(run))
     names = dict.fromkeys(name for frame in frames for name in frame.results)
     return Side(
-        configuration=identity_words(run.identity),
+        configuration=identity_words(run.identity) | {FRAMES: str(len(run.frames))},
         cclk_hz=run.identity.cclk_hz,
         frame_ms=1000 / frame_rate_hz(run.frames, run.identity.cclk_hz),
         frames=tuple(each.index for each in frames),

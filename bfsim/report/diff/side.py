@@ -10,6 +10,8 @@ from typing import NamedTuple, TypeVar
 
 SEPARATOR = "; "
 """Between files, or numbers, of a configuration."""
+FRAMES = "frames"
+"""What a configuration calls the number of frames that ran. The digest of a recording is of these alone."""
 
 
 class Owner(NamedTuple):
