@@ -12,7 +12,7 @@ import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import Event, Thread, current_thread, get_ident, main_thread
+from threading import Event, Thread, Timer, current_thread, get_ident, main_thread
 from types import FrameType
 
 from bfsim.drafts import discard_all
@@ -22,6 +22,9 @@ BY_SIGNAL = 128
 
 DEAF_S = 2.0
 """Calls of kernels take milliseconds: one that a signal has not ended by then does not end at all."""
+
+AGAIN_S = 0.01
+"""A callback is over by then."""
 
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -40,6 +43,17 @@ def hear_signals() -> None:
     for number in _SIGNALS:
         if signal.getsignal(number) in {signal.SIG_DFL, signal.default_int_handler}:
             signal.signal(number, _hear)
+    sys.unraisablehook = _hear_again
+
+
+def _hear_again(dropped: sys.UnraisableHookArgs) -> None:
+    """Send the signal again a moment later whose KeyboardInterrupt Python has dropped: it came in a callback of a weak reference."""
+    if isinstance(dropped.exc_value, KeyboardInterrupt) and _heard.is_set():
+        again = Timer(AGAIN_S, signal.pthread_kill, (main_thread().ident, _heard.number))
+        again.daemon = True
+        again.start()
+    else:
+        sys.__unraisablehook__(dropped)
 
 
 def interrupted_code() -> int:

@@ -135,3 +135,28 @@ def test_a_device_without_an_end_is_no_file_to_read(arguments: tuple[str, ...]) 
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert done.returncode == 2, done.stderr
     assert "/dev/zero" in done.stderr
+
+
+DROPPED = """
+import os, signal, time, weakref
+from bfsim.signals import hear_signals, interrupted_code
+
+class Thing: ...
+
+hear_signals()
+thing = Thing()
+watch = weakref.ref(thing, lambda _: [os.kill(os.getpid(), signal.SIGTERM) for _ in range(1)])
+try:
+    del thing
+    time.sleep(20)
+except KeyboardInterrupt:
+    raise SystemExit(interrupted_code())
+"""
+
+
+def test_a_signal_in_a_callback_is_heard_all_the_same() -> None:
+    """Python prints an exception in a callback of a weak reference, and goes on: a sweep ran to its end after Ctrl-C."""
+    done = subprocess.run(
+        [sys.executable, "-c", DROPPED], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "")
