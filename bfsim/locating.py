@@ -27,6 +27,13 @@ def parted(name: str, must_be: str) -> tuple[str, str]:
     return place, attribute
 
 
+def file_named(name: str) -> Path | None:
+    """Return the file of such a name that is here, without importing anything; None for what is shipped, or elsewhere."""
+    place = name.rpartition(":")[0] if ":" in name else name
+    path = Path(place if place.endswith(".py") else f"{place.replace('.', '/')}.py")
+    return path if _is_file(path) else None
+
+
 def located(place: str, advice: str = "") -> tuple[str, Root]:
     """Return the name of the module that is a file or a package, and where to import it from.
 

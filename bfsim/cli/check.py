@@ -80,15 +80,16 @@ def check(
       bfsim check drive.mcap --ldf l2 --baseline bfsim.toml --update     one run more
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
-    from bfsim.checking import require_comparable
+    from bfsim.checking import arguments_of, require_comparable
     from bfsim.report.check.history import append_history, read_history
     from bfsim.report.check.outputs import check_json
+    from bfsim.report.save import files_of_run
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
-    read = what["recording"], what["script"], what["ldf"]
+    cases = _cases(path, _given(what, path.parent), name, update=update)
+    read = [file for case in cases for file in files_of_run(arguments_of(case.configuration, path.parent))]
     _require_places([path, history, *outputs.values()], read)
     require_json_place(json_path, (path, history, *outputs.values(), *read))
-    cases = _cases(path, _given(what, path.parent), name, update=update)
     if history:
         read_history(history)
     for case in cases:

@@ -12,6 +12,7 @@ from typing import IO, Any
 
 from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
+from bfsim.locating import file_named
 
 if sys.platform != "win32":
     import fcntl
@@ -36,9 +37,13 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
 
 
 def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
-    """Return the files that a run with the arguments `what` of `simulate` reads, and the one in which it records its work."""
+    """Return the files that a run with the arguments `what` of `simulate` reads, and last the one in which it records its work."""
+    sources = (what.get(name) for name in ("firmware", "board", "profile"))
     names = (what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
-    return tuple(name if name is None else Path(name) for name in names)
+    return (
+        *(file_named(name) if isinstance(name, str) else None for name in sources),
+        *(name if name is None else Path(name) for name in names),
+    )
 
 
 def write_text(path: Path, text: str | Iterable[str]) -> None:

@@ -158,7 +158,9 @@ def refused(*arguments: object) -> str:
         (["a\udcff.mcap", "--update"], "recording must have a name that can be written into a baseline file"),
         (["--junit", "limits.toml"], "limits.toml must be a file of its own to be written"),
         (["--json", "no/o.json"], "the folder no must exist"),
-        (["--history", "fw_eyes.py"], "fw_eyes.py:1 must be a line that `bfsim check --history` wrote"),
+        (["--history", __file__], "test_check.py:1 must be a line that `bfsim check --history` wrote"),
+        (["--junit", "fw_eyes.py"], "fw_eyes.py must be a file of its own to be written"),
+        (["--benchmark", "drive.mcap"], "drive.mcap must be a file of its own to be written"),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_told_before_anything_runs(arguments: list[str], message: str) -> None:

@@ -190,6 +190,22 @@ def test_what_is_written_takes_the_place_of_nothing_else(
     assert "drive.json must be a file of its own to be written" in result.output
 
 
+@pytest.mark.parametrize("command", ["run", "profile"])
+@pytest.mark.parametrize("written", ["--trace", "--html", "--flame"])
+@pytest.mark.parametrize("name", ["mine.py", "mine.py:it", "mine", "mine:it"])
+@pytest.mark.parametrize("option", ["--firmware", "--board", "--profile"])
+def test_what_is_written_takes_the_place_of_no_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, written: str, name: str, option: str
+) -> None:
+    """`--trace mine.py` left a timeline in the place of the firmware."""
+    monkeypatch.chdir(tmp_path)
+    Path("mine.py").write_text("it = 1\n")
+    result = call(command, option, name, written, "mine.py")
+    assert result.exit_code == 2
+    assert "mine.py must be a file of its own to be written" in result.output
+    assert Path("mine.py").read_text() == "it = 1\n"
+
+
 @pytest.mark.parametrize("option", ["--json", "--mcap", "--baseline"])
 def test_links_in_a_circle(tmp_path: Path, option: str) -> None:
     """They are told before anything runs."""
