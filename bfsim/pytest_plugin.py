@@ -106,7 +106,7 @@ def _once(config: pytest.Config, *recording: Any, **what: Any) -> Result:
     from bfsim.errors import ConfigError
 
     runs = config.stash[_RUNS]
-    key = f"{recording} {sorted(what.items(), key=lambda each: each[0])}"
+    key = f"{Path.cwd()} {recording} {sorted(what.items(), key=lambda each: each[0])}"
     if key not in runs:
         runs[key] = _result(*recording, **what)
     if not runs[key].run.frames:
@@ -137,7 +137,7 @@ def _mistakes() -> Iterator[None]:
     try:
         yield
     except BfsimError as error:
-        pytest.fail(str(error), pytrace=False)
+        raise pytest.fail.Exception(str(error), pytrace=False) from None
 
 
 def _sentences(mark: pytest.Mark) -> list[str]:

@@ -23,6 +23,11 @@ def test_a_run(bfsim):
 def test_the_same_run_is_there_already(bfsim):
     assert bfsim(frames=1) is bfsim(frames=1)
 
+def test_another_folder_may_have_other_files_of_those_names(bfsim, tmp_path, monkeypatch):
+    here = bfsim(frames=1)
+    monkeypatch.chdir(tmp_path)
+    assert bfsim(frames=1) is not here
+
 @pytest.mark.frame_budget("latency <= 500 ms", min_hz=5, stages={"Edge detection": 90})
 def test_kept(bfsim):
     bfsim(frames=1)
@@ -102,7 +107,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "7 failed, 4 passed, 2 errors" in told
+    assert "7 failed, 5 passed, 2 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -123,6 +128,7 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert "limits.toml must be a baseline file, but there is none" in told
     # a mistake in a marker or a baseline is told without the code that found it
     assert "pytest_plugin.py:" not in told
+    assert "another exception occurred" not in told
 
 
 def test_who_does_not_use_it_does_not_wait_for_it() -> None:
