@@ -189,7 +189,8 @@ def _list(sweep: Sweep, workers: Workers) -> None:
         pace.add(todo[0], sweep.try_out(todo[0], TRIED_FRAMES, workers))
     time_left = in_words(pace.seconds_left(todo, workers.room()))
     frames = sum(each.frames for each in todo)
-    click.echo(f"{len(todo):,} of {len(sweep.planned):,} points to run, {frames:,} frames: {time_left}.")
+    words = f"{frames:,} {'frame' if frames == 1 else 'frames'}"
+    click.echo(f"{len(todo):,} of {len(sweep.planned):,} points to run, {words}: {time_left}.")
 
 
 def _run(sweep: Sweep, workers: Workers) -> bool:
