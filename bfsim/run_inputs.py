@@ -1,18 +1,30 @@
-"""What a run reads beside its frames: the LDF, and what a recording knows of its cameras."""
+"""What a run reads beside its frames: which files, the LDF, and what a recording knows of its cameras."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from bfsim import shipped
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import LinkError, shown
 from bfsim.linker import LinkerScript, parse_ldf
+from bfsim.locating import file_named
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.program import Calibration, SourcePixels
 from bfsim.once import once
 from bfsim.recording import RecordingReader
+
+
+def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
+    """Return the files that a run with the arguments `what` of `simulate` reads, and last the one in which it records its work."""
+    sources = (what.get(name) for name in ("firmware", "board", "profile"))
+    names = (what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
+    return (
+        *(file_named(name) if isinstance(name, str) else None for name in sources),
+        *(name if name is None else Path(name) for name in names),
+    )
 
 
 def read_placement(

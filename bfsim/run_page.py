@@ -21,9 +21,9 @@ from bfsim.report.html.frames import MOST
 from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.ldf.map import MemoryMap
-from bfsim.report.save import files_of_run, require_apart, require_place, write_text
+from bfsim.report.save import require_apart, require_place, write_text
 from bfsim.report.target import Target
-from bfsim.run_inputs import calibration_of
+from bfsim.run_inputs import calibration_of, files_of_run
 from bfsim.trace import BudgetRow, Identity, RunRecord
 from bfsim.watchers import Watchers, calling
 

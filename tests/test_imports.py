@@ -72,7 +72,7 @@ MAY_IMPORT = {
     "building": {"compiling", "importing", "kernel", "loading", "machine", "once"},
     "given": {"importing", "kernel", "loading", "locating", "machine", "shipped"},
     "hardware": {"chip", "errors", "fields", "importing", "kernel", "loading", "once"},
-    "run_inputs": {"chip", "errors", "linker", "machine", "once", "recording", "shipped"},
+    "run_inputs": {"chip", "errors", "linker", "locating", "machine", "once", "recording", "shipped"},
     "mapping": {
         "building",
         "chip",
@@ -210,6 +210,7 @@ MAY_IMPORT = {
         "recording",
         "report",
         "run",
+        "run_inputs",
         "run_page",
         "scenery",
         "seen",

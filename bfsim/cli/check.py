@@ -83,7 +83,7 @@ def check(
     from bfsim.checking import arguments_of, require_comparable
     from bfsim.report.check.history import append_history, read_history
     from bfsim.report.check.outputs import check_json
-    from bfsim.report.save import files_of_run
+    from bfsim.run_inputs import files_of_run
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
     cases = _cases(path, _given(what, path.parent), name, update=update)

@@ -146,7 +146,7 @@ def _named(text: str) -> tuple[Path, str]:
 
 def _read(text: str, side: Result | Case | dict[str, Any]) -> Iterator[Path | None]:
     """Yield the files that a side is read from."""
-    from bfsim.report.save import files_of_run
+    from bfsim.run_inputs import files_of_run
 
     if isinstance(side, dict):
         yield from files_of_run(side)

@@ -48,7 +48,7 @@ def explain(
       bfsim explain sobel_row --asm --run --frames 2
       bfsim explain my_kernels:convolve --profile gcc-O2 --json
     """
-    from bfsim.report.save import files_of_run
+    from bfsim.run_inputs import files_of_run
 
     require_json_place(json_path, files_of_run(what))
     runs = runs or what["recording"] is not None

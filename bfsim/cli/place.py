@@ -53,7 +53,8 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
     """
     from bfsim.placing.search import place as found_by
     from bfsim.placing.tables import placed_json, placed_report
-    from bfsim.report.save import files_of_run, require_apart, require_place, write_text
+    from bfsim.report.save import require_apart, require_place, write_text
+    from bfsim.run_inputs import files_of_run
 
     if output:
         require_place(output)

@@ -68,7 +68,7 @@ def profile(
     """
     from bfsim.report.profile.as_json import profile_json
     from bfsim.report.profile.tables import profile_report
-    from bfsim.report.save import files_of_run
+    from bfsim.run_inputs import files_of_run
 
     require_json_place(json_path, (*files_of_run(what), html, trace, flame))
     require_told(target, html, is_json_only=json_path == STDOUT)

@@ -72,11 +72,12 @@ def run(
       bfsim run drive.mcap --work drive.work --set clocks.cclk_hz=500e6
     """
     from bfsim.report.as_json import json_chunks
-    from bfsim.report.save import files_of_run, require_apart
+    from bfsim.report.save import require_apart
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
     from bfsim.run import has_view
+    from bfsim.run_inputs import files_of_run
 
     read = files_of_run(what)
     if what["record_work"]:

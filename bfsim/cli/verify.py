@@ -46,8 +46,8 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
     from bfsim.loading import entries_of, kernels_of, load_firmware, written_in_python
-    from bfsim.report.save import files_of_run
     from bfsim.report.verification import as_json, verification_report
+    from bfsim.run_inputs import files_of_run
     from bfsim.verifying import Sampler
     from bfsim.verifying import verify as verified
 

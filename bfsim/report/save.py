@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
-from bfsim.locating import file_named
 
 if sys.platform != "win32":
     import fcntl
@@ -34,16 +33,6 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
         raise ConfigError(
             f"{path} must be a file of its own to be written, not one that is read or written, too"
         )
-
-
-def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
-    """Return the files that a run with the arguments `what` of `simulate` reads, and last the one in which it records its work."""
-    sources = (what.get(name) for name in ("firmware", "board", "profile"))
-    names = (what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
-    return (
-        *(file_named(name) if isinstance(name, str) else None for name in sources),
-        *(name if name is None else Path(name) for name in names),
-    )
 
 
 def write_text(path: Path, text: str | Iterable[str]) -> None:

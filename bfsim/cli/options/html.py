@@ -79,7 +79,7 @@ def writing_page(
     if path is None:
         yield
         return
-    from bfsim.report.save import files_of_run
+    from bfsim.run_inputs import files_of_run
     from bfsim.run_page import paged, require_page
 
     require_page(path, (*files_of_run(what), *others))
