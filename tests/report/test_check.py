@@ -236,6 +236,25 @@ def test_results_that_change_often_are_kept_as_totals(tmp_path: Path) -> None:
     assert broken(hold(with_results(run, *counts), path)) == ["results.edges.total", "results.balls"]
 
 
+def test_a_tolerance_of_both_sides_is_not_told_as_the_upper_one(tmp_path: Path) -> None:
+    """29 with 10 % was told as `== 32`, of what was measured below it, too."""
+    path = tmp_path / "bfsim.toml"
+    run = edge_run(*[100] * 30)
+    counts = [{"edges": index} for index in range(30)]
+    measured(path, with_results(run, *counts), results_tolerance_percent=10)
+    halved = [{"edges": each["edges"] // 2} for each in counts]
+    told = list(broken_lines(hold(with_results(run, *halved), path)))
+    assert told[-1] == "results.edges.max must be == 29, not 14 (-51.72 %)"
+
+
+def test_a_fraction_of_a_count_is_told_as_one(tmp_path: Path) -> None:
+    """`missed == 0.5` was told as `must be == 0, not 0`."""
+    path = tmp_path / "bfsim.toml"
+    measured(path, edge_run(950, 1050))
+    replace_in(path, 'name = "drive"', 'name = "drive"\nrequire = ["missed == 0.5"]')
+    assert list(broken_lines(hold(edge_run(950, 1050), path))) == ["missed must be == 0.5, not 0 (-100.00 %)"]
+
+
 def test_what_is_published_may_be_negative(tmp_path: Path) -> None:
     """A tolerance is of the size of the number, whatever its sign."""
     path = tmp_path / "bfsim.toml"

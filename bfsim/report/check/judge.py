@@ -33,8 +33,9 @@ HZ_RESOLUTION = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """One sentence and what was measured, in the figure's unit. `limit` is what was written, `allowed` with its tolerance.
+    """One sentence and what was measured, in the figure's unit.
 
+    `limit` is what was written, `allowed` with its tolerance; after `==`, where both sides break it, `allowed` is the limit.
     `frames` are those whose results differ, by their index; where there are some, limit and measured are of `frame`, which is
     most off. They are totals where no frame differs, or where there are more or fewer frames than limits.
     """
@@ -171,7 +172,7 @@ def _verdict(
         is_persons=is_persons,
         unit=figure.unit,
         limit=limit,
-        allowed=limit - slack if requirement.comparison == ">=" else limit + slack,
+        allowed={"<=": limit + slack, ">=": limit - slack, "==": limit}[requirement.comparison],
         measured=measured,
         broken=broken,
         better=better[requirement.comparison] and not is_persons,

@@ -24,6 +24,7 @@ from bfsim.report.check.figures import (
     LATENCY,
     MEMORY,
     MISSED,
+    OF_THE_RUN,
     RESULTS,
     STATISTICS,
     Figure,
@@ -115,8 +116,14 @@ def parse_requirement(text: str, where: str) -> Requirement:
         named = text[at:].strip()
         if named not in UNITS[unit]:
             known = " or ".join(each or "none" for each in UNITS[unit])
-            what = "the stage " if unit is Unit.CCLK and name not in {LATENCY, FRAME} else ""
-            _fail(f"the unit of {what}{'.'.join(name)} must be {known}, not {shown(named)}", text, at, where)
+            is_stage = unit is Unit.CCLK and name not in {LATENCY, FRAME}
+            what = f"the unit of {'the stage ' if is_stage else ''}{'.'.join(name)}"
+            _fail(
+                f"{what} must be {known}, not {shown(named)}{_meant(name) if is_stage else ''}",
+                text,
+                at,
+                where,
+            )
     if min(numbers) < 0 and not is_published:
         _fail(wanted, text, begin, where)
     return Requirement(
@@ -178,6 +185,12 @@ def _require_name(name: Name, parts: Sequence[tuple[int, str]], text: str, where
         _fail(f"{dotted(name[:most])} must be followed by {what}, or nothing", text, parts[most][0], where)
     if len(name) < least:
         _fail(f"{name[0]} must be followed by a name, such as {name[0]}.L2", text, len(name[0]), where)
+
+
+def _meant(name: Name) -> str:
+    """Return a hint where what is taken for a stage is nearly the name of something else."""
+    near = difflib.get_close_matches(dotted(name), [dotted(each) for each in OF_THE_RUN])
+    return f"; what is no stage is called {near[0]}" if near else ""
 
 
 def _counted(text: str) -> tuple[Fraction, ...]:

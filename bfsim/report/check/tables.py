@@ -85,7 +85,7 @@ def amount(value: float, unit: Unit, cclk_hz: float) -> str:
         case Unit.BYTES:
             return size(round(value))
         case Unit.COUNT:
-            return f"{value:,.0f}"
+            return f"{value:,.0f}" if value == int(value) else f"{value:,}"
 
 
 def percent(verdict: Verdict) -> str:
