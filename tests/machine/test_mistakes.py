@@ -13,6 +13,7 @@ import pytest
 from bfsim.api import Buffer, Core, Frame, FrameSize, i8, u8
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
 from bfsim.machine.symbols import symbols_of
+from bfsim.report.save import writing
 from bfsim.run import simulate
 from tests.machine.kernels import first, spin
 from tests.machine.rig import Play, board_of, every_frame, load, noise, run, see_all
@@ -315,6 +316,18 @@ def test_a_row_is_not_written_by_a_main_loop() -> None:
 
     message = r"a row of single_row must be written by a kernel, .*\(.*test_mistakes.py:\d+\)$"
     with pytest.raises(FirmwareError, match=message):
+        run(every_frame(look))
+
+
+def test_a_full_disk_is_no_mistake_of_the_firmware() -> None:
+    """What is recorded is written while a main loop runs: the line that ran was told as if it had failed."""
+
+    def look(core: Core, frame: Frame) -> Play:
+        yield core.run(first, core.rows("single_row")[0])
+        with writing(Path("run.work")):
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(ConfigError, match=r"^run\.work must be writable: No space left on device$"):
         run(every_frame(look))
 
 

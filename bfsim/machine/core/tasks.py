@@ -151,7 +151,9 @@ class Tasks:
     # ---- what is wrong with the firmware
 
     def told(self, error: Exception | SystemExit) -> BfsimError:
-        """Return what went wrong in the firmware, with its line there."""
+        """Return what went wrong in the firmware, with its line there; what the system refused to bfsim was no line's fault."""
+        if isinstance(error, BfsimError) and isinstance(error.__cause__, OSError):
+            return error
         line = line_of(error)
         if isinstance(error, KernelError):
             return self._in_call(error, line)
