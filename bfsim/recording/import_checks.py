@@ -26,6 +26,11 @@ def check_call(
             f"{output}: recording must have a name like run.mcap, not one of pictures; it comes first, and what it is made of "
             "behind it: `bfsim record import run.mcap left/ right/`"
         )
+    if output.exists() and any(_is_of(each, output) for each in names):
+        raise RecordingError(
+            f"{output}: recording must be a file of its own, not one that it is made of; it comes first: "
+            "`bfsim record import run.mcap drive.bag`"
+        )
     if output.exists() and not force:
         raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
     if side_by_side and mono:
@@ -45,6 +50,14 @@ def check_call(
             raise RecordingError(
                 f"`{option}` must be above 0 and of even width, not {wanted_size[0]}x{wanted_size[1]}"
             )
+
+
+def _is_of(source: str, file: Path) -> bool:
+    """Whether a file that is there is the source, or is in it, a bag of ROS 2 that is a folder."""
+    path = Path(source)
+    if (path / "metadata.yaml").exists():
+        return path.samefile(file.parent)
+    return path.exists() and path.samefile(file)
 
 
 def check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: bool) -> int | None:

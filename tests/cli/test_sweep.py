@@ -62,6 +62,15 @@ def table(file: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text)))
 
 
+@pytest.mark.usefixtures("file")
+def test_one_frame_is_one_frame() -> None:
+    """It was `1 frames`."""
+    Path("one.toml").write_text(
+        '[base]\nfirmware = "fw_eyes.py"\nrecording = "drive.mcap"\n[axes]\nframes = [1]\n'
+    )
+    assert re.search(r"1 of 1 points to run, 1 frame: about", call(Path("one.toml"), "--dry-run").output)
+
+
 def test_the_walk_of_a_student(file: Path) -> None:
     """What there is to do, what came out, and nothing of it twice."""
     listed = call(file, "--dry-run").output

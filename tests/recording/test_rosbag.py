@@ -340,6 +340,20 @@ def test_another_size_is_refused_unless_pictures_are_fitted(tmp_path: Path) -> N
 
 
 @each_kind
+def test_a_bag_is_not_overwritten_by_its_recording(kind: str, tmp_path: Path) -> None:
+    """`record import drive.mcap drive.mcap --force` put the pictures in the place of all that the bag had."""
+    ros = Ros(kind)
+    path = ros.write(tmp_path, grey_pair(ros, range(2)))
+    file = path if path.is_file() else next(each for each in path.iterdir() if each.suffix != ".yaml")
+    before = file.read_bytes()
+    with pytest.raises(
+        RecordingError, match="must be a file of its own, not one that it is made of|not one of pictures"
+    ):
+        import_recording([path], file, force=True)
+    assert file.read_bytes() == before
+
+
+@each_kind
 def test_a_bag_of_one_camera_asks_for_mono(kind: str, tmp_path: Path) -> None:
     """It asked for two topics of the one that there is."""
     ros = Ros(kind)
