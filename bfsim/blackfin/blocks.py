@@ -32,6 +32,8 @@ NEVER_RESUMED = NEVER_ON | (EVENTS - ASSERTIONS)
 """Nor behind these, where nobody goes on behind an event."""
 MOST_INSTRUCTIONS = 1 << 18
 """[ours] Two and a half times all of GCC's and newlib's libraries. A wild jump into memory that is zero meets millions of NOPs."""
+SAVED_RETS = 4
+"""[PRM] How far from FP LINK saves RETS."""
 LOOP_ENDS = {"LB0": 0, "LB1": 1}
 """The registers that say where a hardware loop ends, with the numbers of their counters."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
@@ -50,6 +52,21 @@ class Block:
     def end(self) -> int:
         """The address behind the last instruction."""
         return self.instructions[-1].end if self.instructions else self.start
+
+    @property
+    def returns(self) -> bool:
+        """Whether it ends with a return: RTS, or a jump to what LINK has saved of RETS, as VisualDSP++ has it before UNLINK."""
+        last = self.instructions[-1] if self.instructions else None
+        if last is None or does(last) != "jump_to":
+            return last is not None and does(last) == "return_"
+        pointer = last.operations[0].operands["p"]
+        loads = [
+            each.operands["p"] == "FP" and each.operands["n"] == SAVED_RETS
+            for one in self.instructions
+            for each in one.operations
+            if each.form.does == "load" and each.operands["d"] == pointer
+        ]
+        return bool(loads) and loads[-1]
 
     @property
     def branches(self) -> bool:

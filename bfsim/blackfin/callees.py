@@ -6,16 +6,14 @@ from bfsim.blackfin.blocks import COMPUTED, Code, does
 from bfsim.blackfin.halves import PutTogether
 from bfsim.blackfin.image import Image
 
-BY_ADDRESS = COMPUTED - {"return_"}
-
 
 def callees(code: Code, image: Image) -> set[int]:
     """Return where functions of an image begin that computed calls and jumps of `code` may lead to.
 
     A label in code, of which an assembler was not told that it is a function, may begin one. Those are the ones whose address is in the image's data, or is put together in `code` of two halves; none if nothing is called so.
     """
-    ends = (each.instructions[-1] for each in code.blocks.values() if each.instructions)
-    if not any(does(each) in BY_ADDRESS for each in ends):
+    ends = (each for each in code.blocks.values() if each.instructions)
+    if not any(does(each.instructions[-1]) in COMPUTED and not each.returns for each in ends):
         return set()
     put_together = PutTogether(each for block in code.blocks.values() for each in block.instructions)
     labels = {each for each in image.symbols.values() if image.is_code(each)}

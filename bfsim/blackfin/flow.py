@@ -68,7 +68,7 @@ def _edges(code: Code, block: Block, targets: Sequence[int]) -> Iterator[Edge]:
         return
     if what in DIRECT:
         yield Edge(start, int(last.operations[0].operands["t"]), Way.JUMPS)
-    elif what in COMPUTED and what != "return_":
+    elif what in COMPUTED and not block.returns:
         yield from (Edge(start, each, Way.JUMPS) for each in targets)
     for counter in (1, 0):
         for each in sorted(code.loop_starts.get((last.address, counter), ())):

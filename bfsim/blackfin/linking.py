@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from bfsim.blackfin.image import LINKED_WITH, MOST_NAMES, NOWHERE, NOWHERE_BYTES, Image, Routine, Segment, Use
 from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol
-from bfsim.blackfin.relocations import FIELDS, Kind
+from bfsim.blackfin.relocations import FIELDS, LONG, NOTHING, OPERATIONS, PUSH, PUSH_CONSTANT, Kind
 from bfsim.errors import KernelError, cut
 
 BASE = {Use.CODE: 0xFFA00000, Use.DATA: 0xFF900000}
@@ -38,8 +38,8 @@ def link(file: ObjectFile, *, is_whole: bool = True) -> Image:
     if not file.is_linked:
         missing = _missing(file, is_whole=is_whole)
         file = _with_missing(file, missing)
-        for each in file.relocations:
-            _apply(each, file, places, contents)
+        for each, value in _values(file, places):
+            _apply(each, value, file, places, contents)
     octets = bytearray(file.octets)
     for section, body in zip(file.sections, contents, strict=True):
         octets[section.offset : section.offset + len(body)] = body
@@ -152,13 +152,34 @@ def _likely_pointers(segments: Iterable[Segment]) -> Iterator[int]:
                     yield word
 
 
-def _apply(each: Relocation, file: ObjectFile, places: tuple[int, ...], contents: list[bytearray]) -> None:
-    """Write one relocation into the contents of its section."""
+def _values(file: ObjectFile, places: tuple[int, ...]) -> Iterator[tuple[Relocation, int]]:
+    """Yield the relocations that write something, with what: the value of a symbol, or what those before have computed."""
+    stack: list[int] = []
+    for each in file.relocations:
+        if each.kind in NOTHING or each.symbol >= len(file.symbols):
+            continue  # notes may name symbols that are gone
+        if each.kind == PUSH_CONSTANT:
+            stack.append(each.addend)
+        elif each.kind in OPERATIONS and len(stack) >= 2:  # one for each side
+            second, first = stack.pop(), stack.pop()
+            stack.append(OPERATIONS[each.kind](first, min(second, ADDRESSES) % ADDRESSES) % ADDRESSES)
+        else:
+            value = _value(file.symbols[each.symbol], file, places) + each.addend
+            if each.kind == PUSH:
+                stack.append(value)
+            else:
+                yield each, stack.pop() if stack else value
+
+
+def _apply(
+    each: Relocation, value: int, file: ObjectFile, places: tuple[int, ...], contents: list[bytearray]
+) -> None:
+    """Write the value of one relocation into the contents of its section."""
     section, body = file.sections[each.section], contents[each.section]
-    if each.kind == 0 or each.symbol >= len(file.symbols):
-        return  # R_BFIN_UNUSED0; notes may name symbols that are gone
     kind = each.kind
     if kind not in set(Kind):
+        if section.use is Use.NOTES:
+            return  # what compilers of others note
         raise _refused(
             file, section, each, f"relocations of the type 0x{kind:02X} are not for plain programs"
         )
@@ -166,20 +187,19 @@ def _apply(each: Relocation, file: ObjectFile, places: tuple[int, ...], contents
     at = each.offset - field.before
     if not 0 <= at <= len(body) - field.nbytes:
         raise _refused(file, section, each, "that is outside of the section")
-    value = _value(file.symbols[each.symbol], file, places) + each.addend
     if field.relative:
         value -= places[each.section] + at
     shifted, mask = value >> field.shift, (1 << field.bits) - 1
-    lowest = -(1 << field.bits - 1)
-    if not field.is_part and not lowest <= shifted <= (mask if not field.relative else -lowest - 1):
+    lowest = 0 if field.forward else -(1 << field.bits - 1)
+    if not field.is_part and not lowest <= shifted <= (-lowest - 1 if field.relative and lowest else mask):
         symbol = file.symbols[each.symbol]
         undefined = "" if symbol.is_defined else ", which is nowhere defined,"
         raise _refused(file, section, each, f"{cut(symbol.name)}{undefined} is out of reach")
     word = int.from_bytes(body[at : at + field.nbytes], "little")
-    if field.before:  # the address of a long jump: its high bits are in the first halfword
+    if field is LONG:  # the high bits of the address are in the first halfword
         word = word & 0xFF00 | shifted >> 16 & 0xFF | (shifted & 0xFFFF) << 16
     else:
-        word = word & ~mask | shifted & mask
+        word = word & ~(mask << field.over) | (shifted & mask) << field.over
     body[at : at + field.nbytes] = word.to_bytes(field.nbytes, "little")
 
 

@@ -20,7 +20,8 @@ from elftools.elf.sections import SymbolTableSection
 from bfsim.blackfin.image import Use
 from bfsim.errors import KernelError, cut
 
-MACHINE = "EM_BLACKFIN"
+MACHINES = ("EM_BLACKFIN", 0x22)
+"""The second one [seen] is in object files, not in programs, of VisualDSP++ 5."""
 RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
 MOST_BYTES = 64 << 20
 """[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
@@ -105,7 +106,7 @@ def damaged(name: str, error: Exception) -> KernelError:
 
 def _read(octets: bytes, name: str) -> ObjectFile:
     elf = ELFFile(io.BytesIO(octets))
-    if elf["e_machine"] != MACHINE or elf.elfclass != 32 or not elf.little_endian:
+    if elf["e_machine"] not in MACHINES or elf.elfclass != 32 or not elf.little_endian:
         raise KernelError(f"{name} must be code for the Blackfin, not for {cut(str(elf['e_machine']))}")
     if elf["e_type"] not in (RELOCATABLE, EXECUTABLE):
         raise KernelError(f"{name} must be an object file or a program, not {cut(str(elf['e_type']))}")
@@ -169,6 +170,8 @@ def _symbol(entry: Any, sections: int) -> Symbol:
 
 def _relocations(part: RelocationSection, sections: tuple[Section, ...], name: str) -> Iterator[Relocation]:
     target = part["sh_info"]
+    if 0 < target < len(sections) and sections[target].use is Use.NOTES and not part.is_RELA():
+        return  # VisualDSP++ notes so what it assembles
     if not part.is_RELA() or not 0 < target < len(sections):
         raise KernelError(
             f"{name} must have relocations with addends, of its own sections ({cut(part.name)})"

@@ -1,11 +1,13 @@
 """Relocations of Blackfin ELF files, as data: what a linker writes into code and data once addresses are known.
 
 Numbers and fields: [BFD] the ELF back end of binutils 2.40 for the Blackfin. Those of LSETUP, which binutils itself applies wrongly,
-are none of them: both ends of a loop are in its own section, and the assembler knows them.
+are of VisualDSP++ alone: GNU's assembler knows both ends of a loop, which are in its own section.
 """
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -13,6 +15,7 @@ from enum import IntEnum
 class Kind(IntEnum):
     """Types of relocations that assemblers make for programs without position-independent code, by their ELF numbers."""
 
+    LOOP_BEGIN = 0x01
     IF_CC_JUMP = 0x03
     JUMP = 0x04
     IMMEDIATE_16 = 0x05
@@ -26,6 +29,20 @@ class Kind(IntEnum):
     BYTE = 0x10
     HALFWORD = 0x11
     WORD = 0x12
+    LOOP_END = 0x13
+    DEBUG_WORD = 0xFF
+    """[seen] Addresses in the debugging information of VisualDSP++ 5."""
+
+
+NOTHING = (0x00, 0xD2)
+"""What writes nothing: R_BFIN_UNUSED0, and [seen] what VisualDSP++ has where code needs a symbol, for its linker to keep that."""
+PUSH, PUSH_CONSTANT = 0xE0, 0xE1
+"""Put the value of a symbol, or an addend, on a stack: what is on its top at the next of the kinds above is the value of that."""
+OPERATIONS: dict[int, Callable[[int, int], int]] = {
+    0xE2: operator.add, 0xE3: operator.sub, 0xE4: operator.mul, 0xE7: operator.lshift, 0xE8: operator.rshift,
+    0xE9: operator.and_, 0xEA: operator.or_, 0xEB: operator.xor,
+}  # fmt: skip
+"""What takes two values from that stack and puts one there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +50,8 @@ class RelocatedField:
     """The `bits` lowest of a little-endian number of `nbytes`, `before` bytes ahead of where the relocation points.
 
     They take the value shifted right by `shift`, from the instruction's address if it is `relative`. What does not fit is refused
-    unless the field takes a part of the value, as halves of an address do.
+    unless the field takes a part of the value, as halves of an address do. `forward`: it cannot be negative. `over`: how many of the
+    lowest bits are not the field's.
     """
 
     nbytes: int
@@ -42,19 +60,25 @@ class RelocatedField:
     relative: bool = False
     before: int = 0
     is_part: bool = False
+    forward: bool = False
+    over: int = 0
 
 
-_LONG = RelocatedField(nbytes=4, bits=24, shift=1, relative=True, before=2)
+LONG = RelocatedField(nbytes=4, bits=24, shift=1, relative=True, before=2)
+"""The address of a long jump or a call."""
 
 FIELDS: dict[Kind, RelocatedField] = {
+    Kind.LOOP_BEGIN: RelocatedField(2, 4, shift=1, relative=True, forward=True),
+    Kind.LOOP_END: RelocatedField(4, 10, shift=1, relative=True, before=2, forward=True, over=16),
     Kind.IF_CC_JUMP: RelocatedField(2, 10, shift=1, relative=True),
     Kind.JUMP: RelocatedField(2, 12, shift=1, relative=True),
     Kind.JUMP_S: RelocatedField(2, 12, shift=1, relative=True),
-    Kind.JUMP_X: _LONG, Kind.CALL_OR_JUMP_24: _LONG, Kind.JUMP_L: _LONG, Kind.CALL_X: _LONG,
+    Kind.JUMP_X: LONG, Kind.CALL_OR_JUMP_24: LONG, Kind.JUMP_L: LONG, Kind.CALL_X: LONG,
     Kind.IMMEDIATE_16: RelocatedField(2, 16),
     Kind.LOW_HALF: RelocatedField(2, 16, is_part=True),
     Kind.HIGH_HALF: RelocatedField(2, 16, shift=16, is_part=True),
     Kind.BYTE: RelocatedField(1, 8),
     Kind.HALFWORD: RelocatedField(2, 16),
     Kind.WORD: RelocatedField(4, 32, is_part=True),
+    Kind.DEBUG_WORD: RelocatedField(4, 32, is_part=True),
 }  # fmt: skip

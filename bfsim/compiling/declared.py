@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 from bfsim import store
 from bfsim.blackfin.image import Image
@@ -33,8 +34,10 @@ def require_declared(
 def _otherwise(
     image: Image, name: str, parameters: Sequence[Parameter], result: Number | None
 ) -> tuple[str, str]:
-    """Return what is declared otherwise, and how C has it; nothing where that is nothing."""
-    prototype = prototype_of(image, name)
+    """Return what is declared otherwise, and how C has it; nothing where that is nothing, or is told as other compilers do."""
+    prototype = None
+    with suppress(KernelError):
+        prototype = prototype_of(image, name)
     wrong = next(_differences(prototype, parameters, result), None) if prototype else None
     return wrong or "", str(prototype or "")
 

@@ -26,7 +26,8 @@ from bfsim.kernel.objects.timing import timing_of
 from bfsim.kernel.types import Number
 
 SOURCES = (".c", ".s", ".S")
-OBJECTS = (".o", ".elf")
+OBJECTS = (".o", ".elf", ".doj", ".dxe")
+"""The last two are what VisualDSP++ and CrossCore call an object file and a program."""
 OPTIONS = ("-O2", "-g2", "-gno-statement-frontiers", "-fno-var-tracking")
 """-g2: what parameters the functions have, too, which is held against what Python says of them. The others keep the lines of -g1."""
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
