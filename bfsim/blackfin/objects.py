@@ -18,13 +18,17 @@ from elftools.elf.sections import Section as ElfSection
 from elftools.elf.sections import SymbolTableSection
 
 from bfsim.blackfin.image import Use
+from bfsim.blackfin.relocations import HALF_BYTES, SECOND_HALF
 from bfsim.errors import KernelError, cut
 
-MACHINES = ("EM_BLACKFIN", 0x22)
-"""The second one [seen] is in object files, not in programs, of VisualDSP++ 5."""
+VISUALDSP = 0x22
+"""[seen] The machine of object files, not of programs, of VisualDSP++ 5."""
+MACHINES = ("EM_BLACKFIN", VISUALDSP)
 RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
 MOST_BYTES = 64 << 20
 """[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
+LABELS = (".", "__BEGIN__.", "__END__.")
+"""[seen] How VisualDSP++ begins the names of labels in a function, which it says are functions, too."""
 RELOCATION = struct.Struct("<IIi")
 """[ELF] Of 32 bits, with an addend: its offset, the number of its symbol above the 8 bits of its kind, the addend."""
 FUNCTIONS = (("STT_NOTYPE", "STB_GLOBAL"), ("STT_NOTYPE", "STB_WEAK"))
@@ -129,7 +133,7 @@ def _read(octets: bytes, name: str) -> ObjectFile:
             each
             for part in parts
             if isinstance(part, RelocationSection)
-            for each in _relocations(part, sections, name)
+            for each in _relocations(part, sections, name, HALF_BYTES if elf["e_machine"] == VISUALDSP else 0)
         ),
     )
 
@@ -162,13 +166,19 @@ def _symbol(entry: Any, sections: int) -> Symbol:
         value=entry["st_value"],
         nbytes=entry["st_size"],
         section=place if isinstance(place, int) and place < sections else None,
-        is_function=(entry["st_info"]["type"], entry["st_info"]["bind"]) in FUNCTIONS
-        or entry["st_info"]["type"] == "STT_FUNC",
+        is_function=not entry.name.startswith(LABELS)
+        and (
+            (entry["st_info"]["type"], entry["st_info"]["bind"]) in FUNCTIONS
+            or entry["st_info"]["type"] == "STT_FUNC"
+        ),
         is_defined=place not in ("SHN_UNDEF", "SHN_COMMON"),
     )
 
 
-def _relocations(part: RelocationSection, sections: tuple[Section, ...], name: str) -> Iterator[Relocation]:
+def _relocations(
+    part: RelocationSection, sections: tuple[Section, ...], name: str, ahead: int
+) -> Iterator[Relocation]:
+    """Yield the relocations of a section. `ahead`: by how much those of second halves point to what is before these."""
     target = part["sh_info"]
     if 0 < target < len(sections) and sections[target].use is Use.NOTES and not part.is_RELA():
         return  # VisualDSP++ notes so what it assembles
@@ -177,4 +187,5 @@ def _relocations(part: RelocationSection, sections: tuple[Section, ...], name: s
             f"{name} must have relocations with addends, of its own sections ({cut(part.name)})"
         )
     for offset, info, addend in RELOCATION.iter_unpack(part.data()):  # libraries have thousands
-        yield Relocation(target, offset, info & 0xFF, info >> 8, addend)
+        kind = info & 0xFF
+        yield Relocation(target, offset + (ahead if kind in SECOND_HALF else 0), kind, info >> 8, addend)

@@ -34,6 +34,11 @@ class Kind(IntEnum):
     """[seen] Addresses in the debugging information of VisualDSP++ 5."""
 
 
+SECOND_HALF = {
+    Kind.IMMEDIATE_16, Kind.LOW_HALF, Kind.HIGH_HALF, Kind.JUMP_X, Kind.CALL_OR_JUMP_24, Kind.JUMP_L, Kind.CALL_X,
+}  # fmt: skip
+"""Those that point to the second half of an instruction, or [seen] in object files of VisualDSP++ 5 to its first one."""
+HALF_BYTES = 2
 NOTHING = (0x00, 0xD2)
 """What writes nothing: R_BFIN_UNUSED0, and [seen] what VisualDSP++ has where code needs a symbol, for its linker to keep that."""
 PUSH, PUSH_CONSTANT = 0xE0, 0xE1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from elftools.elf.elffile import ELFFile
 
 from bfsim.api import Kernel, i32, kernel_from, u8
 from bfsim.blackfin.image import Image, Use
 from bfsim.blackfin.linking import link
-from bfsim.blackfin.objects import ObjectFile, Relocation, read_object
-from bfsim.blackfin.relocations import PUSH, PUSH_CONSTANT, Kind
+from bfsim.blackfin.objects import RELOCATION, VISUALDSP, ObjectFile, Relocation, read_object
+from bfsim.blackfin.relocations import HALF_BYTES, PUSH, PUSH_CONSTANT, SECOND_HALF, Kind
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.errors import KernelError
 
@@ -73,9 +75,23 @@ def test_such_a_return_leads_to_no_function() -> None:
 def test_files_are_read_under_their_names_there(made: str, name: str, tmp_path: Path) -> None:
     """Object files of VisualDSP++ have another number of the machine."""
     octets = bytearray((DATA / made).read_bytes())
-    octets[MACHINE_AT] = 0x22
+    octets[MACHINE_AT] = VISUALDSP
     (tmp_path / name).write_bytes(octets)
     assert summed(tmp_path / name)(np.arange(5, dtype=np.uint8), 5) == 10
+
+
+def test_relocations_point_to_the_first_half_of_an_instruction() -> None:
+    """In its object files; GNU's point to the half that is written."""
+    octets = bytearray((DATA / "reaching.o").read_bytes())
+    parts = ELFFile(io.BytesIO(bytes(octets)))
+    octets[MACHINE_AT] = VISUALDSP
+    for part in parts.iter_sections("SHT_RELA"):
+        for at in range(part["sh_offset"], part["sh_offset"] + part["sh_size"], part["sh_entsize"]):
+            offset, info, addend = RELOCATION.unpack_from(octets, at)
+            if info & 0xFF in SECOND_HALF:
+                RELOCATION.pack_into(octets, at, offset - HALF_BYTES, info, addend)
+    judge = link(read_object((DATA / "reaching.o").read_bytes(), "reaching.o"))
+    assert link(read_object(bytes(octets), "reaching.doj")).segments == judge.segments
 
 
 def test_a_linked_program_is_read(tmp_path: Path) -> None:
@@ -83,6 +99,15 @@ def test_a_linked_program_is_read(tmp_path: Path) -> None:
     shutil.copy(DATA / "labels.elf", tmp_path / "labels.dxe")
     kernel = kernel_from(tmp_path / "labels.dxe", "turns", x=i32, result=i32)
     assert [kernel(each) for each in (1, 2, 5)] == [4, 10, 40]
+
+
+def test_labels_in_a_function_are_none() -> None:
+    """VisualDSP++ says of each line, and of each part of a loop, that it is a function: profiles would have a row for each."""
+    octets = (DATA / "returning.o").read_bytes()
+    for label in (b".LN123", b".P1L42"):
+        renamed = read_object(octets.replace(b"_other", label), "returning.o")
+        assert [each.name for each in link(renamed).routines] == ["_summed"]
+    assert [each.name for each in link(returning()).routines] == ["_summed", "_other"]
 
 
 def test_loops_are_relocated() -> None:
