@@ -19,6 +19,7 @@ from bfsim.blackfin.objects import RELOCATION, VISUALDSP, ObjectFile, Relocation
 from bfsim.blackfin.relocations import HALF_BYTES, PUSH, PUSH_CONSTANT, SECOND_HALF, Kind
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.errors import KernelError
+from bfsim.kernel.objects.sources import SourceFiles
 
 DATA = Path(__file__).parent / "data"
 MACHINE_AT = 18
@@ -108,6 +109,12 @@ def test_labels_in_a_function_are_none() -> None:
         renamed = read_object(octets.replace(b"_other", label), "returning.o")
         assert [each.name for each in link(renamed).routines] == ["_summed"]
     assert [each.name for each in link(returning()).routines] == ["_summed", "_other"]
+
+
+def test_source_files_are_found_behind_backslashes(tmp_path: Path) -> None:
+    """Its debugging information has names of Windows."""
+    assert SourceFiles(tmp_path).named("uwimg\\image.h") == tmp_path / "image.h"
+    assert SourceFiles(tmp_path).named("../src/image.c") == tmp_path / "image.c"
 
 
 def test_loops_are_relocated() -> None:

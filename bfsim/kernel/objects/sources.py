@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING
 
 from bfsim import store
@@ -34,7 +34,7 @@ class SourceFiles:
 
     def named(self, file: str) -> Path | None:
         """Return where a file is, if that is known."""
-        name = Path(file).name
+        name = PureWindowsPath(file).name  # which also splits at the slashes of others
         return self.included.get(name, self.folder / name)
 
 
