@@ -25,8 +25,12 @@ PATH = os.environ["PATH"]
 TESTS = Path(__file__).parent
 WHOLE_COMMANDS = (TESTS, TESTS / "cli")
 """Folders of tests that do what users do."""
-COMPILES = TESTS / "firmware" / "test_areas.py"
-"""Its first test compiles the built-in firmware as it is estimated, which takes twenty seconds."""
+COMPILES = (
+    TESTS / "firmware" / "test_areas.py",
+    TESTS / "kernel" / "test_firmware_twins.py",
+    TESTS / "test_verifying.py",
+)
+"""Their tests compile the built-in firmware as it is estimated, and its kernels as -O2 estimates them, which takes up to a minute."""
 
 
 @pytest.hookimpl(trylast=True)
@@ -60,7 +64,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
     Properties that plain `pytest` tries on few examples are tried on all where what is exhaustive is asked for.
     """
-    items.sort(key=lambda item: (item.path != COMPILES, item.path.parent not in WHOLE_COMMANDS))
+    items.sort(key=lambda item: (item.path not in COMPILES, item.path.parent not in WHOLE_COMMANDS))
     for item in items if config.option.markexpr == "exhaustive" else ():
         if leaves_examples_open(getattr(item, "obj", None)):
             item.add_marker(pytest.mark.exhaustive)

@@ -383,6 +383,29 @@ def test_a_hardware_loop_may_be_set_up_without_lsetup() -> None:
     assert [kernel.cost(each, profile="gcc") for each in (1, 2, 5, 13)] == [16, 18, 24, 40]
 
 
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        (
+            "spoils",
+            r"_spoils must run and return to its caller, but it changes R7, P5; R4 to R7, P3 to P5, FP and SP must be",
+        ),
+        (
+            "leaves",
+            r"_leaves must run and return to its caller, but it changes SP; R4 to R7, .*: push them first, and pop",
+        ),
+    ],
+)
+def test_registers_of_a_caller_are_kept(name: str, why: str) -> None:
+    """A function that changes them returned without a word; on the robot its caller would go wrong. The next one runs."""
+    kernel = kernel_from(DATA / "spoiling.o", name, x=i32, result=i32)
+    for _ in range(2):
+        with pytest.raises(KernelError, match=why):
+            kernel(21)
+    keeps = kernel_from(DATA / "spoiling.o", "keeps", x=i32, result=i32)
+    assert [keeps(each) for each in (21, -4)] == [42, -8]
+
+
 def test_a_label_is_called_by_its_address() -> None:
     """Assembler need not say what is a function: such a call was refused, for nothing named the address."""
     kernel = kernel_from(DATA / "labels.o", "twice", x=i32, result=i32)

@@ -28,3 +28,5 @@ class Event(IntEnum):
     """An access to an address where there is no memory. Registers are lost."""
     MISALIGNED = 10
     """An access in the block at PC is to an address that is no multiple of its size, which code was to be held to."""
+    NOT_KEPT = 11
+    """Not of the code itself: it has returned, but has changed registers of its caller."""

@@ -11,7 +11,7 @@ from bfsim import machine_code
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.processor import OUTSIDE
 from bfsim.blackfin.registers import SLOTS
-from bfsim.blackfin.subroutines import REGISTERS
+from bfsim.blackfin.subroutines import KEPT, REGISTERS
 from bfsim.blackfin.subroutines import RESULT as RESULT_REGISTER
 from bfsim.machine_code.caller import field, loop
 from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
@@ -53,6 +53,15 @@ def _registers() -> str:
         rows += f"  %{each}.at = getelementptr i32, ptr %stack, i64 {number}\n  %{each} = load i32, ptr %{each}.at\n"
         rows += f"  %{each}.wide = zext i32 %{each} to i64\n{_set(each, f'%{each}.wide')}"
     return rows
+
+
+def _changed() -> str:
+    """Return what finds in `%changed` whether a register is not as it was: the top of the stack in SP, and 0 in the others."""
+    rows = "  %changed.0 = load i64, ptr %set.SP\n  %changed.1 = xor i64 %changed.0, %top\n"
+    for number, each in enumerate(KEPT[:-1], 1):
+        rows += f"  %is.{each}.at = getelementptr i64, ptr %state, i64 {SLOTS[each]}\n  %is.{each} = load i64, ptr %is.{each}.at\n"
+        rows += f"  %changed.{number + 1} = or i64 %changed.{number}, %is.{each}\n"
+    return f"{rows}  %changed = icmp ne i64 %changed.{len(KEPT)}, 0\n"
 
 
 FIELDS = "".join(
@@ -123,7 +132,12 @@ define i64 @{ENTRY}(ptr %block, ptr %handed, ptr %cost) {{
   %is_outside = icmp eq i64 %pc, {OUTSIDE}
   %is_left = icmp eq i32 %event, {int(Event.UNKNOWN_TARGET)}
   %returned = and i1 %is_outside, %is_left
-  br i1 %returned, label %fetch, label %stopped
+  br i1 %returned, label %look, label %stopped
+look:
+{_changed()}\
+  br i1 %changed, label %spoilt, label %fetch
+spoilt:
+  ret i64 {FAILED - int(Event.NOT_KEPT)}
 stopped:
   %event.wide = zext i32 %event to i64
   %event.left = sub i64 {FAILED}, %event.wide

@@ -15,10 +15,7 @@ from itertools import groupby
 from bfsim.blackfin.blocks import CALLS, Code, does
 from bfsim.blackfin.flow import Way, edges
 from bfsim.blackfin.origins import Made, Origin, made_by
-from bfsim.blackfin.subroutines import REGISTERS, WORD_BYTES
-
-KEPT = frozenset({"R4", "R5", "R6", "R7", "P3", "P4", "P5", "SP", "FP"})
-"""[GCC] Registers that a function leaves as they were."""
+from bfsim.blackfin.subroutines import KEPT, REGISTERS, WORD_BYTES
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,8 @@ ARRAY_ALIGN = 16
 WORD_BYTES = 4
 REGISTERS = ("R0", "R1", "R2")
 RESULT = "R0"
+KEPT = ("R4", "R5", "R6", "R7", "P3", "P4", "P5", "FP", "SP")
+"""[GCC] Registers that a function leaves as they were."""
 
 ENDS = {
     Event.ILLEGAL: (0, "no instruction of the Blackfin"),
@@ -78,7 +80,7 @@ class LoadedImage:
     ) -> Subroutine:
         """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none.
 
-        `aligned`: it is refused an access that is not.
+        `aligned`: it is refused an access that is not, and what it must keep is looked at.
         """
         address = self.image.address_of(symbol)
         processor = Processor(
@@ -87,7 +89,7 @@ class LoadedImage:
             {address},
             name=name,
             explore=partial(self._counted_from, timing),
-            results=frozenset({RESULT}),
+            results=frozenset({RESULT, *KEPT}) if aligned else frozenset({RESULT}),
             aligned=aligned,
         )
         return Subroutine(symbol, address, processor, self.image)
@@ -141,6 +143,7 @@ class Subroutine:
     def refuse(self, event: Event) -> NoReturn:
         """Raise KernelError for an event for which a call was left without returning. The next call begins anew."""
         address = self.processor.state["PC"]
+        changed = [each for each in KEPT[:-1] if self.processor.state[each]] or ["SP"]
         self.processor.state.slots[:] = 0
         self.translated.counts[:] = 0
         place = runner().fault.value if event is Event.FAULT else address
@@ -161,6 +164,11 @@ class Subroutine:
             what = (
                 f"in the instructions from 0x{address:08X} on{self._line_at(address)} it accesses an address that is no multiple of the 2 or 4 bytes "
                 "accessed, for which the Blackfin raises an exception"
+            )
+        elif event is Event.NOT_KEPT:
+            what = (
+                f"it changes {', '.join(changed)}; R4 to R7, P3 to P5, FP and SP must be as they were when it returns, for its caller has "
+                "something in them: push them first, and pop them before the return"
             )
         elif event is Event.UNKNOWN_TARGET:
             what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names; put its label into a table"
