@@ -10,7 +10,8 @@ from bfsim.blackfin.image import Image
 def callees(code: Code, image: Image) -> set[int]:
     """Return where functions of an image begin that computed calls and jumps of `code` may lead to.
 
-    A label in code, of which an assembler was not told that it is a function, may begin one. Those are the ones whose address is in the image's data, or is put together in `code` of two halves; none if nothing is called so.
+    A label in code, of which an assembler was not told that it is a function, may begin one. Those are the ones whose address is in the
+    image's data, or is put together in `code` of two halves; none if nothing is called so.
     """
     ends = (each for each in code.blocks.values() if each.instructions)
     if not any(does(each.instructions[-1]) in COMPUTED and not each.returns for each in ends):

@@ -39,12 +39,8 @@ class Places:
     @cached_property
     def lines(self) -> LineTable:
         """What the debugging information says of addresses, which takes seconds to read where libraries have some."""
-        from bfsim.blackfin.lines import (
-            Line,
-            LineTable,
-            Row,
-            lines_of,
-        )  # most starts find all that depends on it
+        # most starts find all that depends on it
+        from bfsim.blackfin.lines import Line, LineTable, Row, lines_of
 
         key = keys.object_key(self.image.digest, "", "", "lines")
         rows = store.kept(key, lambda: [(each.address, each.line) for each in lines_of(self.image).rows])
