@@ -60,13 +60,13 @@ class Block:
         if last is None or does(last) != "jump_to":
             return last is not None and does(last) == "return_"
         pointer = last.operations[0].operands["p"]
-        loads = [
-            each.operands["p"] == "FP" and each.operands["n"] == SAVED_RETS
+        writes = [
+            (each.form.does, each.operands.get("p"), each.operands.get("n"))
             for one in self.instructions
             for each in one.operations
-            if each.form.does == "load" and each.operands["d"] == pointer
+            if each.operands.get("d") == pointer
         ]
-        return bool(loads) and loads[-1]
+        return writes[-1:] == [("load", "FP", SAVED_RETS)]
 
     @property
     def branches(self) -> bool:

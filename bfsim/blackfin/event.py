@@ -30,3 +30,18 @@ class Event(IntEnum):
     """An access in the block at PC is to an address that is no multiple of its size, which code was to be held to."""
     NOT_KEPT = 11
     """Not of the code itself: it has returned, but has changed registers of its caller."""
+
+
+ENDS = {
+    Event.ILLEGAL: (0, "no instruction of the Blackfin"),
+    Event.EXCEPTION: (2, "an exception (EXCPT), which nothing handles"),
+    Event.SYSTEM: (
+        2,
+        "an instruction for the system, such as IDLE, RAISE or RTI, of which a kernel has none",
+    ),
+    Event.ASSERTION: (4, "an assertion for simulators (DBGA, DBGAL or DBGAH) that does not hold"),
+} | dict.fromkeys(
+    (Event.OUTPUT, Event.HALT, Event.ABORT),
+    (2, "an instruction for simulators (OUTC, HLT or ABORT), which the Blackfin has not"),
+)
+"""Instructions at which code ends: how many bytes PC is behind one, and what it is."""

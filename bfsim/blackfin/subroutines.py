@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.event import Event
+from bfsim.blackfin.event import ENDS, Event
 from bfsim.blackfin.guard import runner
 from bfsim.blackfin.image import LINKED_WITH, Image
 from bfsim.blackfin.processor import Processor, Translated
@@ -42,20 +42,6 @@ RESULT = "R0"
 KEPT = ("R4", "R5", "R6", "R7", "P3", "P4", "P5", "FP", "SP")
 """[GCC] Registers that a function leaves as they were."""
 
-ENDS = {
-    Event.ILLEGAL: (0, "no instruction of the Blackfin"),
-    Event.EXCEPTION: (2, "an exception (EXCPT), which nothing handles"),
-    Event.SYSTEM: (
-        2,
-        "an instruction for the system, such as IDLE, RAISE or RTI, of which a kernel has none",
-    ),
-    Event.ASSERTION: (4, "an assertion for simulators (DBGA, DBGAL or DBGAH) that does not hold"),
-} | dict.fromkeys(
-    (Event.OUTPUT, Event.HALT, Event.ABORT),
-    (2, "an instruction for simulators (OUTC, HLT or ABORT), which the Blackfin has not"),
-)
-"""Instructions at which code ends: how many bytes PC is behind one, and what it is."""
-
 
 @dataclass
 class LoadedImage:
@@ -76,11 +62,11 @@ class LoadedImage:
             self.space.at(each.address, len(each.octets))[:] = np.frombuffer(each.octets, np.uint8)
 
     def subroutine(
-        self, symbol: str, timing: Timing = GNU, name: str = "", *, aligned: bool = False
+        self, symbol: str, timing: Timing = GNU, name: str = "", *, is_checked: bool = False
     ) -> Subroutine:
         """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none.
 
-        `aligned`: it is refused an access that is not, and what it must keep is looked at.
+        `is_checked`: it is refused an access that is not aligned, and must leave its caller's registers as they were.
         """
         address = self.image.address_of(symbol)
         processor = Processor(
@@ -89,8 +75,8 @@ class LoadedImage:
             {address},
             name=name,
             explore=partial(self._counted_from, timing),
-            results=frozenset({RESULT, *KEPT}) if aligned else frozenset({RESULT}),
-            aligned=aligned,
+            results=frozenset({RESULT, *KEPT}) if is_checked else frozenset({RESULT}),
+            aligned=is_checked,
         )
         return Subroutine(symbol, address, processor, self.image)
 
@@ -142,41 +128,43 @@ class Subroutine:
 
     def refuse(self, event: Event) -> NoReturn:
         """Raise KernelError for an event for which a call was left without returning. The next call begins anew."""
-        address = self.processor.state["PC"]
-        changed = [each for each in KEPT[:-1] if self.processor.state[each]] or ["SP"]
+        what = self._told(event)
         self.processor.state.slots[:] = 0
         self.translated.counts[:] = 0
+        raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
+
+    def _told(self, event: Event) -> str:
+        """Say what happened at an event, by the registers that it has left."""
+        address = self.processor.state["PC"]
         place = runner().fault.value if event is Event.FAULT else address
         if missing := self.image.missing_at(place):
-            what = (
+            return (
                 f"it comes to {missing.removeprefix('_')}, which {self.image.name} does not define; define it there, or do "
                 f"without it (an object file is linked with what has it: {LINKED_WITH})"
             )
-        elif event is Event.FAULT:
-            fault = runner().fault.value
-            what = f"it accesses 0x{fault:08X}, where there is no memory"
-            if STACK - STACK_OVERRUN_BYTES <= fault < STACK:
-                what += (
-                    f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be "
-                    "static, or arguments"
-                )
-        elif event is Event.MISALIGNED:
-            what = (
+        if event is Event.FAULT:
+            large = (
+                f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be "
+                "static, or arguments"
+            )
+            is_of_stack = STACK - STACK_OVERRUN_BYTES <= place < STACK
+            return f"it accesses 0x{place:08X}, where there is no memory{large if is_of_stack else ''}"
+        if event is Event.MISALIGNED:
+            return (
                 f"in the instructions from 0x{address:08X} on{self._line_at(address)} it accesses an address that is no multiple of the 2 or 4 bytes "
                 "accessed, for which the Blackfin raises an exception"
             )
-        elif event is Event.NOT_KEPT:
-            what = (
+        if event is Event.NOT_KEPT:
+            changed = [each for each in KEPT[:-1] if self.processor.state[each]] or ["SP"]
+            return (
                 f"it changes {', '.join(changed)}; R4 to R7, P3 to P5, FP and SP must be as they were when it returns, for its caller has "
                 "something in them: push them first, and pop them before the return"
             )
-        elif event is Event.UNKNOWN_TARGET:
-            what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names; put its label into a table"
-        else:
-            nbytes, told = ENDS[event]
-            at = address - nbytes
-            what = f"at 0x{at:08X}{self._line_at(at)} there is {told}"
-        raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
+        if event is Event.UNKNOWN_TARGET:
+            return f"it goes to 0x{address:08X}, an address that neither its code nor its data names; put its label into a table"
+        nbytes, told = ENDS[event]
+        at = address - nbytes
+        return f"at 0x{at:08X}{self._line_at(at)} there is {told}"
 
     def _line_at(self, address: int) -> str:
         """Return the source line of the code at an address, as ` (file:line)`; nothing where the file does not tell."""

@@ -13,6 +13,8 @@ import pytest
 from elftools.elf.elffile import ELFFile
 
 from bfsim.api import Kernel, i32, kernel_from, u8
+from bfsim.blackfin.blocks import Block
+from bfsim.blackfin.decode import decode
 from bfsim.blackfin.image import Image, Use
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import RELOCATION, VISUALDSP, ObjectFile, Relocation, read_object
@@ -70,6 +72,14 @@ def test_such_a_return_leads_to_no_function() -> None:
     image = link(returning())
     blocks = LoadedImage(image).explored(image.address_of("_summed")).blocks
     assert {image.routine_at(each).name for each in blocks} == {"_summed"}
+
+
+def test_what_is_put_into_the_pointer_last_counts() -> None:
+    """P0 = [FP + 4]; JUMP (P0); returns. With P0 = R0; between them it goes anywhere."""
+    load, move, jump = (decode(bytes.fromhex(each).ljust(8, b"\0"), 0) for each in ("78ac", "0032", "5000"))
+    assert Block(0, (load, jump)).returns
+    assert not Block(0, (load, move, jump)).returns
+    assert not Block(0, (jump,)).returns
 
 
 @pytest.mark.parametrize(("made", "name"), [("returning.o", "returning.doj"), ("returning.o", "r.dxe")])

@@ -80,8 +80,8 @@ def compiled_object(
     """
     about = loaded.image.digest, symbol, f"{timing.digest} {traced}"
     is_checked = places.files is not None  # what is made of Python keeps its arrays aligned
-    what = "native code, aligned" if is_checked else "native code"
-    subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, what), aligned=is_checked)
+    what = "checked native code" if is_checked else "native code"
+    subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, what), is_checked=is_checked)
     words = [each.name if isinstance(each.type, ArrayType) else "" for each in function.parameters]
     arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
