@@ -55,6 +55,8 @@ FINEST = 1_000_000
 """The greatest denominator of a number that is no rate in Hz."""
 MOST_SUBBANKS = 64
 """As many sub-banks of L1 the model has."""
+MOST_OUTSIDE_L1 = 1 << 28
+"""Bytes of SDRAM and L2 together that the model has addresses for."""
 POWERS_OF_TWO = (
     "sdram.word_bytes", "sdram.page_bytes", "sdram.bank_bytes", "sdram.banks", "chip.l1.subbank_bytes", "chip.l2.port_bytes",
     "chip.cache.line_bytes", "chip.cache.data_bytes_per_bank", "chip.cache.code_bytes", "chip.dma.word_bytes",
@@ -122,6 +124,12 @@ def _sdram(board: BoardSpec) -> Iterator[str]:
         yield (
             f"chip.dma.word_bytes must be that of the data bus, sdram.word_bytes {sdram.word_bytes}, not "
             f"{board.chip.dma.word_bytes}"
+        )
+    outside = sum(each.nbytes for each in board.chip.regions if each.memory in ("SDRAM", "L2"))
+    if outside > MOST_OUTSIDE_L1:
+        yield (
+            f"sdram.banks of sdram.bank_bytes must, with the chip's L2, have at most {MOST_OUTSIDE_L1:,} bytes, which is what the "
+            f"model has addresses for, not {outside:,}"
         )
     interval_sclk = sdram.refresh_interval_sclk(board.clocks.sclk_hz)
     if interval_sclk <= 2 * sdram.refresh_sclk:

@@ -182,7 +182,8 @@ class _Linker:
         *before, last = self._refusals[symbol]
         what = f"{symbol} (section {symbol.section}, {symbol.nbytes} bytes, align {last.align})"
         message = _out_of_memory(last.place, last.output_section, what, last.usage)
-        for refusal in before:
+        elsewhere = {each.usage.name: each for each in before if each.usage.name != last.usage.name}
+        for refusal in elsewhere.values():
             message += (
                 f"; nor in {_fullness(refusal.usage)} "
                 f"('{refusal.output_section}', {refusal.place.beside(last.place)})"
@@ -200,7 +201,7 @@ class _Linker:
         return LinkError(
             f"{self._script.path}: section of {symbol} ({symbol.object_file}, {symbol.nbytes} bytes) must "
             f"be one that the LDF takes for {owner} ({', '.join(taken) or 'none'}), "
-            f"not {symbol.section}{self._of_other_files(symbol)}"
+            f"not {symbol.section}{self._of_other_files(symbol) or _add(symbol)}; {PLACE_IT}"
         )
 
     def _of_other_files(self, symbol: Symbol) -> str:
@@ -226,6 +227,10 @@ class _Linker:
                 for statement in output.statements:
                     if isinstance(statement, InputSections):
                         yield from ((statement, source) for source in statement.inputs)
+
+
+def _add(symbol: Symbol) -> str:
+    return f"; an output section with INPUT_SECTIONS({COMMAND_LINE_OBJECTS}({symbol.section})) takes it"
 
 
 def _fullness(usage: SegmentUsage) -> str:

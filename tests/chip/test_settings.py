@@ -16,6 +16,7 @@ from bfsim.chip.settings import with_settings
 from bfsim.chip.spec import BoardSpec, Pll
 from bfsim.errors import ConfigError
 from bfsim.fields import leaves
+from bfsim.kernel.access_trace import OFFSET_MASK
 from bfsim.machine.bus import state
 
 
@@ -160,6 +161,7 @@ def test_the_memory_map_follows_from_the_sdram() -> None:
         ({"chip.l2.read_cclk": 100_001}, "chip.l2.read_cclk must be 0 to 100,000, not 100,001"),
         ({"sdram.page_bytes": 3000}, "sdram.page_bytes must be a power of two, not 3,000"),
         ({"sdram.banks": 16}, "sdram.banks must be 1 to 8, not 16"),
+        ({"sdram.bank_bytes": 64 << 20}, "must, with the chip's L2, have at most 268,435,456 bytes, .*, not 268,566,528"),
         ({"sdram.word_bytes": 2}, "chip.dma.word_bytes must be that of the data bus, sdram.word_bytes 2, not 4"),
         ({"sdram.refresh_ms": 1, "sdram.rows_refreshed": 8192}, "must leave more than 22 SCLK cycles .*, not 14"),
         ({"chip.regions.2.start": 0}, "chip.regions must lie apart, not COREA_L1_DATA_A and SDRAM"),
@@ -215,3 +217,4 @@ def test_ranges_are_those_of_the_model() -> None:
     assert checks.RANGES["sdram.banks"][1] == state.MAX_BANKS
     assert checks.RANGES["chip.external.store_buffer"][1] == state.MAX_STORES
     assert checks.MOST_SUBBANKS == state.MAX_SUBBANKS
+    assert checks.MOST_OUTSIDE_L1 == OFFSET_MASK + 1

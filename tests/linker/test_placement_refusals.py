@@ -38,6 +38,14 @@ def test_out_of_memory_names_section_memory_sizes_and_lines(parse: Parse) -> Non
         link(parse(TWO_CORES), symbols)
 
 
+def test_a_memory_that_was_tried_by_several_statements_is_told_once(parse: Parse) -> None:
+    """The wizard of VisualDSP++ writes up to three for the same input section, by what the files prefer."""
+    script = parse(one_section("INPUT_SECTIONS($COMMAND_LINE_OBJECTS(data1))\n" * 3))
+    with pytest.raises(LinkError, match=r"test\.ldf:\d+: Out of memory .* does not fit in \w+: ") as error:
+        link(script, [symbol("frame", "data1", 2 << 20)])
+    assert str(error.value).count("bytes free") == 1
+
+
 def test_a_section_that_nothing_takes_is_named(parse: Parse) -> None:
     """The error names section, symbol, core and the sections that the LDF does take for that core."""
     message = (

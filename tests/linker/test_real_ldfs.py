@@ -125,13 +125,21 @@ SHARED_LIBRARY = (
             8,
             r"not sdram_bank0; line 5 takes sdram_bank0 only of libc.dlb, sml3.dlb: add to its files \$COMMAND",
         ),
-        ("data1", 8, r"not data1; line 4 takes data1 only of libc.dlb, sml3.dlb: .*, or camera.doj$"),
+        (
+            "data1",
+            8,
+            r"not data1; line 4 takes data1 only of libc.dlb, sml3.dlb: .*, or camera.doj; `bfsim place --ldf` ",
+        ),
         (
             "sdram_b",
             80,
             r"does not fit in M: 64 of 64 bytes free; line 5 takes sdram_b only of libc.dlb, sml3.dlb",
         ),
-        ("data2", 8, r"not data2$"),
+        (
+            "data2",
+            8,
+            r"not data2; an output section with INPUT_SECTIONS\(\$COMMAND_LINE_OBJECTS\(data2\)\) takes it; `bfsim place --ldf` ",
+        ),
     ],
 )
 def test_a_section_of_other_files_is_said_to_be_one(
