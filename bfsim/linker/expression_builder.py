@@ -42,6 +42,8 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Start]):
         digits = text.rstrip("uUlL")
         if digits[:2] in ("0x", "0X"):
             value = int(digits, 16)
+        elif "#" in digits:
+            value = int(digits.partition("#")[2], 2)
         else:
             value = int(digits.rstrip("kKmM")) * _SUFFIXES.get(digits[-1].upper(), 1)
         return Expression(text.start_pos or 0, "number", number=value)

@@ -14,7 +14,7 @@ from lark.exceptions import VisitError
 from lark.lexer import PatternStr
 
 from bfsim import store
-from bfsim.errors import LinkError
+from bfsim.errors import LinkError, printable
 from bfsim.linker.expression_builder import ExpressionBuilder
 from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionError
 from bfsim.linker.source import Source
@@ -92,15 +92,29 @@ def _syntax_error(source: Source, error: UnexpectedInput) -> LinkError:
 def _difference(text: str, error: UnexpectedInput) -> tuple[int, str, str]:
     """Return where a text leaves the grammar, what was expected there and what was found."""
     offset = error.pos_in_stream or 0
+    if name := _unknown_command(error):
+        return name.start_pos or 0, "a command that bfsim knows, or an assignment with '='", _quoted(name)
     if not isinstance(error, UnexpectedToken):
-        expected, found = getattr(error, "allowed", None) or set(), repr(text[offset])
+        expected, found = getattr(error, "allowed", None) or set(), _quoted(text[offset])
     elif error.token.type == "$END":
         expected, found = error.accepts or error.expected, "the end of the file"
         offset = len(text.rstrip())
     else:
-        expected, found = error.accepts or error.expected, repr("".join(error.token.split()[:1])[:30])
+        expected, found = error.accepts or error.expected, _quoted("".join(error.token.split()[:1]))
     names = sorted({_readable(terminal) for terminal in expected})
     return offset, ", ".join(names[:-1]) + " or " * (len(names) > 1) + "".join(names[-1:]), found
+
+
+def _unknown_command(error: UnexpectedInput) -> Token | None:
+    """Return the name before the error, if that can only be what is assigned to: a command that is misspelt, or of another linker."""
+    if not (isinstance(error, UnexpectedToken) and error.interactive_parser and error.expected == {"EQUAL"}):
+        return None
+    last = error.interactive_parser.parser_state.value_stack[-1]
+    return last if isinstance(last, Token) else None
+
+
+def _quoted(text: str) -> str:
+    return f"'{printable(text[:30])}'"
 
 
 def _readable(terminal: str) -> str:

@@ -173,7 +173,8 @@ class _Preprocessor:
             return
         searched = cut(", ".join(map(str, folders))) or "no folder"
         raise file.error_at(
-            offset, f"included file must be a readable one, not '{cut(wanted)}' (sought in {searched})"
+            offset,
+            f"included file must be a readable one, not '{cut(wanted)}' (sought in {searched}); -I FOLDER looks there, too",
         )
 
 

@@ -158,7 +158,7 @@ def test_commands_that_place_nothing_are_read(parse: Parse) -> None:
            SECTIONS {
               plain { __CORE = 0; ldf_end = (ldf_start + 8) & 0xfffffffc; } > MEM_DATA
               a NO_INIT { NO_FORCE_CONTIGUITY INPUT_SECTIONS(x.doj(data1)) } >MEM_DATA
-              b ZERO_INIT { INPUT_SECTIONS(x.doj(.bss)) } > MEM_DATA
+              b ZERO_INIT { NOFORCE_CONTIGUITY INPUT_SECTIONS(x.doj(.bss)) } > MEM_DATA
               c SHT_NOBITS { INPUT_SECTIONS(x.doj(bsz)) } > MEM_DATA
            }
         }
@@ -261,6 +261,12 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
             r"test\.ldf:1:44: LDF must do without OVERLAY_INPUT: overlays",
         ),
         ("PROCESSOR p0 { SECTIONS { OVERLAY_GROUP { OVERLAY_INPUT } } }", r"1:57: expected '{', not '}'"),
+        (
+            "PROCESSOR p0 { SECTIONS { a {\n INPUT_SECTION($COMMAND_LINE_OBJECTS(s)) } > M } }",
+            r"test\.ldf:2:2: expected a command that bfsim knows, or an assignment with '=', not 'INPUT_SECTION'\n",
+        ),
+        ("PROCESSOR p0 { FOO\n\n}", r"test\.ldf:1:16: expected a command that bfsim knows, .*, not 'FOO'"),
+        (r"\usepackage{x}", r"test\.ldf:1:1: expected .*, not '\\usepackage\{x\}'"),
     ],
 )
 def test_mistakes_are_named_with_their_place(parse: Parse, text: str, message: str) -> None:

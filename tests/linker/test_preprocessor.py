@@ -131,7 +131,8 @@ def test_included_files_are_read_where_they_stand(tmp_path: Path) -> None:
 def test_a_missing_included_file_is_named(parse: Parse) -> None:
     """The error names the file that is missing, where it was sought, and the line that asks for it."""
     with pytest.raises(
-        LinkError, match=r"test\.ldf:2:1: included .* not 'VDK\.h' \(sought in .*\)\n#include"
+        LinkError,
+        match=r"test\.ldf:2:1: included .* not 'VDK\.h' \(sought in .*\); -I FOLDER looks there, too\n#include",
     ) as error:
         parse('#define VDK_LDF_\n#include "VDK.h"\n')
     assert str(error.value).endswith("\n^")

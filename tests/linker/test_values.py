@@ -49,10 +49,11 @@ def value(parse: Parse, expression: str) -> int:
         ("DEFINED(nothing) ? nothing : 6", 6),
         ("ABSOLUTE(2K)", 2048),
         ("0x10UL + 16u + 0000000004", 36),
+        ("B#1010 + b#1", 11),
     ],
 )
 def test_assignments_have_the_values_of_c(parse: Parse, expression: str, expected: int) -> None:
-    """Operators, precedence and short circuits are C's."""
+    """Operators, precedence and short circuits are C's; binary numbers are the linker's."""
     assert value(parse, expression) == expected
 
 
