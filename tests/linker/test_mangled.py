@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -95,3 +96,15 @@ def test_the_ldf_itself_links(tmp_path: Path) -> None:
     linked = link(parse_ldf(path), [])
     assert linked.values["p0", "___l1_code_cache"] == 1
     assert linked.values["p0", "h_length"] == 128 * 1024
+
+
+def test_a_file_that_is_no_ldf_takes_little_memory(tmp_path: Path) -> None:
+    """A picture of 10 MB for the LDF took 6 GB, 600 bytes for each of its own."""
+    path = tmp_path / "picture.ldf"
+    path.write_bytes(b"\0" * 500_000)
+    tracemalloc.start()
+    with pytest.raises(LinkError, match=r"picture.ldf:1:1: expected "):
+        parse_ldf(path)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 100 * 500_000
