@@ -17,11 +17,8 @@ from bfsim.machine.program import Calibration, Firmware, SourcePixels
 from bfsim.machine.symbols import symbols_of
 from bfsim.once import once
 
-_STEPS = 64
-"""Sizes that are looked at: so many, of the shape of the pictures."""
-
 _WIDTH_STEP, _HEIGHT_STEP = 4, 2
-"""Of the sizes: halves of pictures have whole pairs of pixels, and quarters whole rows."""
+"""Of the sizes that are looked at: halves of pictures have whole pairs of pixels, and quarters whole rows."""
 
 
 def place(
@@ -59,7 +56,7 @@ def place(
     try:
         return placed(size)
     except LinkError as error:
-        least, most = 1, _STEPS
+        least, most = 1, max(size.width_px // _WIDTH_STEP, 1)
         if not fits(least):
             raise
         while most - least > 1:
@@ -89,11 +86,9 @@ def _placed(
 
 
 def _scaled(size: FrameSize, step: int) -> FrameSize:
-    """Return the size times step / _STEPS, rounded down, at least the smallest."""
-    width, height = (
-        max(side * step // _STEPS // unit, 1) * unit
-        for side, unit in ((size.width_px, _WIDTH_STEP), (size.height_px, _HEIGHT_STEP))
-    )
+    """Return the size that is `step` steps wide, of the same shape, rounded down, at least the smallest."""
+    width = step * _WIDTH_STEP
+    height = max(size.height_px * width // size.width_px // _HEIGHT_STEP, 1) * _HEIGHT_STEP
     return replace(size, width_px=width, height_px=height)
 
 

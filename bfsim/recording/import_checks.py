@@ -41,7 +41,8 @@ def check_call(
     if len(names) != wanted:
         raise RecordingError(
             f"sources must be {wanted}, not {len(names)}: two (left, right), "
-            "or one with `--side-by-side` or `--mono`, or a bag of ROS"
+            "or one with `--side-by-side` or `--mono`, or a bag of ROS; the pictures of a camera are a folder, or a pattern in "
+            'quotes, such as "left*.jpg"'
         )
     if resize is not None and crop is not None:
         raise RecordingError("pictures must be fitted with `--resize` or `--crop`, not both")

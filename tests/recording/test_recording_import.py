@@ -508,7 +508,7 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["rate.y4m"], {"mono": True}, "frame rate must be like F30:1, not Fast"),
         (["other.y4m"], {"mono": True}, r"header line must end within 1024 bytes \(frame 0, byte 0\)"),
         (["two"], {}, "sources must be 2, not 1: two"),
-        (["two", "two", "two"], {}, "sources must be 2, not 3"),
+        (["two", "two", "two"], {}, 'sources must be 2, not 3: .*, or a pattern in quotes, such as "left'),
         (["two", "two"], {"mono": True}, "sources must be 1, not 2"),
         (["two"], {"mono": True, "side_by_side": True}, "not both"),
         (["two"], {"mono": True, "fps": 0}, "frame rate must be 0.000001 to .* not 0"),
