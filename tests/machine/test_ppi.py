@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
+from bfsim.errors import ConfigError
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
@@ -26,11 +27,11 @@ WORD_TICKS = 100  # 24 MHz of bytes at 600/120: 20 SCLK
 FIFO_WORDS = 12  # 4 of the DMA, 8 of the PPI
 
 
-def new_ppi(bench: Bench) -> Ppi:
-    """Return a PPI with a camera of 16x8 pixels on it."""
+def new_ppi(bench: Bench, width_px: int = WIDTH, height_px: int = HEIGHT) -> Ppi:
+    """Return a PPI with a camera of 16x8 pixels on it, or of others."""
     return Ppi(
         bench.spec,
-        FrameSize(WIDTH, HEIGHT),
+        FrameSize(width_px, height_px),
         STEADY,
         bench.bus,
         bench.memories,
@@ -47,6 +48,16 @@ def picture_of(bench: Bench) -> tuple[np.ndarray, list[Row]]:
     for row in rows:
         row.array[:] = 0
     return picture, rows
+
+
+def test_pictures_that_come_too_fast_are_told_of_their_size() -> None:
+    """The clock that they would need is not what a user gives."""
+    with pytest.raises(
+        ConfigError,
+        match=r"pictures of 1282x1110 are too large for a camera that sends 30 of them a second: PPI_CLK must be at most .*; "
+        "`bfsim record import --resize` makes smaller ones",
+    ):
+        new_ppi(Bench(outside_nbytes=OUTSIDE), 1282, 1110)
 
 
 @pytest.mark.parametrize("board", BOARDS)

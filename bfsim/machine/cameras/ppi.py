@@ -10,9 +10,9 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.chip.ppi_registers import check_ppi_clk
-from bfsim.chip.spec import BoardSpec, CameraSpec
+from bfsim.chip.spec import BoardSpec, CameraSpec, SensorMode
 from bfsim.clocks import PeriodicEdges
-from bfsim.errors import FirmwareError
+from bfsim.errors import ConfigError, FirmwareError
 from bfsim.kernel.types import u8
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
@@ -77,7 +77,7 @@ class Ppi:
         """Program sensor and PPI for pictures of `size`."""
         self.size = size
         mode = self._sensor.mode(size.width_px, size.height_px)
-        check_ppi_clk(mode.ppi_clk_hz, self._clocks.sclk_hz)
+        _require_pace(mode, size, self._clocks.sclk_hz)
         self._oscillator = Oscillator(self._clocks, mode, self._camera)
         ppi_clk_ticks = self._clocks.tick_hz / self._oscillator.ppi_clk_hz
         self._word_ticks = ppi_clk_ticks * self._word_bytes
@@ -185,3 +185,14 @@ class Ppi:
                 timeline.cclk(begin + sent),
                 nbytes,
             )
+
+
+def _require_pace(mode: SensorMode, size: FrameSize, sclk_hz: Fraction) -> None:
+    """Raise ConfigError, with what to do, if the camera sends pictures of `size` faster than a PPI takes them."""
+    try:
+        check_ppi_clk(mode.ppi_clk_hz, sclk_hz)
+    except ConfigError as error:
+        raise ConfigError(
+            f"pictures of {size} are too large for a camera that sends {float(mode.frame_hz):.3g} of them a second: {error}; "
+            "`bfsim record import --resize` makes smaller ones"
+        ) from None
