@@ -213,8 +213,8 @@ class _Linker:
             if source.files and source.takes_section(symbol) and not source.takes_file(symbol):
                 where = statement.place.beside(Place(self._script.path, 0))
                 return (
-                    f"; {where} takes {symbol.section} only of {cut(', '.join(sorted(source.files)))}: add to its files "
-                    f"{COMMAND_LINE_OBJECTS}, which is all of the firmware, or {symbol.object_file}"
+                    f"; {where} takes {symbol.section} only of {cut(', '.join(sorted(source.files)))}: add {symbol.object_file} to "
+                    f"its files, or {COMMAND_LINE_OBJECTS}, which is all of the firmware, the code with it"
                 )
         return ""
 

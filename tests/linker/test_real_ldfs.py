@@ -123,12 +123,12 @@ SHARED_LIBRARY = (
         (
             "sdram_bank0",
             8,
-            r"not sdram_bank0; line 5 takes sdram_bank0 only of libc.dlb, sml3.dlb: add to its files \$COMMAND",
+            r"not sdram_bank0; line 5 takes sdram_bank0 only of libc.dlb, sml3.dlb: add camera.doj to its files, or \$COMMAND",
         ),
         (
             "data1",
             8,
-            r"not data1; line 4 takes data1 only of libc.dlb, sml3.dlb: .*, or camera.doj; `bfsim place --ldf` ",
+            r"not data1; line 4 takes data1 only of libc.dlb, sml3.dlb: .*, the code with it; `bfsim place --ldf` ",
         ),
         (
             "sdram_b",
