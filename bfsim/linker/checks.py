@@ -109,7 +109,7 @@ def region_under(segment: Segment, regions: Sequence[Region]) -> Region:
     except ConfigError as error:
         advice = (
             "`bfsim boards NAME` lists the memories of a board, --board takes another one, and --set sdram.bank_bytes=BYTES "
-            "another size of SDRAM"
+            "another size of each of the banks that SDRAM has"
         )
         raise LinkError(f"{segment.place}: segment '{segment.name}': {error}; {advice}") from None
 

@@ -205,7 +205,7 @@ def test_a_segment_without_memory_is_named(home: Path) -> None:
     assert done.exit_code == 2
     told = " ".join(done.stderr.split())
     assert re.search(r"cm-bf561\.ldfi:\d+: segment 'MEM_SDRAM_BANK\d': \d+ bytes at 0x", told), told
-    assert "--set sdram.bank_bytes=BYTES another size of SDRAM" in told
+    assert "--set sdram.bank_bytes=BYTES another size of each of the banks that SDRAM has" in told
 
 
 def test_what_does_not_fit_is_named(home: Path) -> None:
