@@ -99,6 +99,12 @@ def import_recording(
         raise RecordingError(f"{names[0]}: `--fps` must not be given, for a bag has time stamps")
     if not is_bag and (topics is not None or slop_s is not None):
         raise RecordingError(f"{names[0]}: `--topics` and `--slop` must go with a bag of ROS")
+    if size is not None and not any(
+        (format or guess_format(name)) in (*_RAW_OPENERS, None) for name in names
+    ):
+        raise RecordingError(
+            f"{names[0]}: `--size` must go with raw frames, which have none of their own; `--resize` scales pictures"
+        )
     bag = open_bag(names[0], topics, slop_s, single=side_by_side or mono, mixed=is_fitted) if is_bag else None
     opened = [*bag.sources] if bag else _open_sources(names, format, size, mixed=is_fitted)
     rate = _frame_rate(fps, opened)

@@ -514,6 +514,12 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["two"], {"mono": True, "fps": 0}, "frame rate must be 0.000001 to .* not 0"),
         (["two"], {"mono": True, "fps": 1e-300}, "frame rate must be 0.000001 to .* not 1e-300"),
         (["two"], {"mono": True, "fps": float("nan")}, "frame rate must be 0.000001 to .* not nan"),
+        (
+            ["two"],
+            {"mono": True, "size": (8, 4), "format": "images"},
+            "two: `--size` must go with raw frames, .*; `--resize` ",
+        ),
+        (["cut.y4m"], {"mono": True, "size": (8, 4)}, r"cut.y4m: `--size` must go with raw frames"),
         (["two"], {"mono": True, "resize": (7, 4)}, "`--resize` must be above 0 and of even width, not 7x4"),
     ],
 )
