@@ -217,12 +217,15 @@ def test_what_others_want_to_draw_is_drawn() -> None:
     assert shown(heat, 20, 45) == shown(one(), 20, 45)
 
 
-@pytest.mark.parametrize("size", [(2, 2), (16, 8), (160, 120), (320, 240), (640, 480), (1600, 100)])
+@pytest.mark.parametrize(
+    "size", [(2, 2), (16, 8), (160, 120), (320, 240), (640, 480), (1600, 100), (2, 480), (34, 4000)]
+)
 def test_pictures_of_any_size_are_drawn(size: tuple[int, int]) -> None:
-    """Small ones are magnified, large ones are not reduced."""
+    """Small ones are magnified, large ones are not reduced, and slim ones do not become towers: 2 by 480 took more than a minute."""
     seen = Seen(camera="left", picture=made.grey(*size))
     sheet = overlay_of(made.frame(0, seen, replace(seen, camera="right")))
     assert sheet.width >= 2 * size[0]
+    assert sheet.height <= max(2 * style.PANEL_WIDTH, size[1]) + style.HEAD + style.FOOT
 
 
 def test_one_camera_alone_is_drawn_too() -> None:

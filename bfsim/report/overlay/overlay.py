@@ -20,13 +20,16 @@ from bfsim.seen.heat import hottest_row_us
 BETWEEN = "   "
 """What stands between two numbers."""
 
+HIGHEST = 2
+"""A picture is magnified to so many times the wanted width in height at most: one of a few columns would be of gigapixels."""
+
 
 def overlay_of(
     frame: SeenFrame, layers: Collection[str] = LAYERS, panel_width: int = style.PANEL_WIDTH
 ) -> Image.Image:
     """Return the sheet of a frame, RGB, with some `layers` drawn: the same size for frames of pictures of one size.
 
-    A picture is about `panel_width` pixels wide, one alone as wide as the legend. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
+    A picture is about `panel_width` pixels wide, but a slim one at most twice as high; one alone is as wide as the legend. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
     """
     frame, scale = only(frame, layers), depths_of(frame)
     wanted_px = panel_width if len(frame.cameras) > 1 else LEGEND_WIDTH
@@ -77,7 +80,7 @@ def _sees_depth(frame: SeenFrame) -> bool:
 def _panel(
     frame: SeenFrame, seen: Seen, wanted_px: int, depths: DepthScale, hottest_us: float
 ) -> tuple[Image.Image, list[Label]]:
-    scale = max(1, round(wanted_px / seen.width_px))
+    scale = max(1, min(round(wanted_px / seen.width_px), HIGHEST * wanted_px // seen.height_px))
     objects = tuple(each for each in frame.objects if each.camera == seen.camera)
     if seen.camera != "left":
         return panel_of(seen, objects, (), (), scale, depths, hottest_us)
