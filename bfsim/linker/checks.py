@@ -17,7 +17,7 @@ def check_chip(script: LinkerScript, chip: str) -> None:
     if script.chip != chip.upper():
         raise LinkError(
             f"{script.path}: ARCHITECTURE must be {chip}, the board's chip, not {script.chip}; --board takes another board, of those "
-            "that `bfsim boards` lists"
+            "that `bfsim boards` lists with their chips, and `bfsim ldf` shows the memories of an LDF for any Blackfin"
         )
     cores = script.core_of_processor
     for block in script.blocks:

@@ -109,7 +109,7 @@ def test_every_blackfin_is_read(parse: Parse, chip: str) -> None:
     assert link(script, [], chip=f"ADSP-{chip}").placements == ()
     with pytest.raises(
         LinkError,
-        match=rf"ARCHITECTURE must be ADSP-BF999, the board's chip, not ADSP-{chip}; --board takes another",
+        match=rf"ARCHITECTURE must be ADSP-BF999, the board's chip, not ADSP-{chip}; --board takes another .* and `bfsim ldf` shows",
     ):
         link(script, [], chip="ADSP-BF999")
 
