@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.twins.case import Case, Run, word
 from benchmarks.twins.lcg import Array, Lcg
-from bfsim.kernel import i16, i32, kernel, u8, u16, u32
+from bfsim.kernel import i16, i32, kernel, quotient, u8, u16, u32
 
 
 @kernel
@@ -90,7 +90,7 @@ def count_islands(image: u8[:], w: i32, h: i32, stack: i16[:], size: i32[:]) -> 
         while top > 0:
             top -= 1
             p = stack[top]
-            y = p // w
+            y = quotient(p, w)  # as the C divides
             x = p - y * w
             pixels += 1
             for dy in range(-1, 2):

@@ -18,6 +18,7 @@ from bfsim.kernel.emit import emit
 from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import inlined_calls
 from bfsim.kernel.ir_text import (
+    HIDES,
     Entrance,
     Routine,
     SourceLine,
@@ -29,9 +30,11 @@ from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
 from bfsim.kernel.lowering.charges import Access, merged
+from bfsim.kernel.lowering.hidden_numbers import revealed
 from bfsim.kernel.lowering.rewrites import rewritten, rewritten_early
 from bfsim.kernel.lowering.rotations import held, released
 from bfsim.kernel.lowering.skipped_iterations import with_skipped_iterations
+from bfsim.kernel.lowering.switches import with_switches
 from bfsim.kernel.lowering.threaded_hints import with_threaded_hints
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.narrowed_divisions import with_rounded_names
@@ -72,10 +75,16 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         module = llvm.parse_assembly(with_threaded_hints(str(module)))
     generic.run(("simplify_cfg",), module)
     module = llvm.parse_assembly(rewritten_early(str(module), profile))
+    if profile.applies(Rule.JUMP_TABLES):
+        module = with_switches(module, profile)
     generic.run(PASSES, module)
     module = _rotated(module, profile)
     generic.run(LATER_PASSES, module)
     text = str(module)
+    if HIDES in text:  # what can no longer come to a table is known now
+        module = llvm.parse_assembly(revealed(text))
+        generic.run(LATER_PASSES, module)
+        text = str(module)
     if profile.applies(Rule.SKIPPED_ITERATIONS):
         text = with_skipped_iterations(with_rounded_names(text, function))
     for _ in range(UNROLLED_NESTING):

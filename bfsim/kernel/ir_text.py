@@ -49,6 +49,8 @@ STEPS = "bfsim.steps"
 STEPPING = re.compile(
     rf"^  (?:tail )?call void @{re.escape(STEPS)}\(i32 ([^,]+), i32 ([^,]+), i32 ([^,)]+)\)"
 )
+HIDES = "bfsim.hides"
+"""A call that returns its number, of which LLVM is to know nothing."""
 ENTRY = re.compile(rf"^  (?:tail )?call void @{re.escape(ENTERS)}([\w.$-]+)\(")
 
 
@@ -115,7 +117,8 @@ class Instruction:
     @property
     def is_computation(self) -> bool:
         """Whether it is a call by which LLVM, or the kernel language, writes an operation."""
-        return self.opcode == "call" and ("@llvm." in self.text or f"@{PREFIX}" in self.text)
+        names = ("@llvm.", f"@{PREFIX}", f"@{HIDES}")
+        return self.opcode == "call" and any(each in self.text for each in names)
 
     @property
     def intrinsic(self) -> Intrinsic | None:

@@ -13,8 +13,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 NAME = r"%[\w.$-]+"
+TABLE = r"@[\w.$-]+"
+"""Name of a compiler's own table of constants."""
 ELEMENT_ADDRESS = re.compile(
-    rf"^  ({NAME}) = getelementptr (?:(?:inbounds|nuw|nusw|nsw) )*([^%]+), ptr ({NAME}), (.+?)(?:, !.*)?$"
+    rf"^  ({NAME}) = getelementptr (?:(?:inbounds|nuw|nusw|nsw) )*([^%@]+), ptr ({NAME}|{TABLE}), (.+?)(?:, !.*)?$"
 )
 INDEX = re.compile(r"(i\d+) ([^,\s]+)")
 JOIN = re.compile(
@@ -56,10 +58,10 @@ class Pointers:
                 self._locals.add(found[1])
 
     def is_local(self, pointer: str) -> bool:
-        """Whether `pointer` points to a local of the routine, and into no array."""
+        """Whether `pointer` points to a local of the routine, or into a compiler's own table, and into no array."""
         while pointer in self._moved:
             pointer = self._moved[pointer]
-        return pointer in self._locals
+        return pointer in self._locals or pointer.startswith("@")
 
     def origin(self, pointer: str) -> Origin:
         """Return what `pointer` points to, in terms of the companions."""

@@ -97,6 +97,10 @@ class Rule(StrEnum):
     SUM_CLASSES = (
         "words that are loaded and added to a sum that is only added to are in pointer registers, and moved"
     )
+    BIT_TESTS = "tests of a value for several numbers that lead to one place are tests for a range, without a bit, or for a bit of a mask"
+    JUMP_TABLES = "tests of a value for at least five numbers, one after the other, are a jump by a table"
+    CONSTANT_TABLES = "such tests that only choose constants are a load from a table"
+    STATE_MACHINES = "a way round a loop on which the number of such tests is known leads past them"
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
     COPIES_IN_FRONT = (
         "what a counted loop of several blocks copies on its way back is copied in front of its first block"
@@ -134,6 +138,10 @@ GCC: dict[Rule, str] = {
     Rule.SUM_CLASSES: "find_costs_and_classes in ira-costs.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.COPIES_IN_FRONT: "reorder_loops in hw-doloop.cc",
+    Rule.BIT_TESTS: "optimize_range_tests in tree-ssa-reassoc.cc",
+    Rule.JUMP_TABLES: "gimple-if-to-switch.cc",
+    Rule.CONSTANT_TABLES: "switch_conversion in tree-switch-conversion.cc",
+    Rule.STATE_MACHINES: "tree-ssa-threadbackward.cc",
     Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -217,4 +225,8 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.COPIES_IN_FRONT: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_pictures.py
     Rule.STRENGTH_REDUCTION: (),
     Rule.SUMMED_INDICES: (),
+    Rule.BIT_TESTS: (),
+    Rule.CONSTANT_TABLES: (),
+    Rule.STATE_MACHINES: (),
+    Rule.JUMP_TABLES: (),  # from kernels that are not measured here: tests/kernel/test_switches.py
 }

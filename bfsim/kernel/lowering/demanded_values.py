@@ -24,6 +24,7 @@ from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
+from bfsim.kernel.lowering.value_ranges import never_negative
 from bfsim.kernel.lowering.widths import BYTE
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -73,10 +74,13 @@ class DemandedValues(Folding):
         )
 
     def _iterations_by_counter(self, loop: Loop) -> bool:
-        """Counted, and without calls: a register counts the iterations, not the program's variable."""
+        """Counted, and without calls and computed jumps: a register counts the iterations, not the program's variable."""
         inside = (each for label in self.flow.inside(loop) for each in self.flow.blocks[label].instructions)
         library = any(
-            each.is_call or each.is_soft_float or (each.is_division and self.divides_by_call(each))
+            each.is_call
+            or each.opcode == "switch"
+            or each.is_soft_float
+            or (each.is_division and self.divides_by_call(each))
             for each in inside
         ) or not self.calling.isdisjoint(loop.blocks)
         iterations = self.evolution.iterations(loop)
@@ -261,28 +265,13 @@ class DemandedValues(Folding):
         if SIGNED in name or FLOOR in name or each.opcode[0] == "s":
             return not (constant and narrow)
         known = constant and not narrow and self.profile.applies(Rule.KNOWN_SIGN)
-        return known and self._never_negative(each.operands[0])
+        return known and never_negative(self.flow, each.operands[0])
 
     def _name_of(self, each: Instruction) -> str:
         """Return the name of a division. Where LLVM has made it one of bytes, what extends it to an i32 has it."""
         result = each.result or ""
         extended = [user for user in self.flow.users.get(result, ()) if user.opcode == "zext"]
         return " ".join([result, *(user.result or "" for user in extended)])
-
-    def _never_negative(self, value: str, seen: frozenset[str] = frozenset()) -> bool:
-        each = self.flow.instruction(value)
-        if value.isdigit() or value in seen:
-            return value in seen or int(value) < 1 << 31
-        if each is None:
-            return False
-        if each.opcode == "phi":
-            return all(self._never_negative(operand, seen | {value}) for operand in each.operands)
-        if each.opcode == "add" and " nsw " in each.text:
-            return all(self._never_negative(operand, seen | {value}) for operand in each.operands[:2])
-        bound = each.operands[-1] if each.operands else ""
-        if each.opcode in ("lshr", "udiv", "urem", "and") and bound.isdigit():
-            return int(bound) > (1 if each.opcode == "udiv" else 0)
-        return each.opcode == "zext"
 
     # Narrow values
 

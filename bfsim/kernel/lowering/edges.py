@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, arms_of
 
 
 def going_to(block: BasicBlock, old: str, new: str) -> BasicBlock:
@@ -54,3 +55,20 @@ def bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: st
             changed.append(phi)
     blocks[end] = replace(blocks[end], instructions=tuple(changed))
     del blocks[label]
+
+
+def with_arms(block: BasicBlock, gone: Collection[str], labels: Iterable[str]) -> BasicBlock:
+    """Return a block that is come to from `labels` in place of the blocks that are `gone`, all of which bring the same values."""
+    rows = []
+    for phi in block.instructions:
+        if phi.opcode == "phi":
+            arms = arms_of(phi)
+            value = next(arms[each] for each in gone if each in arms)
+            ways = {each: arm for each, arm in arms.items() if each not in gone} | dict.fromkeys(
+                labels, value
+            )
+            text = ", ".join(f"[ {arm}, %{each} ]" for each, arm in ways.items())
+            rows.append(replace(phi, text=f"phi {phi.text.split()[1]} {text}", operands=tuple(ways.values())))
+        else:
+            rows.append(phi)
+    return replace(block, instructions=tuple(rows))

@@ -163,18 +163,10 @@ class Folding:
         product = self.flow.instruction(each.operands[1]) if each.opcode == "sub" else None
         if product is None or product.opcode != "mul" or not self.profile.applies(Rule.REMAINDERS):
             return None
-        rounded = self.flow.instruction(product.operands[0])
-        parts = rounded.operands if rounded is not None and rounded.opcode == "add" else product.operands[:1]
-        for part in parts:
-            division = self.flow.instruction(part)
-            values = (each.operands[0], product.operands[1])
-            if (
-                division is not None
-                and division.opcode in ("sdiv", "udiv")
-                and division.operands[:2] == values
-            ):
-                return division
-        return None
+        division = self.flow.instruction(product.operands[0])
+        if division is None or division.opcode not in ("sdiv", "udiv"):
+            return None
+        return division if division.operands[:2] == (each.operands[0], product.operands[1]) else None
 
     def added_flag(self, each: Instruction) -> str | None:
         """The other operand of a sum with 0 or another constant, by the way: only the ways that do not bring 0 add.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from bfsim.kernel import isa
@@ -16,10 +16,12 @@ from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
 from bfsim.kernel.lowering.hardware_loops import HardwareLoops
 from bfsim.kernel.lowering.idioms import fills_of
+from bfsim.kernel.lowering.jump_tables import MARK, first_entry
 from bfsim.kernel.lowering.machine_code import MachineInstruction
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.schedule import Issue, issues
 from bfsim.kernel.lowering.select import select
+from bfsim.kernel.lowering.widths import WORD, widest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -337,14 +339,35 @@ class _OptimisedLowering:
         return (again, leaving) if ways[0] == stays else (leaving, again)
 
     def _switch(self, block: BasicBlock, cost: BlockCost) -> None:
-        """A chain of comparisons and branches, in the order of the cases."""
+        """A jump by a table, or a chain of comparisons and branches in the order of the cases."""
         value, line = block.terminator.operands[0], block.terminator.line
-        pair = [charge(Op.COMPARE, line), charge(Op.BRANCH_NOT_TAKEN, line)]
-        default = pair * len(block.cases)
+        numbers = [case for case, _ in block.cases]
+        if MARK in block.label:
+            tested = [charge(each, line) for each in self._table_index(value, numbers)]
+            default = [*tested, charge(Op.BRANCH_TAKEN, line)]
+            found = [charge(each, line) for each in (Op.BRANCH_NOT_TAKEN, Op.ADD_SHIFT, Op.LOAD32, Op.JUMP)]
+            hits = [[*tested, *found]] * len(numbers)
+        else:
+            pair = [charge(Op.COMPARE, line), charge(Op.BRANCH_NOT_TAKEN, line)]
+            default = pair * len(numbers)
+            last = [charge(Op.COMPARE, line), charge(Op.BRANCH_TAKEN, line)]
+            hits = [[*pair * index, *last] for index in range(len(numbers))]
         cost.charges += default
-        for index, (case, _) in enumerate(block.cases):
-            hit = [*pair * index, charge(Op.COMPARE, line), charge(Op.BRANCH_TAKEN, line)]
-            cost.tests.append(Test(value, case, instead(hit, default)))
+        for number, hit in zip(numbers, hits, strict=True):
+            cost.tests.append(Test(value, number, instead(hit, default)))
+
+    def _table_index(self, value: str, numbers: Sequence[int]) -> Iterator[Op]:
+        """What makes the number of a table's entry of a value, in a pointer register, and compares it with the last one."""
+        first = first_entry(numbers)
+        if first:
+            yield Op.ALU
+            each = self.flow.instruction(value)
+            if each is not None and each.opcode in ("zext", "load") and widest(self.flow, value) < WORD:
+                yield Op.EXTEND
+        yield Op.MOVE
+        if max(numbers) - first not in isa.COMPARE_UNSIGNED_IMMEDIATE:
+            yield Op.IMM
+        yield Op.COMPARE
 
 
 def _saving(allocation: Allocation, one: Op, several: Op) -> list[Op]:

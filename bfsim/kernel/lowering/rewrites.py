@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
+from bfsim.kernel.lowering.bit_tests import with_bit_tests
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.extremes import with_extremes
@@ -15,6 +16,7 @@ from bfsim.kernel.lowering.factored_sums import factor_sums
 from bfsim.kernel.lowering.final_values import with_final_values
 from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
+from bfsim.kernel.lowering.jump_tables import with_jump_tables
 from bfsim.kernel.lowering.known_answers import with_known_answers
 from bfsim.kernel.lowering.lagging_counters import without_lagging
 from bfsim.kernel.lowering.merged_stores import merge_stores
@@ -58,6 +60,8 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     hoist_loads,
     with_final_values,
     with_predictive_commoning,
+    with_bit_tests,
+    with_jump_tables,
 )
 """In this order."""
 SWITCHES = {
@@ -74,6 +78,8 @@ SWITCHES = {
     with_predictive_commoning: Rule.PREDICTIVE_COMMONING,
     with_reduced_strength: Rule.STRENGTH_REDUCTION,
     with_summed_indices: Rule.SUMMED_INDICES,
+    with_bit_tests: Rule.BIT_TESTS,
+    with_jump_tables: Rule.JUMP_TABLES,
 }
 """Those that can be left out."""
 

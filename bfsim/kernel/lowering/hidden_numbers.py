@@ -1,0 +1,63 @@
+"""Numbers of which LLVM is to know nothing: it would leave out tests that cannot hold any more, where GCC has made a table of them by then."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from bfsim.kernel.ir_text import HIDES, NAME, BasicBlock, Instruction, arms_of, renamed
+from bfsim.kernel.loops import ControlFlow
+
+DECLARED = f"declare i32 @{HIDES}(i32) nounwind willreturn memory(none)"
+HIDDEN = re.compile(rf"^  (%[\w.$-]+) = .*@{re.escape(HIDES)}\(i32 (\S+?)\)", re.MULTILINE)
+
+
+def hide(flow: ControlFlow, blocks: dict[str, BasicBlock], value: str, test: str) -> None:
+    """Let who asks for a word get one of which LLVM knows nothing: all who do, or, of what a loop carries, those from block `test` on."""
+    hidden, first = f"{value}.hidden", test
+    each = flow.instruction(value)
+    if each is None or each.opcode != "phi":
+        asking = [
+            label
+            for label, block in flow.blocks.items()
+            if any(_asks(row, value) for row in block.instructions)
+        ]
+        common = frozenset.intersection(*(flow.dominators[label] for label in asking))
+        first = max(common, key=lambda label: len(flow.dominators[label]))
+    for label, block in blocks.items():
+        blocks[label] = replace(block, instructions=tuple(_asking(flow, block, first, value, hidden)))
+
+
+def _asking(
+    flow: ControlFlow, block: BasicBlock, first: str, value: str, hidden: str
+) -> Iterator[Instruction]:
+    """Return the instructions of a block that ask for a hidden number if the block `first`, which hides it, comes before."""
+    is_there = first in flow.dominators[block.label] and block.label != first
+    for each in block.instructions:
+        if each.opcode == "phi":
+            arms = {
+                label: hidden if arm == value and first in flow.dominators[label] else arm
+                for label, arm in arms_of(each).items()
+            }
+            text = ", ".join(f"[ {arm}, %{label} ]" for label, arm in arms.items())
+            yield replace(each, text=f"phi {each.text.split()[1]} {text}", operands=tuple(arms.values()))
+            continue
+        if block.label == first and not is_there and (_asks(each, value) or each is block.terminator):
+            text = f"call i32 @{HIDES}(i32 {value})"
+            yield Instruction(hidden, "call", text, (value,), each.line, location=each.location)
+            is_there = True
+        yield renamed(each, {value: hidden}) if is_there else each
+
+
+def _asks(each: Instruction, value: str) -> bool:
+    return value in each.operands and each.opcode != "phi"
+
+
+def revealed(text: str) -> str:
+    """Return a module in which such numbers are what was hidden."""
+    hidden = dict(HIDDEN.findall(text))
+    while again := {name: hidden[value] for name, value in hidden.items() if value in hidden}:
+        hidden |= again
+    rows = (row for row in text.splitlines() if HIDES not in row)
+    return NAME.sub(lambda found: hidden.get(found[0], found[0]), "\n".join(rows))
