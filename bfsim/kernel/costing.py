@@ -51,6 +51,8 @@ PASSES = (
 )  # fmt: skip
 LATER_PASSES = ("jump_threading", *CLEANING)
 """Behind a second rotation: of the loops that jump threading has made."""
+REVEALED_PASSES = ("jump_threading", "instruction_combine", "simplify_cfg", "aggressive_dce", "simplify_cfg")
+"""Where numbers were hidden: LLVM's value numbering would give up on what now comes together."""
 
 
 def costed(function: Function, profile: CompilerProfile) -> Costs:
@@ -83,7 +85,7 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
     text = str(module)
     if HIDES in text:  # what can no longer come to a table is known now
         module = llvm.parse_assembly(revealed(text))
-        generic.run(LATER_PASSES, module)
+        generic.run(REVEALED_PASSES, module)
         text = str(module)
     if profile.applies(Rule.SKIPPED_ITERATIONS):
         text = with_skipped_iterations(with_rounded_names(text, function))

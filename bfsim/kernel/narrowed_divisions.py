@@ -23,11 +23,13 @@ def with_rounded_names(text: str, function: Function) -> str:
     rows = text.splitlines()
     if not any(NARROWED.match(row) for row in rows):
         return text
-    rounded = _rounded_notes(rows, function)
+    rounded, prefix = _rounded_notes(rows, function), f"{ROUNDED}.narrowed"
+    while f"%{prefix}." in text:  # of those that have been narrowed before
+        prefix += "_"
     for start in [number for number, row in enumerate(rows) if DEFINE.match(row)]:
         end = rows.index("}", start)
         found = (NARROWED.match(row) for row in rows[start:end])
-        names = {each[1]: f"%{ROUNDED}.{each[1]}" for each in found if each and each[2] in rounded}
+        names = {each[1]: f"%{prefix}.{each[1]}" for each in found if each and each[2] in rounded}
         for number in range(start, end) if names else ():
             rows[number] = _renamed(rows[number], names)
     return "\n".join(rows)

@@ -13,6 +13,7 @@ from itertools import groupby
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import with_arms
+from bfsim.kernel.lowering.jump_tables import MARK
 from bfsim.kernel.lowering.number_tests import NumberTest, chains, come_alike, is_alone
 from bfsim.kernel.lowering.widths import WORD, widest
 
@@ -23,12 +24,16 @@ HIT = (2, 1)  # how likely a bit of the mask is set, as the tests that it replac
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Numbers from `low` to `high`, with and without the bit of `free`; with `mask`, those of its bits, of which the lowest is `low`."""
+    """Numbers from `low` to `high`, with and without the bit of `free`; with `mask`, those of its bits, of which the lowest is `low`.
+
+    `is_sure`: every value is one from `low` to `high`.
+    """
 
     low: int
     high: int
     free: int = 0
     mask: int = 0
+    is_sure: bool = False
 
     def of_mask(self, low: int) -> int:
         """Return the numbers as bits of a mask, that of `low` the lowest."""
@@ -47,8 +52,10 @@ def with_bit_tests(routine: Routine) -> Routine:
     blocks = dict(flow.blocks)
     switched = {each.label for chain in chains(flow, is_alone) if _is_switch(flow, chain) for each in chain}
     for chain in chains(flow, lambda _: True):
-        for _, group in groupby(chain, lambda each: (each.hit, each.label in switched)):
+        for _, group in groupby(chain, lambda each: (each.hit, each.label in switched, MARK in each.label)):
             tests = list(group)
+            if MARK in tests[0].label:  # a jump by a table
+                continue
             parts = _parts(tests, pairs=tests[0].label not in switched)
             if _may_join(flow, tests, parts):
                 steps = _steps(tests, parts, is_small=widest(flow, tests[0].value) <= SMALL_BITS)
@@ -101,6 +108,7 @@ def _is_bit_apart(one: Numbers, other: Numbers) -> bool:
 
 def _steps(tests: Sequence[NumberTest], parts: Sequence[Numbers], *, is_small: bool) -> list[Numbers]:
     """Return what is tested for, in the order of the tests for its least number. `is_small`: every value is the number of a bit of a word."""
+    is_small = is_small and all(each.number < WORD for each in tests)
     place = {each.number: number for number, each in enumerate(tests)}
     steps, left = list[Numbers](), list(parts)
     for first in parts:
@@ -111,7 +119,7 @@ def _steps(tests: Sequence[NumberTest], parts: Sequence[Numbers], *, is_small: b
             mask = 0
             for each in within:
                 mask |= each.of_mask(low)
-            steps.append(Numbers(low, WORD - 1 if is_small else last, mask=mask))
+            steps.append(Numbers(low, last, mask=mask, is_sure=is_small))
             place[low] = place[first.low]
             left = [each for each in parts if each not in within]
             break
@@ -131,7 +139,7 @@ def _join(blocks: dict[str, BasicBlock], tests: Sequence[NumberTest], steps: Seq
         rows = list(_range_test(first, numbers, branch, label, is_word=is_word))
         if not numbers.mask:
             made = {label: (*rows, _goes(rows[-1], first.hit, behind))}
-        elif numbers == replace(numbers, low=0, high=WORD - 1):
+        elif numbers.is_sure:
             bits = _bit_test(first, (), numbers.mask, branch, label)
             made = {label: (*bits, _goes(bits[-1], first.hit, behind, HIT))}
         else:

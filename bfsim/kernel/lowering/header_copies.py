@@ -179,7 +179,7 @@ class _Rotation:
                 blocks.append(self._made(self.copy, self.first, own=True))
                 blocks.append(self._made(block.label, self.last, own=False))
             elif block.label == self.entering:
-                blocks.append(going_to(block, self.header.label, self.copy))
+                blocks.append(going_to(self._behind(block), self.header.label, self.copy))
             else:
                 blocks.append(self._behind(block))
         return replace(self.flow.routine, blocks=tuple(blocks))

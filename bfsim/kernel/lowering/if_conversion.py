@@ -103,8 +103,10 @@ class IfConversion:
         ):
             return None
         join = self.flow.defined[inner.phi.result or ""][0]
+        if set(block.successors) != {inner.label, join}:
+            return None
         test = self.flow.instruction(block.terminator.operands[0])
-        if set(block.successors) != {inner.label, join} or test is None or test.opcode != "icmp":
+        if test is None or test.opcode != "icmp":
             return None
         bound = self._plain(_arm_value(inner.phi, label), inner.phi)
         value = self._plain(test.operands[0])

@@ -82,7 +82,9 @@ def tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
 
 def _test(flow: ControlFlow, block: BasicBlock) -> NumberTest | None:
     test = tested(flow, block)
-    if test is None or predicate(test) not in ("eq", "ne") or not is_number(test.operands[1]):
+    if test is None or predicate(test) not in ("eq", "ne"):
+        return None
+    if is_number(test.operands[0]) or not is_number(test.operands[1]):
         return None
     hit, other = block.successors if predicate(test) == "eq" else reversed(block.successors)
     bits = int(test.text.split()[-3].removeprefix("i"))

@@ -164,6 +164,8 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
         home = source
         if flow.blocks[source].successors != (label,):
             home = f"{label}.from.{source}"
+            while home in blocks:  # the other side of a test
+                home += ".too"
             put_between(blocks, source, label, home)
         *before, last = blocks[home].instructions
         blocks[home] = replace(blocks[home], instructions=(*before, *rows, last))
@@ -181,7 +183,8 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
 def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str, label: str) -> None:
     """Take out a block that only goes on to `label`, if the one before it does not lead there, too."""
     before = flow.predecessors[empty]
-    if len(blocks[empty].instructions) > 1 or blocks[empty].enters or len(before) != 1:
+    is_empty = len(blocks[empty].instructions) == 1 and blocks[empty].successors == (label,)
+    if not is_empty or blocks[empty].enters or len(before) != 1:
         return
     (source,) = before
     if label in blocks[source].successors or blocks[source].terminator.opcode != "br":

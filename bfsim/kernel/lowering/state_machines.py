@@ -182,7 +182,8 @@ class _Threading:
 
     def _add(self, label: str, of: _Ways) -> None:
         """Add the copy of a block; where the number is known its test is left out."""
-        names = {each.result: f"{each.result}.{label}" for each in of.block.instructions if each.result}
+        ending = label.rsplit(".", 1)[1]
+        names = {each.result: f"{each.result}.{ending}" for each in of.block.instructions if each.result}
         rows = [
             renamed(replace(each, result=names.get(each.result or "")), names)
             for each in of.block.instructions

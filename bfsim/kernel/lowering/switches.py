@@ -25,6 +25,9 @@ from bfsim.kernel.lowering.widths import WORD
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
+MOST_BLOCKS = 100
+"""[ours] Of a routine with more blocks no ways are copied: LLVM's value numbering gives up on what can become of it."""
+
 
 def with_switches(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
     """Return a module with such chains marked, or replaced, and ways past them; of one without any, the module itself."""
@@ -34,13 +37,16 @@ def with_switches(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.Modu
     if HIDES not in marked and not tables:
         return module
     module = llvm.parse_assembly("\n".join((marked, *tables, DECLARED)))
-    if profile.applies(Rule.STATE_MACHINES):
-        generic.run(("register_to_memory",), module)
-        text = with_names(str(module))
-        module = llvm.parse_assembly(
-            write_module(text, [with_state_machines(each) for each in read_module(text)])
-        )
-        generic.run(("sroa", "simplify_cfg"), module)
+    is_large = any(len(each.blocks) > MOST_BLOCKS for each in read_module(marked))
+    return module if is_large or not profile.applies(Rule.STATE_MACHINES) else _threaded(module)
+
+
+def _threaded(module: llvm.ModuleRef) -> llvm.ModuleRef:
+    generic.run(("register_to_memory",), module)
+    text = with_names(str(module))
+    text = write_module(text, [with_state_machines(each) for each in read_module(text)])
+    module = llvm.parse_assembly(text)
+    generic.run(("sroa", "simplify_cfg"), module)
     return module
 
 
