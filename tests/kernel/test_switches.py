@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import pytest
 
+from bfsim.errors import KernelError
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.rules import Rule
 from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.decisions import Decisions
 from tests.kernel.modules import kernel_of
+from tests.tiers import exhaustive
 
 IN_A_LOOP = """
 def f(a: u8[:], o: u8[:], n: i32) -> i32:
@@ -116,7 +121,7 @@ CASES = {
     "six cases": (IN_A_LOOP.format("a[i] & 7", chain(6)), 5781, 0.04),
     "seven cases of a byte": (IN_A_LOOP.format("a[i]", chain(7)), 6039, 0.02),
     "packets": (IN_A_LOOP.format("a[i]", PACKETS), 4488, 0.03),
-    "states that are chosen": (IN_A_LOOP.format("a[i]", CHOOSING_STATES), 4446, 0.15),
+    "states that are chosen": (IN_A_LOOP.format("a[i]", CHOOSING_STATES), 4446, 0.17),
     "states in turn": (IN_A_LOOP.format("a[i]", GAIT), 4360, 0.36),
     "constants": (IN_A_LOOP.format("a[i] & 7", CONSTANTS), 7100, 0.07),
     "blanks": (
@@ -200,3 +205,11 @@ def test_numbers_that_lead_to_one_place_are_tested_together(
 def test_nothing_is_hidden_from_what_is_costed(tmp_path: Path) -> None:
     """The calls that hide numbers from LLVM are gone in the end."""
     assert all("hides" not in text_of(name, tmp_path) for name in CASES)
+
+
+@pytest.mark.parametrize("seed", [*range(12), *exhaustive(*range(12, 300))])
+def test_kernels_that_decide_by_chance_compute_what_python_does(seed: int, tmp_path: Path) -> None:
+    """Of such kernels one in 300 was compiled wrongly, or not at all, while these rules were made. What the language refuses is left out."""
+    text = Decisions(Random(seed)).kernel()
+    with suppress(KernelError):  # lines that are never reached
+        check_meaning(text, GCC_O2, tmp_path, (8, 60, 200))
