@@ -21,7 +21,7 @@ class Rule(StrEnum):
     RELOAD_REGISTER = "where values do not fit in registers, one register serves the reloads"
     POINTER_COPIES = "a loop with two exits that are not counted keeps a pointer before and after its step"
     COPIED_END = "the end of a loop is copied behind each exit of the loop inside it"
-    SUNK_MASK = "16-bit masks that end both sides of a test are done once behind them"
+    SUNK_MASK = "masks of 8 or 16 bits that end both sides of a test are done once behind them"
     NARROW_SUMS = "a sum that is stored as narrow and used as wide is computed twice"
     RAW_BYTE = "the low byte of a half-word is extended from the half-word as it was loaded"
     FACTORS = "a byte that is a factor of a 16-bit product and used in another way is extended for each"

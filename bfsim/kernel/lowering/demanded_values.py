@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
@@ -223,11 +223,14 @@ class DemandedValues(Folding):
     # Divisions
 
     def has_quotient(self, rest: Instruction) -> bool:
-        """Whether the quotient of the same two values is computed as well: the remainder follows from it."""
+        """Whether the quotient of the same two values is computed as well, or its negative: the remainder follows from it."""
+        value, divisor = rest.operands[:2]
+        divisors = {divisor, str(-int(divisor)) if is_number(divisor) else divisor}
         return any(
             each.is_division
             and each.opcode.endswith("div")
-            and each.operands == rest.operands
+            and each.operands[0] == value
+            and each.operands[1] in divisors
             and self.emits(each)
             for block in self.flow.routine.blocks
             for each in block.instructions

@@ -12,6 +12,7 @@ from bfsim.kernel.rules import Rule
 
 SHIFTS = ("shl", "lshr", "ashr")
 NARROW = (8, 16)
+BYTE_MASK = 0xFF
 HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
 
 
@@ -122,9 +123,11 @@ class Folding:
         )  # fmt: skip
 
     def sunk_mask(self, phi: Instruction) -> bool:
-        """Whether every arm of a phi ends in a 16-bit mask: as a conversion, it is done once behind them."""
-        several = phi.opcode == "phi" and len(phi.operands) > 1 and self.profile.applies(Rule.SUNK_MASK)
-        return several and all(self._masked(each) for each in phi.operands)
+        """Whether every arm of a phi ends in a mask of 8 bits, or of 16: as a conversion, it is done once behind them."""
+        if phi.opcode != "phi" or len(phi.operands) < 2 or not self.profile.applies(Rule.SUNK_MASK):
+            return False
+        masks = [self._masked(each) for each in phi.operands]
+        return None not in masks and len({self._is_byte_mask(each) for each in masks if each}) == 1
 
     def _masked(self, value: str) -> Instruction | None:
         each = self.flow.instruction(value)
@@ -132,7 +135,13 @@ class Folding:
             each = self.flow.instruction(each.operands[0])
         if each is None or each.opcode != "and" or not _fits_16(each.operands[1]):
             return None
-        return each if int(each.operands[1]) >= HIGH_BYTE else None
+        return each if int(each.operands[1]) >= HIGH_BYTE or self._is_byte_mask(each) else None
+
+    def _is_byte_mask(self, each: Instruction) -> bool:
+        """Whether a mask leaves a byte; LLVM takes out the lowest bit of it where a shift has made that 0."""
+        shifted = self.flow.instruction(each.operands[0])
+        is_even = shifted is not None and shifted.opcode == "shl" and shifted.operands[1] == "1"
+        return each.operands[1] == str(BYTE_MASK) or (is_even and each.operands[1] == str(BYTE_MASK - 1))
 
     def in_sunk_mask(self, each: Instruction) -> bool:
         """Whether a mask is done behind the arms that end in it."""
