@@ -27,6 +27,7 @@ from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
 from bfsim.kernel.lowering.restored_values import with_restored_values
+from bfsim.kernel.lowering.saturations import without_saturations
 from bfsim.kernel.lowering.short_circuits import split_tests
 from bfsim.kernel.lowering.sides_apart import with_sides_apart
 from bfsim.kernel.lowering.sinking import sink
@@ -44,6 +45,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_sides_apart,
     with_reduced_strength,
     with_summed_indices,
+    without_saturations,
     widen_extremes,
     without_lagging,
     factor_sums,
