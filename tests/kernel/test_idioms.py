@@ -1,0 +1,84 @@
+"""What engineers write often, beside GCC: sums within bounds, a CRC of bytes, a division whose quotient is subtracted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
+from bfsim.kernel.costing import optimised
+from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.modules import kernel_of
+
+BOUNDED = """
+def f(a: {0}[:], b: {0}[:], o: {0}[:], n: i32) -> None:
+    for i in range(n):
+        o[i] = min(max(a[i] {1} b[i], {2}), {3})
+"""
+IN_STEPS = """
+def f(a: i16[:], b: i16[:], o: i16[:], n: i32) -> None:
+    for i in range(n):
+        s = a[i] + b[i]
+        if s > 32767:
+            s = 32767
+        elif s < -32768:
+            s = -32768
+        o[i] = s
+"""
+CRC = """
+def f(a: u8[:], n: i32) -> i32:
+    crc = {start}
+    for i in range(n):
+        crc ^= a[i]{shift}
+        for _ in range(8):
+            if crc & {top}:
+                crc = ((crc << 1) ^ {polynomial}) & {mask}
+            else:
+                crc = (crc << 1) & {mask}
+    return crc
+"""
+SUBTRACTED = """
+def f(a: i16[:], o: i16[:], n: i32) -> None:
+    for i in range(n):
+        o[i] = 1440 - (a[i] - 250) // 5
+"""
+
+# of each case: the kernel, cycles of GCC's code in the GNU simulator, and how near the estimate is
+CASES = {
+    "sums of half-words": (BOUNDED.format("i16", "+", -32768, 32767), 1418, 0.15),
+    "differences of half-words": (BOUNDED.format("i16", "-", -32768, 32767), 1418, 0.15),
+    "sums of bytes": (BOUNDED.format("i8", "+", -128, 127), 1239, 0.03),
+    "in steps": (IN_STEPS, 1418, 0.15),
+    "CRC-8": (CRC.format(start=0, shift="", top=0x80, polynomial=0xD5, mask=0xFF), 17637, 0.02),
+    "CRC-16": (
+        CRC.format(start=0xFFFF, shift=" << 8", top=0x8000, polynomial=0x1021, mask=0xFFFF),
+        17817,
+        0.02,
+    ),
+    "a quotient that is subtracted": (SUBTRACTED, 45275, 0.02),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
+    """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 113 %.
+
+    Of three arrays of half-words GCC reads one through an index register, and extends what it loads: that is not estimated.
+    """
+    check_estimate(*CASES[name], tmp_path)
+
+
+@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
+@pytest.mark.parametrize("name", CASES)
+def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
+    """What is costed is what runs."""
+    check_meaning(CASES[name][0], profile, tmp_path, (0, 1, 2, 17, 200))
+
+
+def test_no_sum_saturates(tmp_path: Path) -> None:
+    """The Blackfin adds so in fractions alone, which the source asks for by name."""
+    for name in CASES:
+        text = optimised(kernel_of(f"\n{CASES[name][0].lstrip()}", tmp_path).function, GCC_O2)
+        assert "= call i16 @llvm.sadd.sat" not in text
+        assert "= call i8 @llvm.sadd.sat" not in text
