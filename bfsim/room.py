@@ -56,7 +56,7 @@ def place(
     try:
         return placed(size)
     except LinkError as error:
-        least, most = 1, max(size.width_px // _WIDTH_STEP, 1)
+        least, most = 1, size.width_px // _WIDTH_STEP + 1
         if not fits(least):
             raise
         while most - least > 1:

@@ -110,7 +110,7 @@ def _unknown_command(error: UnexpectedInput) -> Token | None:
     if not (isinstance(error, UnexpectedToken) and error.interactive_parser and error.expected == {"EQUAL"}):
         return None
     last = error.interactive_parser.parser_state.value_stack[-1]
-    return last if isinstance(last, Token) else None
+    return last if isinstance(last, Token) and last.type == "NAME" else None
 
 
 def _quoted(text: str) -> str:

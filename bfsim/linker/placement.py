@@ -230,7 +230,7 @@ class _Linker:
 
 
 def _add(symbol: Symbol) -> str:
-    return f"; an output section with INPUT_SECTIONS({COMMAND_LINE_OBJECTS}({symbol.section})) takes it"
+    return f"; an output section with INPUT_SECTIONS({COMMAND_LINE_OBJECTS}({symbol.section})) would take it"
 
 
 def _fullness(usage: SegmentUsage) -> str:

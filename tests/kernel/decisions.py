@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from random import Random
 
 VARIABLES = ("s", "t", "c", "k")
+NUMBERS = range(-8, 70)  # on both sides of 0, and more than a word has bits
 DEEPEST = 3
 HEAD = """
 def f(a: u8[:], o: i32[:], n: i32) -> i32:
@@ -27,7 +28,7 @@ class Decisions:
 
     def kernel(self) -> str:
         """Return the text of a kernel `f` of bytes, words and a number."""
-        value = self.random.choice(("a[i]", "a[i] & 7", "a[i] & 15", "a[i] % 11"))
+        value = self.random.choice(("a[i]", "a[i] & 7", "a[i] & 15", "a[i] % 11", "(a[i] & 15) - 6"))
         self.rows = [HEAD.format(value)]
         for _ in range(self.random.randint(1, 3)):
             self._body(2, 0)
@@ -49,9 +50,9 @@ class Decisions:
 
     def _condition(self) -> str:
         kind, name = self.random.random(), self._variable()
-        numbers = self.random.sample(range(70), self.random.randint(2, 6))
+        numbers = self.random.sample(NUMBERS, self.random.randint(2, 6))
         if kind < 0.35:
-            return f"{name} {self.random.choice(('==', '!='))} {self.random.randint(0, 12)}"
+            return f"{name} {self.random.choice(('==', '!='))} {self.random.randint(-3, 12)}"
         if kind < 0.6:
             return " or ".join(f"{name} == {each}" for each in numbers)
         if kind < 0.75:
@@ -82,7 +83,8 @@ class Decisions:
 
     def _chain(self, indent: int, depth: int) -> None:
         name, count = self._variable(), self.random.randint(2, 9)
-        numbers = self.random.sample(range(self.random.choice((count, 12, 40))), count)
+        least = self.random.choice((0, 0, 1, -4))
+        numbers = self.random.sample(range(least, least + self.random.choice((count, 12, 40))), count)
         for place, number in enumerate(numbers):
             test = f"{name} == {number}"
             if self.random.random() < 0.2:

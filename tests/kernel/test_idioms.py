@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -80,5 +81,4 @@ def test_no_sum_saturates(tmp_path: Path) -> None:
     """The Blackfin adds so in fractions alone, which the source asks for by name."""
     for name in CASES:
         text = optimised(kernel_of(f"\n{CASES[name][0].lstrip()}", tmp_path).function, GCC_O2)
-        assert "= call i16 @llvm.sadd.sat" not in text
-        assert "= call i8 @llvm.sadd.sat" not in text
+        assert not re.search(r"call .*\.s(add|sub)\.sat", text)

@@ -17,16 +17,16 @@ from bfsim.kernel.lowering.jump_tables import MARK
 from bfsim.kernel.lowering.number_tests import NumberTest, chains, come_alike, is_alone
 from bfsim.kernel.lowering.widths import WORD, widest
 
-FEWEST = 3  # tests that a mask replaces
+FEWEST = 3  # tests that a mask replaces [the threshold in optimize_range_tests_to_bit_test]
 SMALL_BITS = 5  # of the number of a bit of a word
-HIT = (2, 1)  # how likely a bit of the mask is set, as the tests that it replaces were taken together
+HIT = (2, 1)  # as likely a bit of the mask is set: what three even tests have been guessed together
 
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Numbers from `low` to `high`, with and without the bit of `free`; with `mask`, those of its bits, of which the lowest is `low`.
+    """Numbers from `low` to `high`, with the bit of `free` set or not.
 
-    `is_sure`: every value is one from `low` to `high`.
+    With `mask`, those whose bit in it is set: `low` is the number of its lowest bit. `is_sure`: every value is one from `low` to `high`.
     """
 
     low: int
@@ -103,19 +103,20 @@ def _parts(tests: Sequence[NumberTest], *, pairs: bool) -> list[Numbers]:
 
 
 def _is_bit_apart(one: Numbers, other: Numbers) -> bool:
-    return one.low ^ other.low == one.high ^ other.high and (one.low ^ other.low).bit_count() == 1
+    apart = one.low ^ other.low
+    return apart > 0 and apart == one.high ^ other.high and apart.bit_count() == 1
 
 
 def _steps(tests: Sequence[NumberTest], parts: Sequence[Numbers], *, is_small: bool) -> list[Numbers]:
     """Return what is tested for, in the order of the tests for its least number. `is_small`: every value is the number of a bit of a word."""
-    is_small = is_small and all(each.number < WORD for each in tests)
+    is_small = is_small and all(0 <= each.number < WORD for each in tests)
     place = {each.number: number for number, each in enumerate(tests)}
     steps, left = list[Numbers](), list(parts)
     for first in parts:
         within = [each for each in parts if each.low >= first.low and each.last - first.low < WORD]
         if len(within) >= (FEWEST - 1 if is_small else FEWEST):
             last = max(each.last for each in within)
-            low = 0 if last < WORD else first.low  # which saves the subtraction
+            low = 0 if first.low >= 0 and last < WORD else first.low  # which saves the subtraction
             mask = 0
             for each in within:
                 mask |= each.of_mask(low)

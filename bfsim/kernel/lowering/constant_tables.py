@@ -45,9 +45,9 @@ def chosen(flow: ControlFlow, chain: Sequence[NumberTest]) -> tuple[str, Values]
 
 
 def _landing(flow: ControlFlow, labels: set[str], label: str, way: str) -> tuple[str, str]:
-    """Return where the way from a block ends, behind an empty one that only such of `labels` lead to, and from which block it comes there."""
+    """Return where a way ends, and from which block it comes there: an empty block on it, that only `labels` lead to, is passed by."""
     block = flow.blocks[way]
-    is_empty = len(block.instructions) == 1 and len(block.successors) == 1
+    is_empty = len(block.instructions) == 1 and len(block.successors) == 1 and not block.enters
     return (block.successors[0], way) if is_empty and labels >= {*flow.predecessors[way]} else (way, label)
 
 
@@ -56,7 +56,6 @@ def load_chosen(
 ) -> Iterator[str]:
     """Put a load in the place of a chain that only chooses; return the tables, as definitions of LLVM's."""
     first, last = chain[0], chain[-1]
-    test = blocks[first.label].instructions[-2]
     branch = blocks[first.label].terminator
     name, low = f"{first.label}.table", min(each.number for each in chain)
     size = max(each.number for each in chain) - low + 1
@@ -79,7 +78,7 @@ def load_chosen(
     )
     blocks[first.label] = replace(blocks[first.label], instructions=(*rows, goes))
     loads, brought = [], dict[str, str]()
-    symbol = f"@{test.line.routine}.{name}"
+    symbol = f"@{flow.routine.symbol}.{name}"
     for number, (phi, of) in enumerate(values.items()):
         words = ", ".join(f"i32 {of[each]}" for each in range(low, low + size))
         yield f"{symbol}{number} = private unnamed_addr constant [{size} x i32] [{words}]"

@@ -11,13 +11,15 @@ from bfsim.kernel.lowering.edges import going_to, with_arms
 
 def with_direct_conditions(routine: Routine) -> Routine:
     """Return `routine` without blocks that only choose between the truth of conditions, and branch by it."""
-    flow = ControlFlow(routine)
-    for block in routine.blocks:
-        if (ways := _ways(flow, block)) is not None:
-            blocks = dict(flow.blocks)
-            _lead(blocks, block, ways)
-            return with_direct_conditions(replace(routine, blocks=tuple(blocks.values())))
-    return routine
+    while True:
+        flow = ControlFlow(routine)
+        found = ((block, _ways(flow, block)) for block in routine.blocks)
+        block, ways = next(((block, ways) for block, ways in found if ways is not None), (None, None))
+        if block is None or ways is None:
+            return routine
+        blocks = dict(flow.blocks)
+        _lead(blocks, block, ways)
+        routine = replace(routine, blocks=tuple(blocks.values()))
 
 
 def _ways(flow: ControlFlow, block: BasicBlock) -> dict[str, str | int] | None:
@@ -27,8 +29,9 @@ def _ways(flow: ControlFlow, block: BasicBlock) -> dict[str, str | int] | None:
     phi, branch = block.instructions
     if not phi.text.startswith("phi i1") or branch.operands[0] != phi.result:
         return None
-    if flow.users[phi.result or ""] != [branch]:
+    if flow.users[phi.result or ""] != [branch] or block.enters:
         return None
+    yes, no = block.successors
     found: dict[str, str | int] = {}
     for label, value in arms_of(phi).items():
         end = flow.blocks[label].terminator
@@ -40,6 +43,8 @@ def _ways(flow: ControlFlow, block: BasicBlock) -> dict[str, str | int] | None:
             found[label] = int(value == "true")
         else:
             return None
+        if found[label] in (0, 1) and (yes if found[label] else no) in end_ways:
+            return None  # both sides of its test would lead there
     return found
 
 

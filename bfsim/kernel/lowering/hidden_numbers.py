@@ -11,11 +11,17 @@ from bfsim.kernel.loops import ControlFlow
 
 DECLARED = f"declare i32 @{HIDES}(i32) nounwind willreturn memory(none)"
 HIDDEN = re.compile(rf"^  (%[\w.$-]+) = .*@{re.escape(HIDES)}\(i32 (\S+?)\)", re.MULTILINE)
+FUNCTIONS = re.compile(r"^(?=define )", re.MULTILINE)  # each has names of its own
 
 
 def hide(flow: ControlFlow, blocks: dict[str, BasicBlock], value: str, test: str) -> None:
-    """Let who asks for a word get one of which LLVM knows nothing: all who do, or, of what a loop carries, those from block `test` on."""
-    hidden, first = f"{value}.hidden", test
+    """Let instructions take a word of which LLVM knows nothing in place of `value`, if they do not already.
+
+    All that have it as an operand do; of a phi, for a loop may carry it, only those in block `test` and the blocks that it dominates.
+    """
+    if not any(_asks(row, value) for row in blocks[test].instructions):
+        return
+    hidden, first = f"{value}.hidden.{test}", test
     each = flow.instruction(value)
     if each is None or each.opcode != "phi":
         asking = [
@@ -56,8 +62,12 @@ def _asks(each: Instruction, value: str) -> bool:
 
 def revealed(text: str) -> str:
     """Return a module in which such numbers are what was hidden."""
+    return "".join(_revealed(part) for part in FUNCTIONS.split(text))
+
+
+def _revealed(text: str) -> str:
     hidden = dict(HIDDEN.findall(text))
     while again := {name: hidden[value] for name, value in hidden.items() if value in hidden}:
         hidden |= again
-    rows = (row for row in text.splitlines() if HIDES not in row)
-    return NAME.sub(lambda found: hidden.get(found[0], found[0]), "\n".join(rows))
+    rows = (row for row in text.splitlines(keepends=True) if HIDES not in row)
+    return NAME.sub(lambda found: hidden.get(found[0], found[0]), "".join(rows))

@@ -26,8 +26,8 @@ class NumberTest(NamedTuple):
 def chains(flow: ControlFlow, begins: Callable[[BasicBlock], bool]) -> list[list[NumberTest]]:
     """Return all chains of tests of one value for different numbers, each on the way from the one before if it was another number.
 
-    A block of a chain does nothing else, but for conversions that LLVM has brought there. `begins`: whether a chain may begin with a
-    block; it does unless the one before belongs to it.
+    A block of a chain does nothing but test, and convert for LLVM. `begins`: whether a chain may begin with a block; it begins with the
+    first one for which that holds, and whose test C's operators do not make one of with the tests before.
     """
     tests = {block.label: test for block in flow.routine.blocks if (test := _test(flow, block))}
     goes_on = {
@@ -38,14 +38,15 @@ def chains(flow: ControlFlow, begins: Callable[[BasicBlock], bool]) -> list[list
     found = []
     for test in tests.values():
         before = tests[flow.predecessors[test.label][0]] if test.label in goes_on else None
-        if not begins(flow.blocks[test.label]) or (
-            before and (begins(flow.blocks[before.label]) or _is_beside(flow, before, test))
-        ):
+        if not begins(flow.blocks[test.label]) or (before and begins(flow.blocks[before.label])):
             continue
         chain = [test]
         while chain[-1].other in goes_on and tests[chain[-1].other].value == test.value:
             chain.append(tests[chain[-1].other])
-        if len({each.number for each in chain}) == len(chain):
+        one = [before] if before else []
+        while chain and any(_is_beside(flow, each, chain[0]) for each in one):
+            one.append(chain.pop(0))
+        if chain and len({each.number for each in chain}) == len(chain):
             found.append(chain)
     return found
 
@@ -68,10 +69,11 @@ def _is_beside(flow: ControlFlow, before: NumberTest, test: NumberTest) -> bool:
 
 
 def _follows(flow: ControlFlow, label: str) -> bool:
-    return len(flow.predecessors[label]) == 1 and is_alone(flow.blocks[label])
+    block = flow.blocks[label]
+    return len(flow.predecessors[label]) == 1 and is_alone(block) and not block.enters
 
 
-def tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
+def _tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
     """Return the comparison that decides where a block leads, and is made in it for that alone, as the last it does."""
     if block.terminator.opcode != "br" or len(set(block.successors)) != 2 or len(block.instructions) < 2:
         return None
@@ -81,7 +83,7 @@ def tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
 
 
 def _test(flow: ControlFlow, block: BasicBlock) -> NumberTest | None:
-    test = tested(flow, block)
+    test = _tested(flow, block)
     if test is None or predicate(test) not in ("eq", "ne"):
         return None
     if is_number(test.operands[0]) or not is_number(test.operands[1]):

@@ -24,7 +24,7 @@ from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.jump_tables import MARK
 
 MOST_COPIED = 100
-"""Instructions of a way that is copied [param_max_fsm_thread_path_insns]."""
+"""Instructions, but loads and stores of variables, of the ways that are copied from a block [param_max_fsm_thread_path_insns]."""
 RELATIONS = {"eq": int.__eq__, "slt": int.__lt__, "sgt": int.__gt__}
 Known = frozenset[tuple[str, int]]
 """What is known to be in variables, by their names."""
@@ -37,7 +37,7 @@ def with_state_machines(routine: Routine) -> Routine:
 
 @dataclass(slots=True)
 class _Ways:
-    """Where a block leads with what is known: the blocks, and what is known in each; nothing in those beyond the chain."""
+    """Where a block leads with what is known before it, and what is known behind it."""
 
     block: BasicBlock
     ways: tuple[str, ...]
@@ -66,7 +66,8 @@ class _Threading:
             for each in block.instructions:
                 number = self.flow.instruction(each.operands[0]) if HIDES in each.text else None
                 if number is not None and number.opcode == "load":
-                    kept = {user.operands[-1] for user in self.flow.users.get(each.result or "", ())}
+                    users = self.flow.users.get(each.result or "", ())
+                    kept = {user.operands[-1] for user in users if user.opcode == "store"}
                     self._thread(number.operands[-1], kept)
         return replace(self.flow.routine, blocks=tuple(self.blocks.values()))
 
@@ -88,7 +89,7 @@ class _Threading:
             if found.is_set and not label.endswith(MARK):
                 goals = {
                     way: goal
-                    for way in set(block.successors)
+                    for way in dict.fromkeys(block.successors)  # in order, for copies are numbered
                     if (goal := self._copy(way, found.known)) != way
                 }
                 for way, goal in goals.items():

@@ -26,7 +26,7 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 MOST_BLOCKS = 100
-"""[ours] Of a routine with more blocks no ways are copied: LLVM's value numbering gives up on what can become of it."""
+"""[ours] In a module of which a routine has more blocks, no ways are copied: LLVM's value numbering gives up on what can become of it."""
 
 
 def with_switches(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
@@ -36,6 +36,8 @@ def with_switches(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.Modu
     marked = write_module(text, [_marked(each, tables, profile) for each in read_module(text)])
     if HIDES not in marked and not tables:
         return module
+    if HIDES not in marked:
+        return llvm.parse_assembly("\n".join((marked, *tables)))
     module = llvm.parse_assembly("\n".join((marked, *tables, DECLARED)))
     is_large = any(len(each.blocks) > MOST_BLOCKS for each in read_module(marked))
     return module if is_large or not profile.applies(Rule.STATE_MACHINES) else _threaded(module)
@@ -53,15 +55,15 @@ def _threaded(module: llvm.ModuleRef) -> llvm.ModuleRef:
 def _marked(routine: Routine, tables: list[str], profile: CompilerProfile) -> Routine:
     """Return `routine` with its chains marked; those that only choose constants are loads from `tables`, which are added."""
     flow = ControlFlow(with_direct_conditions(routine))
-    blocks, names, hidden = dict(flow.blocks), dict[str, str](), set[str]()
     switches = [each for each in chains(flow, is_alone) if has_table(flow, each) and each[0].bits == WORD]
+    if not switches:
+        return routine
+    blocks, names = dict(flow.blocks), dict[str, str]()
     chosen_by = [chosen(flow, each) if profile.applies(Rule.CONSTANT_TABLES) else None for each in switches]
     for chain, only in zip(switches, chosen_by, strict=True):
         if only is None:
             names |= {each.label: f"{each.label}{MARK}" for each in chain}
-            if chain[0].value not in hidden:
-                hide(flow, blocks, chain[0].value, chain[0].label)
-                hidden.add(chain[0].value)
+            hide(flow, blocks, chain[0].value, chain[0].label)
     for chain, only in zip(switches, chosen_by, strict=True):
         if only is not None:
             tables += load_chosen(flow, blocks, chain, *only)

@@ -40,7 +40,10 @@ def negated(of: Range) -> Range:
 
 
 def never_negative(flow: ControlFlow, value: str, seen: frozenset[str] = frozenset()) -> bool:
-    """Whether a value is never negative: by what computes it or, where ways meet, by a test on each."""
+    """Whether a value is never negative: by what computes it or, where ways meet, by a test on each.
+
+    A test on the way to where it is used does not count: when GCC makes instructions it knows one range of a value, for all its uses.
+    """
     if is_number(value) or value in seen:
         return value in seen or 0 <= int(value) <= LARGEST
     each = flow.instruction(value)
@@ -56,7 +59,7 @@ def never_negative(flow: ControlFlow, value: str, seen: frozenset[str] = frozens
     bound = each.operands[-1] if each.operands else ""
     if each.opcode in ("lshr", "udiv", "urem", "and") and bound.isdigit():
         return int(bound) > (1 if each.opcode == "udiv" else 0)
-    return each.opcode == "zext"
+    return value_range(flow, value)[0] >= 0
 
 
 def range_behind(flow: ControlFlow, label: str, value: str) -> Range:
