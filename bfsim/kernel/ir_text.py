@@ -368,6 +368,12 @@ def arms_of(phi: Instruction) -> dict[str, str]:
     return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
 
 
+def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
+    """Return a phi of other values, by the labels of the blocks that they come from."""
+    text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())
+    return replace(phi, text=f"phi {phi.text.split()[1]} {text}", operands=tuple(arms.values()))
+
+
 def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
     """Return an instruction that reads what `names` has in place of the values named there."""
     if not any(name in names for name in each.operands):

@@ -138,7 +138,7 @@ SHARED_LIBRARY = (
         (
             "data2",
             8,
-            r"not data2; an output section with INPUT_SECTIONS\(\$COMMAND_LINE_OBJECTS\(data2\)\) takes it; `bfsim place --ldf` ",
+            r"not data2; an output section with INPUT_SECTIONS\(\$COMMAND_LINE_OBJECTS\(data2\)\) would take it; `bfsim place --ldf` ",
         ),
     ],
 )

@@ -1,7 +1,8 @@
 """Tests of a value for several numbers that lead to one place are made fewer [optimize_range_tests in tree-ssa-reassoc.cc of GCC 12].
 
 Of `c == 9 or c == 10 or c == 13 or c == 32` numbers side by side are a range; two that differ in one bit are one test without that bit; and
-of three or more that are left, all within a word from the least of them are a test for a range, and one for a bit of a mask.
+of three or more that are left, all within a word from the least of them are a test for a range, and one for a bit of a mask. Hints of how
+likely one of the tests is are lost: which way the tests of a range and a mask go was not said.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, arms_of, is_number
+from bfsim.kernel.ir_text import BasicBlock, Instruction, arms_of, is_number, with_values
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from
 from bfsim.kernel.lowering.number_tests import NumberTest
@@ -105,8 +105,7 @@ def _come_to(block: BasicBlock, come: Collection[str], name: str, brought: Mappi
         if each.opcode == "phi":
             arms = {label: arm for label, arm in arms_of(each).items() if label not in come}
             arms[name] = brought[each.result or ""]
-            text = ", ".join(f"[ {arm}, %{label} ]" for label, arm in arms.items())
-            rows.append(replace(each, text=f"phi i32 {text}", operands=tuple(arms.values())))
+            rows.append(with_values(each, arms))
         else:
             rows.append(each)
     return replace(block, instructions=tuple(rows))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, arms_of
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, arms_of, with_values
 
 
 def going_to(block: BasicBlock, old: str, new: str) -> BasicBlock:
@@ -67,8 +67,7 @@ def with_arms(block: BasicBlock, gone: Collection[str], labels: Iterable[str]) -
             ways = {each: arm for each, arm in arms.items() if each not in gone} | dict.fromkeys(
                 labels, value
             )
-            text = ", ".join(f"[ {arm}, %{each} ]" for each, arm in ways.items())
-            rows.append(replace(phi, text=f"phi {phi.text.split()[1]} {text}", operands=tuple(ways.values())))
+            rows.append(with_values(phi, ways))
         else:
             rows.append(phi)
     return replace(block, instructions=tuple(rows))

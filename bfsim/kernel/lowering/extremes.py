@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, is_number, predicate
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, predicate, with_values
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import (
     is_extended,
@@ -201,10 +201,7 @@ def _arrivals(block: BasicBlock, choice: _Choice, name: str) -> Iterator[Instruc
         if each.opcode != "phi":
             yield each
             continue
-        values = {label[1:]: value for value, label in PHI_ARM.findall(each.text)}
+        values = arms_of(each)
         one = name if each is choice.phi else next(values[label] for label in values if label in gone)
-        arms = [(value, label) for label, value in values.items() if label not in gone] + [
-            (one, choice.label)
-        ]
-        text = f"phi {each.text.split()[1]} " + ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
-        yield replace(each, text=text, operands=tuple(value for value, _ in arms))
+        arms = {label: value for label, value in values.items() if label not in gone}
+        yield with_values(each, arms | {choice.label: one})

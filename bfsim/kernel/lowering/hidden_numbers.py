@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import HIDES, NAME, BasicBlock, Instruction, arms_of, renamed
+from bfsim.kernel.ir_text import HIDES, NAME, BasicBlock, Instruction, arms_of, renamed, with_values
 from bfsim.kernel.loops import ControlFlow
 
 DECLARED = f"declare i32 @{HIDES}(i32) nounwind willreturn memory(none)"
@@ -46,8 +46,7 @@ def _asking(
                 label: hidden if arm == value and first in flow.dominators[label] else arm
                 for label, arm in arms_of(each).items()
             }
-            text = ", ".join(f"[ {arm}, %{label} ]" for label, arm in arms.items())
-            yield replace(each, text=f"phi {each.text.split()[1]} {text}", operands=tuple(arms.values()))
+            yield with_values(each, arms)
             continue
         if block.label == first and not is_there and (_asks(each, value) or each is block.terminator):
             text = f"call i32 @{HIDES}(i32 {value})"

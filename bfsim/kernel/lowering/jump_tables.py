@@ -20,10 +20,11 @@ MOST_ENTRIES = 8
 """Of a table, for each comparison that it replaces [param_jump_table_max_growth_ratio_for_speed]."""
 SMALL = 2
 """A table whose first case is no more begins at 0, which saves a subtraction [emit_case_dispatch_table in stmt.cc]."""
-
-
 MARK = ".case"
-"""In the labels of the blocks of a chain: which ones are, GCC decides before most of its other passes."""
+"""Ends the labels of the blocks of a chain: which ones are, GCC decides before most of its other passes. LLVM may add a number to it.
+
+A chain stays a table even if later passes leave fewer tests of it [pass_lower_switch is before vrp2 and threadfull2 in passes.def].
+"""
 
 
 def has_table(flow: ControlFlow, tests: Sequence[NumberTest]) -> bool:

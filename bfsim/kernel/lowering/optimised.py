@@ -339,7 +339,7 @@ class _OptimisedLowering:
         return (again, leaving) if ways[0] == stays else (leaving, again)
 
     def _switch(self, block: BasicBlock, cost: BlockCost) -> None:
-        """A jump by a table, or a chain of comparisons and branches in the order of the cases."""
+        """A jump by a table [expand_case in stmt.cc, tablejump in bfin.md of GCC 12], or comparisons and branches in the order of the cases."""
         value, line = block.terminator.operands[0], block.terminator.line
         numbers = [case for case, _ in block.cases]
         if MARK in block.label:

@@ -21,6 +21,7 @@ from bfsim.kernel.ir_text import (
     read_module,
     renamed,
     with_names,
+    with_values,
     write_module,
 )
 from bfsim.kernel.loops import ControlFlow, Loop
@@ -187,7 +188,4 @@ def _without(each: Instruction, label: str) -> Instruction:
     """A phi without the arm that comes from block `label`."""
     if each.opcode != "phi":
         return each
-    arms = {where: value for where, value in arms_of(each).items() if where != label}
-    kind = each.text.split()[1]
-    text = ", ".join(f"[ {value}, %{where} ]" for where, value in arms.items())
-    return replace(each, text=f"phi {kind} {text}", operands=tuple(arms.values()))
+    return with_values(each, {where: value for where, value in arms_of(each).items() if where != label})
