@@ -25,6 +25,13 @@ def come_to_from(block: BasicBlock, old: str, new: str) -> BasicBlock:
     return replace(block, instructions=tuple(rows))
 
 
+def without_way(phi: Instruction, label: str) -> Instruction:
+    """Return a phi that does not expect block `label` any more; any other instruction as it is."""
+    if phi.opcode != "phi":
+        return phi
+    return with_values(phi, {way: value for way, value in arms_of(phi).items() if way != label})
+
+
 def put_between(blocks: dict[str, BasicBlock], source: str, label: str, between: str) -> None:
     """Put an empty block on the way from block `source` to block `label`."""
     branch = blocks[source].terminator

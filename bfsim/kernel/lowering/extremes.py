@@ -9,7 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, predicate, with_values
+from bfsim.kernel.ir_text import (
+    BasicBlock,
+    Instruction,
+    Routine,
+    arms_of,
+    is_number,
+    predicate,
+    renamed,
+    with_values,
+)
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import (
     is_extended,
@@ -24,6 +33,7 @@ BESIDE = {"lt": -1, "le": 1, "gt": 1, "ge": -1}
 """What is added to the constant of a comparison to say the same by its neighbour: x < 256 is x <= 255."""
 OPPOSITE = {"min": "max", "max": "min"}
 EXTREME = "bfsim.extreme"
+SUMS = {"add": 1, "sub": -1}
 
 
 def with_extremes(routine: Routine, *, narrows: bool) -> Routine:
@@ -53,6 +63,8 @@ class _Choice:
     arms: frozenset[str]
     rows: tuple[Instruction, ...] = ()
     """What an arm computes that is computed in any case now."""
+    sum_of: Instruction | None = None
+    """What an arm adds, that is added to the extreme now."""
 
 
 def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice | None:
@@ -79,19 +91,33 @@ def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice |
     if narrows and _is_none(flow, phi, yes, no):
         return None
     rows = tuple(row for arm in arms for row in flow.blocks[arm].instructions[:-1])
-    name = _nested(flow, comparison, yes, no, rows[0]) if rows else _plain(comparison, yes, no)
-    return _Choice(block.label, phi, home, comparison.sign + name, (yes, no), arms, rows) if name else None
+    sum_of = next((row for row in rows if row.opcode in SUMS), None)
+    if sum_of is not None:
+        if len(flow.users[sum_of.result or ""]) > 1 or not is_number(no if yes == sum_of.result else yes):
+            return None
+        rows, (yes, no) = (), _before_sum(yes, no, sum_of)
+        name = _plain(comparison, yes, no) if comparison.tested == sum_of.operands[0] else None
+    else:
+        name = _nested(flow, comparison, yes, no, rows[0]) if rows else _plain(comparison, yes, no)
+    return (
+        _Choice(block.label, phi, home, comparison.sign + name, (yes, no), arms, rows, sum_of)
+        if name
+        else None
+    )
 
 
 def _is_arm(flow: ControlFlow, way: str, label: str) -> bool:
-    """Whether a block is on one way from the test alone, and computes no more than an extreme."""
+    """Whether a block is on one way from the test alone, and computes no more than an extreme or a sum with a number."""
     block = flow.blocks[way]
     rows = block.instructions[:-1]
-    is_extreme = len(rows) == 1 and (rows[0].result or "").startswith(f"%{EXTREME}")
+    is_one = len(rows) == 1 and (
+        (rows[0].result or "").startswith(f"%{EXTREME}")
+        or (rows[0].opcode in SUMS and is_number(rows[0].operands[1]))
+    )
     alone = (
         flow.predecessors[way] == [label] and block.terminator.opcode == "br" and len(block.successors) == 1
     )
-    return alone and not block.enters and (not rows or is_extreme)
+    return alone and not block.enters and (not rows or is_one)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +176,14 @@ def _plain(comparison: _Comparison, yes: str, no: str) -> str | None:
     return None
 
 
+def _before_sum(yes: str, no: str, sum_of: Instruction) -> tuple[str, str]:
+    """What is chosen if the number of a sum is added behind the choice: `x - 20 if x > 20 else 0` is one of x and 20 [match.pd]."""
+    value, added = sum_of.operands[0], SUMS[sum_of.opcode] * int(sum_of.operands[1])
+    if yes == sum_of.result:
+        return value, str(int(no) - added)
+    return str(int(yes) - added), value
+
+
 def _nested(flow: ControlFlow, comparison: _Comparison, yes: str, no: str, inner: Instruction) -> str | None:
     """The same of a number and of the extreme `inner`, which is made of what is tested and of a number beyond the first one."""
     number, value = (yes, no) if inner.result == no else (no, yes)
@@ -180,11 +214,14 @@ def _chosen(routine: Routine, flow: ControlFlow, choice: _Choice) -> Routine:
         weights=(),
         hint="",
     )
+    sums = [renamed(each, {each.operands[0]: name}) for each in (choice.sum_of,) if each is not None]
     jump = replace(branch, text=f"br label %{choice.home}", operands=(), weights=(), hint="")
     rows = [each for each in flow.blocks[choice.label].instructions[:-1] if each.result != unused]
     changed = {
-        choice.label: (*rows, *choice.rows, call, jump),
-        choice.home: tuple(_arrivals(flow.blocks[choice.home], choice, name)),
+        choice.label: (*rows, *choice.rows, call, *sums, jump),
+        choice.home: tuple(
+            _arrivals(flow.blocks[choice.home], choice, (sums[-1].result or "") if sums else name)
+        ),
     }
     blocks = (
         replace(block, instructions=changed.get(block.label, block.instructions))

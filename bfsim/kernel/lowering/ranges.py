@@ -54,7 +54,7 @@ def _range(flow: ControlFlow, first: str, second: str, neighbours: bool) -> Rang
             continue
         bounds = {kind: bound for _, kind, bound in (outer, inner)}
         if bounds["low"] < bounds["high"]:
-            return Range(first, second, inside, outer[0], bounds["low"], bounds["high"])
+            return Range(first, second, inside, outer[0][0], bounds["low"], bounds["high"])
     return _neither(flow, first, second) if neighbours else None
 
 
@@ -78,17 +78,18 @@ def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
     return Range(first, second, miss, _plain(flow, one), low, high)
 
 
-def _bound(flow: ControlFlow, label: str, holds: bool) -> tuple[str, str, int] | None:
-    """(value, low or high, bound) that the test at the end of a block sets if it comes out as `holds`."""
+def _bound(flow: ControlFlow, label: str, holds: bool) -> tuple[tuple[str, str], str, int] | None:
+    """(value and sign, low or high, bound) that the test at the end of a block sets if it comes out as `holds`."""
     test = _test(flow, label)
     if test is None or len(flow.users.get(test.result or "", [])) > 1:
         return None
-    relation, bound = predicate(test)[-2:], test.operands[1]
+    sign, relation, bound = predicate(test)[0], predicate(test)[-2:], test.operands[1]
     if relation not in OPPOSITE or not bound.lstrip("-").isdigit():
         return None
     relation = relation if holds else OPPOSITE[relation]
-    number = int(bound) + {"lt": -1, "gt": 1}.get(relation, 0)
-    return _plain(flow, test), "low" if relation[0] == "g" else "high", number
+    number = int(bound) % (1 << test.bits) if sign == "u" else int(bound)  # LLVM writes all as signed
+    number += {"lt": -1, "gt": 1}.get(relation, 0)
+    return (_plain(flow, test), sign), "low" if relation[0] == "g" else "high", number
 
 
 def _test(flow: ControlFlow, label: str) -> Instruction | None:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
 from bfsim.kernel.lowering.bit_tests import with_bit_tests
 from bfsim.kernel.lowering.carried import carry_over
+from bfsim.kernel.lowering.chosen_ranges import with_chosen_ranges
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.extremes import with_extremes
 from bfsim.kernel.lowering.factored_sums import factor_sums
@@ -20,6 +21,7 @@ from bfsim.kernel.lowering.jump_tables import with_jump_tables
 from bfsim.kernel.lowering.known_answers import with_known_answers
 from bfsim.kernel.lowering.lagging_counters import without_lagging
 from bfsim.kernel.lowering.merged_stores import merge_stores
+from bfsim.kernel.lowering.narrow_sums import with_narrow_sums
 from bfsim.kernel.lowering.narrow_tests import with_narrow_tests
 from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
@@ -63,6 +65,8 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_final_values,
     with_predictive_commoning,
     with_bit_tests,
+    with_chosen_ranges,
+    with_narrow_sums,
     with_jump_tables,
 )
 """In this order."""
@@ -81,6 +85,8 @@ SWITCHES = {
     with_reduced_strength: Rule.STRENGTH_REDUCTION,
     with_summed_indices: Rule.SUMMED_INDICES,
     with_bit_tests: Rule.BIT_TESTS,
+    with_chosen_ranges: Rule.BIT_TESTS,
+    with_narrow_sums: Rule.EXTREMES,
     with_jump_tables: Rule.JUMP_TABLES,
 }
 """Those that can be left out."""

@@ -21,10 +21,10 @@ from bfsim.kernel.ir_text import (
     read_module,
     renamed,
     with_names,
-    with_values,
     write_module,
 )
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.edges import without_way
 
 HOLDS: dict[str, Callable[[int, int], bool]] = {"ne": ne, "slt": lt, "sle": le, "sgt": gt, "sge": ge}
 IDLE = ("phi", "add", "icmp", "br")
@@ -161,7 +161,7 @@ def _set_on(flow: ControlFlow, routine: Routine, loop: Loop, skip: _Skip) -> Rou
             if block.label == skip.header:
                 rows = [renamed(each, {name: now}) if each.opcode == "phi" else each for each in rows]
         elif block.label in loop.blocks:
-            rows = [_without(each, skip.tests[-1]) if block.label == loop.latch else each for each in rows]
+            rows = [without_way(each, skip.tests[-1]) if block.label == loop.latch else each for each in rows]
             rows = [renamed(each, {name: now}) for each in rows]
         blocks.append(replace(block, instructions=(*[phi] * (block.label == skip.goes_on), *rows)))
         if block.label == tests[-1]:
@@ -182,10 +182,3 @@ def _joined(flow: ControlFlow, skip: _Skip, rows: list[Instruction], setting: st
         replace(branch, result=none, opcode="icmp", text=f"icmp eq i32 {both}, 0", operands=(both, "0")),
         replace(branch, text=text, operands=(none,)),
     ]
-
-
-def _without(each: Instruction, label: str) -> Instruction:
-    """A phi without the arm that comes from block `label`."""
-    if each.opcode != "phi":
-        return each
-    return with_values(each, {where: value for where, value in arms_of(each).items() if where != label})
