@@ -1,4 +1,4 @@
-"""What engineers write often, beside GCC: sums within bounds, thresholds, a CRC of bytes, a division whose quotient is subtracted."""
+"""What engineers write often, beside GCC: sums within bounds, thresholds, bytes in another order, a CRC, a division whose quotient is subtracted."""
 
 from __future__ import annotations
 
@@ -75,6 +75,13 @@ DEAD_BAND = """        if v > 20:
             v = 0"""
 NOT_BETWEEN = """        if v < 100 or v > 180:
             v = 0"""
+SWAPPED = """
+def f(a: {0}[:], o: {0}[:], n: i32) -> None:
+    for i in range(n):
+        v = a[i]
+        o[i] = {1}
+"""
+REVERSED = "(v << 24) | ((v & 0xFF00) << 8) | ((v >> 8) & 0xFF00) | (v >> 24)"
 
 # of each case: the kernel, cycles of GCC's code in the GNU simulator, and how near the estimate is
 CASES = {
@@ -95,6 +102,8 @@ CASES = {
     "at most 100, and 28 more": (EACH.format("i16", AT_MOST), 841, 0.03),
     "a dead zone": (EACH.format("i16", DEAD_ZONE), 1442, 0.03),
     "a dead band": (EACH.format("i16", DEAD_BAND), 3043, 0.03),
+    "bytes of half-words swapped": (SWAPPED.format("u16", "(v << 8) | (v >> 8)"), 1240, 0.02),
+    "bytes of words reversed": (SWAPPED.format("u32", REVERSED), 2243, 0.01),
     "not between bytes": (EACH.format("u8", NOT_BETWEEN), 1438, 0.03),
 }
 

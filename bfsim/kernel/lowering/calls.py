@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
@@ -68,7 +70,11 @@ class Calls:
             self.sign(each)
         elif "@llvm.cttz" in each.text:
             self._shift_by_zeros(each)
-        elif "@llvm.bitreverse" in each.text or "@llvm.bswap" in each.text:
+        elif "@llvm.bswap.i16" in each.text:
+            self._swap_bytes(each)
+        elif "@llvm.bswap.i32" in each.text:
+            self._reverse_bytes(each)
+        elif "@llvm.bitreverse" in each.text:
             self._swap_bits(each)
         elif "@llvm.umin" in each.text or "@llvm.umax" in each.text:
             self._unsigned_extreme(each, values)
@@ -104,10 +110,29 @@ class Calls:
         self.append(Op.CALL, each, each.result, DATA)
         self._library(each, routine, "division")
 
+    def _swap_bytes(self, each: Instruction) -> None:
+        """Both bytes of a half-word are shifted, the upper one of a word, as the source does of which LLVM has read a swap."""
+        value, up, down = (each.operands[0], DATA), f"{each.result}.up", f"{each.result}.down"
+        self.append(Op.SHIFT, each, up, DATA, value)
+        self.append(Op.EXTEND, each, down, DATA, value)
+        self.append(Op.SHIFT, each, down, DATA, (down, DATA))
+        self.append(Op.ALU, each, each.result, DATA, (up, DATA), (down, DATA))
+
+    def _reverse_bytes(self, each: Instruction) -> None:
+        """Each byte of a word is shifted to its place, both inner ones are masked, and all are joined, as most write it."""
+        value = (each.operands[0], DATA)
+        parts = [(f"{each.result}.part{number}", DATA) for number in range(4)]
+        for number, (name, _) in enumerate(parts):
+            self.append(Op.SHIFT, each, name, DATA, value)
+            if number in (1, 2):
+                self.append(Op.ALU, each, name, DATA, (name, DATA), (f"#{name}", DATA))
+        for one, other in pairwise(parts[:-1]):
+            self.append(Op.ALU, each, other[0], DATA, one, other)
+        self.append(Op.ALU, each, each.result, DATA, parts[-2], parts[-1])
+
     def _swap_bits(self, each: Instruction) -> None:
         """Halves are swapped over and over, as the source does from which LLVM has read the whole reversal."""
-        stages = 5 if "bitreverse" in each.text else 2
-        for stage in range(stages - 1):
+        for stage in range(4):
             self.append(Op.SHIFT, each, f"{each.result}.up", DATA, (each.operands[0], DATA))
             self.append(Op.SHIFT, each, f"{each.result}.down", DATA, (each.operands[0], DATA))
             for half in ("up", "down"):
