@@ -96,7 +96,7 @@ CASES = {
         0.02,
     ),
     "a quotient that is subtracted": (SUBTRACTED, 45275, 0.02),
-    "bytes above a threshold": (ABOVE.format("u8", 20), 1412, 0.15),
+    "bytes above a threshold": (ABOVE.format("u8", 20), 1412, 0.01),
     "words above a threshold": (ABOVE.format("i32", 1000), 841, 0.03),
     "more than a byte's half": (EACH.format("u8", AT_LEAST), 812, 0.03),
     "at most 100, and 28 more": (EACH.format("i16", AT_MOST), 841, 0.03),

@@ -14,6 +14,7 @@ from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.powers import by_power, divided_by_power
+from bfsim.kernel.lowering.widths import WORD
 from bfsim.kernel.profile import LibraryRoutine
 
 ANY, DATA = RegisterBank.ANY, RegisterBank.DATA
@@ -88,12 +89,16 @@ class Calls:
             self.append(Op.DSP_ALU, each, each.result, DATA, *values)
 
     def _unsigned_extreme(self, each: Instruction, values: tuple[tuple[str, RegisterBank], ...]) -> None:
-        """A comparison and a conditional move, which overwrites either operand."""
+        """A comparison, of what is extended if it is narrow, and a conditional move, which overwrites either operand."""
         (left, _), (right, _) = values
         if right.lstrip("-").isdigit() and int(right) not in isa.COMPARE_UNSIGNED_IMMEDIATE:
             self.code.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
             right = f"{each.result}.bound"
-        self.append(Op.COMPARE, each, None, DATA, (left, DATA), (right, DATA))
+        compared = left
+        if each.bits < WORD:
+            compared = f"{each.result}.extended"
+            self.append(Op.EXTEND, each, compared, DATA, (left, DATA))
+        self.append(Op.COMPARE, each, None, DATA, (compared, DATA), (right, DATA))
         self.append(Op.COND_MOVE, each, each.result, DATA, *values, overwrites=(left, values[1][0]))
 
     def _instructions(self, each: Instruction, ops: tuple[Op, ...]) -> None:
