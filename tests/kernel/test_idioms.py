@@ -98,6 +98,7 @@ CASES = {
     "a quotient that is subtracted": (SUBTRACTED, 45275, 0.02),
     "bytes above a threshold": (ABOVE.format("u8", 20), 1412, 0.01),
     "words above a threshold": (ABOVE.format("i32", 1000), 841, 0.03),
+    "words above one, stored as bytes": (ABOVE.format("i32", 100).replace("o: i32", "o: u8"), 3041, 0.04),
     "more than a byte's half": (EACH.format("u8", AT_LEAST), 812, 0.03),
     "at most 100, and 28 more": (EACH.format("i16", AT_MOST), 841, 0.03),
     "a dead zone": (EACH.format("i16", DEAD_ZONE), 1442, 0.03),

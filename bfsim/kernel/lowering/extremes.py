@@ -93,7 +93,11 @@ def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice |
     rows = tuple(row for arm in arms for row in flow.blocks[arm].instructions[:-1])
     sum_of = next((row for row in rows if row.opcode in SUMS), None)
     if sum_of is not None:
-        if len(flow.users[sum_of.result or ""]) > 1 or not is_number(no if yes == sum_of.result else yes):
+        if (
+            is_narrowed(flow, phi)
+            or len(flow.users[sum_of.result or ""]) > 1
+            or not is_number(no if yes == sum_of.result else yes)
+        ):
             return None
         rows, (yes, no) = (), _before_sum(yes, no, sum_of)
         name = _plain(comparison, yes, no) if comparison.tested == sum_of.operands[0] else None
@@ -177,7 +181,10 @@ def _plain(comparison: _Comparison, yes: str, no: str) -> str | None:
 
 
 def _before_sum(yes: str, no: str, sum_of: Instruction) -> tuple[str, str]:
-    """What is chosen if the number of a sum is added behind the choice: `x - 20 if x > 20 else 0` is one of x and 20 [match.pd]."""
+    """What is chosen if the number of a sum is added behind the choice: `x - 20 if x > 20 else 0` is one of x and 20 [match.pd].
+
+    Where both sides are converted first, the sum is one of a narrow number, which is not what is tested.
+    """
     value, added = sum_of.operands[0], SUMS[sum_of.opcode] * int(sum_of.operands[1])
     if yes == sum_of.result:
         return value, str(int(no) - added)
