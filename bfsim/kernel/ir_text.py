@@ -368,6 +368,11 @@ def arms_of(phi: Instruction) -> dict[str, str]:
     return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
 
 
+def written(result: str, text: str, operands: tuple[str, ...], at: Instruction) -> Instruction:
+    """Return the instruction `text`, of the same place in the source as the instruction `at`."""
+    return Instruction(result, text.split(maxsplit=1)[0], text, operands, at.line, location=at.location)
+
+
 def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
     """Return a phi of other values, by the labels of the blocks that they come from."""
     text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())

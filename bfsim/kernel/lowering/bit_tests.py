@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, written
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import with_arms
 from bfsim.kernel.lowering.jump_tables import MARK
@@ -165,12 +165,6 @@ def _join(blocks: dict[str, BasicBlock], tests: Sequence[NumberTest], steps: Seq
         del blocks[each]
 
 
-def _row(result: str, text: str, operands: tuple[str, ...], branch: Instruction) -> Instruction:
-    return Instruction(
-        result, text.split(maxsplit=1)[0], text, operands, branch.line, location=branch.location
-    )
-
-
 def _range_test(
     test: NumberTest, numbers: Numbers, branch: Instruction, label: str, *, is_word: bool
 ) -> Iterator[Instruction]:
@@ -185,15 +179,15 @@ def _range_test(
         steps.append(("and", (1 << test.bits) - 1))
     value, kind = test.value, f"i{test.bits}"
     if steps and test.bits < WORD:
-        yield _row(f"%{label}.word", f"zext {kind} {value} to i{WORD}", (value,), branch)
+        yield written(f"%{label}.word", f"zext {kind} {value} to i{WORD}", (value,), branch)
         value, kind = f"%{label}.word", f"i{WORD}"
     for number, (opcode, constant) in enumerate(steps):
         text = f"{opcode} {kind} {value}, {constant}"
-        yield _row(f"%{label}.step{number}", text, (value, str(constant)), branch)
+        yield written(f"%{label}.step{number}", text, (value, str(constant)), branch)
         value = f"%{label}.step{number}"
     single = numbers.low == numbers.high
     relation, bound = ("eq", numbers.low) if single else ("ult", numbers.high - numbers.low + 1)
-    yield _row(f"%{label}.is", f"icmp {relation} {kind} {value}, {bound}", (value, str(bound)), branch)
+    yield written(f"%{label}.is", f"icmp {relation} {kind} {value}, {bound}", (value, str(bound)), branch)
 
 
 def _bit_test(
@@ -202,12 +196,12 @@ def _bit_test(
     """Return what tests the bit of a mask whose number is what the test for the range has made of the value, in `before`."""
     rows, value = list[Instruction](), (before[-1].result or "") if before else test.value
     if not before and test.bits < WORD:
-        rows.append(_row(f"%{label}.wide", f"zext i{test.bits} {value} to i{WORD}", (value,), branch))
+        rows.append(written(f"%{label}.wide", f"zext i{test.bits} {value} to i{WORD}", (value,), branch))
         value = f"%{label}.wide"
     shifted, one = f"%{label}.mask", f"%{label}.one"
-    rows.append(_row(shifted, f"lshr i{WORD} {mask}, {value}", (str(mask), value), branch))
-    rows.append(_row(one, f"and i{WORD} {shifted}, 1", (shifted, "1"), branch))
-    return [*rows, _row(f"%{label}.is", f"icmp ne i{WORD} {one}, 0", (one, "0"), branch)]
+    rows.append(written(shifted, f"lshr i{WORD} {mask}, {value}", (str(mask), value), branch))
+    rows.append(written(one, f"and i{WORD} {shifted}, 1", (shifted, "1"), branch))
+    return [*rows, written(f"%{label}.is", f"icmp ne i{WORD} {one}, 0", (one, "0"), branch)]
 
 
 def _goes(test: Instruction, hit: str, other: str, weights: tuple[int, ...] = ()) -> Instruction:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, predicate
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, predicate, written
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from, without_way
 from bfsim.kernel.lowering.number_tests import come_alike
@@ -93,9 +93,8 @@ def _range_test(tested: Range, test: Instruction, branch: Instruction) -> list[I
     value, rows = test.operands[0], list[Instruction]()
 
     def row(name: str, text: str, *operands: str) -> str:
-        result, opcode = f"%{tested.first}.{name}", text.split(maxsplit=1)[0]
-        rows.append(Instruction(result, opcode, text, operands, branch.line, location=branch.location))
-        return result
+        rows.append(written(f"%{tested.first}.{name}", text, operands, branch))
+        return f"%{tested.first}.{name}"
 
     if test.bits < WORD:
         extension = "sext" if predicate(test).startswith("s") else "zext"

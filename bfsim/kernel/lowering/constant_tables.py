@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, arms_of, is_number, with_values
+from bfsim.kernel.ir_text import BasicBlock, Instruction, arms_of, is_number, with_values, written
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from
 from bfsim.kernel.lowering.number_tests import NumberTest
@@ -61,9 +61,7 @@ def load_chosen(
     size = max(each.number for each in chain) - low + 1
 
     def row(result: str, text: str, *operands: str) -> Instruction:
-        return Instruction(
-            result, text.split(maxsplit=1)[0], text, operands, branch.line, location=branch.location
-        )
+        return written(result, text, operands, branch)
 
     index, near = f"%{first.label}.index", f"%{first.label}.near"
     rows = [each for one in chain for each in blocks[one.label].instructions[:-2]]

@@ -1,7 +1,7 @@
 """`v - 20 if v > 20 else 0` of unsigned narrow numbers is a maximum, of which 20 is subtracted [match.pd of GCC 12].
 
 What is a word was found before (`extremes`); of these, LLVM would make other functions than minima and maxima. If such a number is wanted
-otherwise, GCC tests a word and adds what is narrow, and of two values there is neither.
+for more, GCC tests it as a word and adds to it as narrow: these are two values, and none is the maximum of the other.
 """
 
 from __future__ import annotations
@@ -9,8 +9,18 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NamedTuple
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, predicate, with_values
+from bfsim.kernel.ir_text import (
+    BasicBlock,
+    Instruction,
+    Routine,
+    arms_of,
+    is_number,
+    predicate,
+    with_values,
+    written,
+)
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.edges import without_way
 from bfsim.kernel.lowering.widths import WORD
 
 CHOSEN = {"ugt": ("umax", 1), "uge": ("umax", -1), "ult": ("umin", -1), "ule": ("umin", 1)}
@@ -76,15 +86,15 @@ def _chosen(flow: ControlFlow, found: _Sum) -> dict[str, BasicBlock]:
     value, kind = row.operands[0], f"i{row.bits}"
     name, label = f"%{found.block.label}.{found.name}", found.block.label
     text = f"call {kind} @llvm.{found.name}.{kind}({kind} {value}, {kind} {found.bound})"
-    call = replace(row, result=name, opcode="call", text=text, operands=(value, str(found.bound)))
+    call = written(name, text, (value, str(found.bound)), row)
     total = replace(row, text=row.text.replace(f"{value},", f"{name},"), operands=(name, row.operands[1]))
     test = flow.instruction(found.block.terminator.operands[0])
     unused = [test] if test and len(flow.users[test.result or ""]) == 1 else []
     kept = [each for each in found.block.instructions[:-1] if each not in unused]
     blocks[label] = replace(found.block, instructions=(*kept, call, total, end))
     home = blocks[found.block.successors[1]]
-    arms = {way: arm for way, arm in arms_of(found.phi).items() if way != found.arm.label}
-    phi = with_values(found.phi, arms | {label: row.result or ""})
+    phi = without_way(found.phi, found.arm.label)
+    phi = with_values(phi, arms_of(phi) | {label: row.result or ""})
     rows = tuple(phi if each is found.phi else each for each in home.instructions)
     blocks[home.label] = replace(home, instructions=rows)
     del blocks[found.arm.label]

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import Instruction, Routine
+from bfsim.kernel.ir_text import Instruction, Routine, written
 from bfsim.kernel.lowering.widths import WORD
 
 SATURATING = re.compile(r"call i(8|16) @llvm\.s(add|sub)\.sat\.i\d+\(i\d+ (\S+), i\d+ (\S+)\)$")
@@ -31,15 +31,11 @@ def _bounded(each: Instruction) -> Iterator[Instruction]:
     for side, operand in zip(("left", "right"), operands, strict=True):
         words.append(f"{each.result}.{side}" if operand.startswith("%") else operand)
         if operand.startswith("%"):
-            yield _row(each, words[-1], f"sext i{bits} {operand} to i{WORD}", operand)
+            yield written(words[-1], f"sext i{bits} {operand} to i{WORD}", (operand,), each)
     most = (1 << int(bits) - 1) - 1
     total, least, result = (f"{each.result}.{name}" for name in ("sum", "least", "most"))
-    yield _row(each, total, f"{opcode} nsw i{WORD} {words[0]}, {words[1]}", *words)
+    yield written(total, f"{opcode} nsw i{WORD} {words[0]}, {words[1]}", tuple(words), each)
     for name, of, extreme, bound in ((least, total, "max", -most - 1), (result, least, "min", most)):
         text = f"call i{WORD} @llvm.s{extreme}.i{WORD}(i{WORD} {of}, i{WORD} {bound})"
-        yield _row(each, name, text, of, str(bound))
-    yield _row(each, each.result or "", f"trunc i{WORD} {result} to i{bits}", result)
-
-
-def _row(each: Instruction, result: str, text: str, *operands: str) -> Instruction:
-    return replace(each, result=result, opcode=text.split(maxsplit=1)[0], text=text, operands=operands)
+        yield written(name, text, (of, str(bound)), each)
+    yield written(each.result or "", f"trunc i{WORD} {result} to i{bits}", (result,), each)
