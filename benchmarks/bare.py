@@ -121,7 +121,7 @@ class BareCore:
             code = kernel.compile(VDSP_O2, counted=self.counted, checked=self.counted)
             rows = [arguments[each].array for each in kernel.array_positions]
             call = self._calls[key] = kernel.prepare(code, rows, code.new_totals())
-        return call.run(arguments)
+        return call.run(*arguments)
 
     def at(self, *place: int | range) -> None:
         """Take no note of a place: nothing is drawn."""

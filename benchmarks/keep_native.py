@@ -14,10 +14,12 @@ from pathlib import Path
 
 from bfsim import kernel
 from bfsim.kernel.traced_access import trace_access
-from bfsim.machine.bus.tape import note, note_access, note_copy, note_run, note_wait
+from bfsim.machine.bus.tape import note, note_access, note_run
+from bfsim.machine.bus.tape_lines import note_copy, note_fetch, note_program, note_send, note_wait
 from bfsim.machine.bus.weave import advance
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
+from bfsim.machine.calls.ready_calls import find_call
 from bfsim.machine.retiming.stretch_writer import pass_call, write_stretch
 from bfsim.machine.retiming.work_check import are_accesses, calls_in
 from bfsim.store import KEPT
@@ -29,8 +31,12 @@ ENTRIES = (
     note,
     note_run,
     note_access,
+    note_program,
     note_copy,
     note_wait,
+    note_fetch,
+    note_send,
+    find_call,
     count_events,
     charge_conflicts,
     charge_events,

@@ -94,7 +94,7 @@ def test_arrays_in_the_memory_of_a_board_are_not_copied() -> None:
     calls.append(kernel.prepare(code, [row, out], code.new_totals(), memory=memory))
     row[:] = ROW
     for each in calls:
-        work = each.run([None, None, len(ROW), 2])
+        work = each.run(None, None, len(ROW), 2)
         totals.append((work.issue_cclk, work.stall_cclk, work.value))
     assert totals[0] == totals[1]
     assert (out == expected(ROW)).all()
@@ -116,13 +116,13 @@ def test_what_is_no_integer_of_32_bits_is_refused(count: object) -> None:
     code, out = kernel.compile(GCC_O2), np.zeros(len(ROW), np.int32)
     call = kernel.prepare(code, [ROW, out], code.new_totals())
     with pytest.raises(KernelError, match=r"n must be an int in -2147483648..2147483647, not "):
-        call.run((ROW, out, count, 2))
+        call.run(ROW, out, count, 2)
     for wrong in ((ROW, out, 5), (ROW, out, 5, 2, 1)):
         with pytest.raises(
             KernelError, match=f"sums must get row, out, n, first, not {len(wrong)} arguments"
         ):
-            call.run(wrong)
-    assert call.run((ROW, out, len(ROW), 2)).value == expected(ROW).sum()
+            call.run(*wrong)
+    assert call.run(ROW, out, len(ROW), 2).value == expected(ROW).sum()
 
 
 def test_a_float_is_handed_over_as_the_bits_of_a_single() -> None:
@@ -161,7 +161,7 @@ def test_the_counters_add_up_to_the_cycles_of_a_call() -> None:
     kernel = sums()
     code = kernel.compile(GCC_O2)
     totals = code.new_totals()
-    work = kernel.prepare(code, [ROW, np.zeros(32, np.int32)], totals).run([ROW, None, 32, 2])
+    work = kernel.prepare(code, [ROW, np.zeros(32, np.int32)], totals).run(ROW, None, 32, 2)
     pairs = list(zip(totals.tolist(), code.counters, strict=True))
     assert sum(events * each.issue_cclk for events, each in pairs) == work.issue_cclk
     calls = {one.symbol: events for events, each in pairs for one in each.enters}

@@ -248,5 +248,5 @@ def test_the_cost_of_a_kernel_is_that_of_its_code_in_a_run(profile: CompilerProf
         kernel = load_kernel(name, FIRMWARE[0])
         code = build.compiled(kernel)
         arrays = [arguments[each] for each in kernel.array_positions]
-        work = kernel.prepare(code, arrays, code.new_totals()).run(arguments)
+        work = kernel.prepare(code, arrays, code.new_totals()).run(*arguments)
         assert kernel.cost(*arguments, profile=profile.name) == work.issue_cclk + work.stall_cclk > 0

@@ -64,7 +64,7 @@ def predict(kernel: Kernel, calls: Calls, profile: CompilerProfile) -> Predicted
     for each in calls.arguments:
         arguments = copied(each)
         arrays = [arguments[position] for position in kernel.array_positions]
-        work = kernel.prepare(code, arrays, code.new_totals()).run(arguments)
+        work = kernel.prepare(code, arrays, code.new_totals()).run(*arguments)
         cycles.append(work.issue_cclk + work.stall_cclk)
         left.append(checksum(arguments, work.value))
     return Predicted(tuple(cycles), of_all(left))

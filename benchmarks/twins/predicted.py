@@ -30,7 +30,7 @@ def predict(case: Case, profile: CompilerProfile) -> Predicted:
 
     def run(*arguments: Any) -> int | None:
         arrays = [arguments[each] for each in kernel.array_positions]
-        return kernel.prepare(code, arrays, totals).run(arguments).value
+        return kernel.prepare(code, arrays, totals).run(*arguments).value
 
     checksum = case.checksum(run)
     cycles, operations = 0, Tally[str]()

@@ -37,7 +37,7 @@ class _Caller:
         call, copies = self.calls[lengths]
         for copy, array in zip(copies, arrays, strict=True):
             copy[:] = array
-        call.run([each.array if isinstance(each, Row) else each for each in arguments])
+        call.run(*(each.array if isinstance(each, Row) else each for each in arguments))
 
     def events(self) -> Tally[Event]:
         """Return how often each event was counted."""

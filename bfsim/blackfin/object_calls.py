@@ -35,7 +35,7 @@ def subroutine_call(
     trace: int = 0,
     log: Log | None = None,
     kept: object = None,
-) -> Callable[[Sequence[Any]], Any]:
+) -> Callable[..., Any]:
     """Return a subroutine bound to its memory, to be called with `given` arguments of Python's.
 
     `arguments`: what it takes in 32 bits each: what is always the same, or is taken. `trace`: the address of the block that accesses are

@@ -54,7 +54,7 @@ class RunnableCall(Protocol):
     def stays_in_l1(self) -> bool:
         """Whether no access of it can leave L1."""
 
-    def run(self, arguments: Sequence[Any]) -> Work:
+    def run(self, *arguments: Any) -> Work:
         """Run the kernel now and say what it cost. Of `arguments`, only the numbers are read."""
 
 
@@ -288,7 +288,7 @@ class Kernel:
         before = [each.copy() for each in arrays]
         code = compile_kernel(self.function, AS_WRITTEN, counted=False, effort=Effort.REGISTERS)
         try:
-            self.prepare(code, arrays, code.new_totals()).run(arguments)
+            self.prepare(code, arrays, code.new_totals()).run(*arguments)
         finally:
             for array, contents in zip(arrays, before, strict=True):
                 if array.flags.writeable:
@@ -324,7 +324,7 @@ class Kernel:
 
     def _run(self, arguments: Sequence[Any], code: CompiledKernel | CompiledObject) -> Work:
         arrays = [arguments[each] for each in self.array_positions]
-        return self.prepare(code, arrays, code.new_totals()).run(arguments)
+        return self.prepare(code, arrays, code.new_totals()).run(*arguments)
 
     def _own(self, profile: CompilerProfile) -> CompiledObject | None:
         """Return the code that the compiler of a profile makes of it, if that is what runs."""

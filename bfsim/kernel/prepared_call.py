@@ -41,7 +41,7 @@ class PreparedCall:
         left = left_by(function, access_trace, check, refuse)
         self.stays_in_l1 = access_trace is None
         """Whether no access of it can leave L1."""
-        self.run: Callable[[Sequence[Any]], Work] = bound_call(
+        self.run: Callable[..., Work] = bound_call(
             called, words, len(function.parameters), left, log_of(access_trace)
         )
         """Runs the kernel now and says what it cost, until the next run. Of its arguments, only the numbers are read."""

@@ -37,7 +37,7 @@ def left_by(
     """Return what a call leaves. One that fails raises KernelError: with what is wrong with its arguments, else by `refuse`, which is told why."""
     work = Work(0, 0)  # one for all runs: to make it takes Python longer than to run a short kernel
 
-    def fail(arguments: Sequence[Any]) -> NoReturn:
+    def fail(*arguments: Any) -> NoReturn:
         if access_trace and work.issue_cclk == NO_ROOM:
             access_trace.check_room(work.accesses)
         check(arguments)

@@ -21,7 +21,7 @@ from bfsim.machine_code.native_code import native_code
     REFUSE,  # what is called on failure
 ) = range(14)  # fmt: skip
 HEAD = 14
-ENTRY = "bfsim_call"
+ENTRY, BOUND = "bfsim_call", "bfsim_call_bound"
 
 
 class Kind(IntEnum):
@@ -31,9 +31,9 @@ class Kind(IntEnum):
     FLOAT = 1
 
 
-def field(name: str, number: int, kind: str) -> str:
-    """Return what loads word `number` of `%block` as `%NAME`."""
-    return f"  %{name}.at = getelementptr i64, ptr %block, i64 {number}\n  %{name} = load {kind}, ptr %{name}.at\n"
+def field(name: str, number: int, kind: str, of: str = "block") -> str:
+    """Return what loads word `number` of `%block`, or of what is said, as `%NAME`."""
+    return f"  %{name}.at = getelementptr i64, ptr %{of}, i64 {number}\n  %{name} = load {kind}, ptr %{name}.at\n"
 
 
 def loop(name: str, count: str, body: str, after: str) -> str:
@@ -74,18 +74,16 @@ TAKE = f"""\
   %least = load i64, ptr %least.at
   %largest.at = getelementptr i64, ptr %least.at, i64 %taken
   %largest = load i64, ptr %largest.at
+  %object.at = getelementptr ptr, ptr %arguments, i64 %position
+  %object = load ptr, ptr %object.at
   %is.float = icmp eq i64 %kind, {Kind.FLOAT:d}
   br i1 %is.float, label %float, label %integer
 integer:
-  %integer.object = call ptr @PySequence_GetItem(ptr %arguments, i64 %position)
-  %integer.value = call i64 @PyLong_AsLongLong(ptr %integer.object)
-  call void @Py_DecRef(ptr %integer.object)
+  %integer.value = call i64 @PyLong_AsLongLong(ptr %object)
   %integer.odd = icmp eq i64 %integer.value, -1
   br i1 %integer.odd, label %ask, label %known
 float:
-  %float.object = call ptr @PySequence_GetItem(ptr %arguments, i64 %position)
-  %double = call double @PyFloat_AsDouble(ptr %float.object)
-  call void @Py_DecRef(ptr %float.object)
+  %double = call double @PyFloat_AsDouble(ptr %object)
   %single = fptrunc double %double to float
   %float.bits = bitcast float %single to i32
   %float.value = zext i32 %float.bits to i64
@@ -165,10 +163,8 @@ declare i64 @PyLong_AsLongLong(ptr)
 declare ptr @PyLong_FromLongLong(i64)
 declare double @PyFloat_AsDouble(ptr)
 declare ptr @PyFloat_FromDouble(double)
-declare i64 @PySequence_Size(ptr)
-declare ptr @PySequence_GetItem(ptr, i64)
 declare i32 @PyObject_SetAttr(ptr, ptr, ptr)
-declare ptr @PyObject_CallFunctionObjArgs(ptr, ...)
+declare ptr @PyObject_Vectorcall(ptr, ptr, i64, ptr)
 declare void @Py_IncRef(ptr)
 declare void @Py_DecRef(ptr)
 declare ptr @PyErr_Occurred()
@@ -178,11 +174,15 @@ declare void @PyEval_RestoreThread(ptr)
 declare double @llvm.fabs.f64(double)
 declare float @llvm.fabs.f32(float)
 
-define ptr @{ENTRY}(ptr %self, ptr %arguments) {{
+define ptr @{BOUND}(ptr %self, ptr %arguments, i64 %count) {{
   %block = call ptr @PyBytes_AsString(ptr %self)
+  %left = call ptr @{ENTRY}(ptr %block, ptr %arguments, i64 %count)
+  ret ptr %left
+}}
+
+define ptr @{ENTRY}(ptr %block, ptr %arguments, i64 %count) {{
 {FIELDS}\
   %positions = getelementptr i64, ptr %block, i64 {HEAD}
-  %count = call i64 @PySequence_Size(ptr %arguments)
   %is.whole = icmp eq i64 %count, %given
   br i1 %is.whole, label %take, label %unfit
 take:
@@ -198,7 +198,7 @@ unfit:
 fail:
   %failure = phi i64 [ %status, %run ], [ {UNFIT}, %unfit ], [ {NO_ROOM}, %count_logged ]
   store i64 %failure, ptr %cost
-  %raised = call ptr (ptr, ...) @PyObject_CallFunctionObjArgs(ptr %refuse, ptr %arguments, ptr null)
+  %raised = call ptr @PyObject_Vectorcall(ptr %refuse, ptr %arguments, i64 %count, ptr null)
   ret ptr %raised
 done:
 {COUNT_ACCESSES}\
@@ -213,6 +213,6 @@ Meanwhile other threads have Python, such as the one that ends a command whose k
 
 @cache
 def caller() -> int:
-    """Return the address of the function."""
+    """Return the address of the function that Python calls. It calls ENTRY, with the words themselves in place of `self`."""
     machine_code.add(native_code(MODULE))
-    return machine_code.address_of(ENTRY)
+    return machine_code.address_of(BOUND)

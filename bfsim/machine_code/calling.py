@@ -1,4 +1,4 @@
-"""Machine code as a function of Python's, `f(arguments)`, bound to all that it needs (`caller`).
+"""Machine code as a function of Python's, bound to all that it needs (`caller`).
 
 It has the C interface of CPython: to go through ctypes takes longer than many a call.
 """
@@ -46,15 +46,24 @@ class Log(NamedTuple):
     room: int
 
 
-class _Block(bytes):
+class Block(bytes):
     """Words, and what they have the addresses of."""
 
     kept: object
 
 
+def words_at(call: Callable[..., Any]) -> int:
+    """Return the address of the words of what `bound_call` has made, 0 of anything else."""
+    block = getattr(call, "__self__", None)
+    return _as_string(block) if isinstance(block, Block) else 0
+
+
+_as_string = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object)(("PyBytes_AsString", ctypes.pythonapi))
+
+
 def bound_call(
     called: Called, words: Sequence[int | Taken], given: int, left: Left, log: Log | None
-) -> Callable[[Sequence[Any]], Any]:
+) -> Callable[..., Any]:
     """Return a function to be called with `given` arguments; of these only the numbers that are taken are read.
 
     `words` are handed over, of 64 bits each: what is always the same, or is taken from an argument of each call.
@@ -85,6 +94,6 @@ def bound_call(
         *(head[each] for each in range(w.HEAD)),
         *(each for column in zip(*taken, strict=True) for each in column),
     ]
-    block = _Block(pack(f"{len(values)}q", *values))
+    block = Block(pack(f"{len(values)}q", *values))
     block.kept = called, handed, left
-    return machine_code.python_function(w.caller(), block, machine_code.METH_O)
+    return machine_code.python_function(w.caller(), block)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from enum import IntEnum
-from typing import Any, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 WORD_BITS = 64
 ISSUE_CCLK, STALL_CCLK, ACCESSES, VALUE = range(4)
@@ -34,4 +34,4 @@ class Left(NamedTuple):
     cost: int
     result: Result
     bits: int
-    refuse: Callable[[Sequence[Any]], NoReturn]
+    refuse: Callable[..., NoReturn]

@@ -55,7 +55,7 @@ def _compared(
     for arguments, translation, real in zip(sample.kept, ours, truth, strict=True):
         copies = copied(arguments)
         arrays = [each for each in copies if isinstance(each, np.ndarray)]
-        work = kernel.prepare(compiled, arrays, compiled.new_totals()).run(copies)
+        work = kernel.prepare(compiled, arrays, compiled.new_totals()).run(*copies)
         estimated += work.issue_cclk
         different += {checksum(copies, work.value)} != {translation.checksum, real.checksum}
         unequal += translation.cclk != real.cclk

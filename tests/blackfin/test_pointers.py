@@ -50,7 +50,7 @@ def _expected(kernel: Kernel, arguments: tuple) -> Counter:
     code = built().compiled(kernel)
     totals = code.new_totals()
     arrays = [np.array(arguments[each]) for each in kernel.array_positions]
-    kernel.prepare(code, arrays, totals).run(arguments)
+    kernel.prepare(code, arrays, totals).run(*arguments)
     found: Counter = Counter()
     for events, counter in zip(totals.tolist(), code.counters, strict=True):
         for each in counter.accesses:
@@ -69,7 +69,7 @@ def _hit(kernel: Kernel, arguments: tuple) -> Counter:
         arrays.append(place)
         at += -(-each.nbytes // 64) * 64
     trace = AccessTrace(arena, len(arena), np.zeros(LOG + (1 << 20), np.int64))
-    work = kernel.prepare(code, arrays, code.new_totals(), trace).run(arguments)
+    work = kernel.prepare(code, arrays, code.new_totals(), trace).run(*arguments)
     sites = code.program.sites
     entries = zip(trace.entries(work.accesses).tolist(), trace.sites(work.accesses).tolist(), strict=True)
     return Counter((sites[site].array, entry >> KIND_BIT & KIND_MASK == STORE) for entry, site in entries)

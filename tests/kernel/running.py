@@ -25,7 +25,7 @@ def run(
     """Run `kernel` once, counted, and return what it cost."""
     code = kernel.compile(profile, traced=access_trace is not None)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
-    return kernel.prepare(code, arrays, code.new_totals(), access_trace).run(arguments)
+    return kernel.prepare(code, arrays, code.new_totals(), access_trace).run(*arguments)
 
 
 def check_against_python(kernel: Kernel, given: Sequence[Any], profile: CompilerProfile) -> None:
@@ -47,7 +47,7 @@ def line_executions(kernel: Kernel, *arguments: Any) -> dict[int, int]:
     """Return how often each line of `kernel` ran, counted from its decorator; lines without code are missing."""
     code = kernel.compile(VDSP_O2)
     totals = code.new_totals()
-    kernel.prepare(code, [each for each in arguments if isinstance(each, np.ndarray)], totals).run(arguments)
+    kernel.prepare(code, [each for each in arguments if isinstance(each, np.ndarray)], totals).run(*arguments)
     found: dict[int, int] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         if counter.value is None and counter.routine == kernel.function.symbol:

@@ -102,7 +102,7 @@ def test_a_prepared_call_keeps_its_arrays_alive() -> None:
     calls = [total.prepare(code, [np.full(10_000, n, np.uint8)], code.new_totals()) for n in range(8)]
     gc.collect()
     np.zeros(80_000, np.uint8)
-    assert [call.run((None,)).value for call in calls] == [10_000 * n for n in range(8)]
+    assert [call.run(None).value for call in calls] == [10_000 * n for n in range(8)]
 
 
 @kernel
@@ -127,9 +127,9 @@ def test_a_prepared_call_refuses_what_its_types_do_not_hold(arguments: tuple[Any
     code, row = levels.compile(VDSP_O2), np.full(4, 9, np.uint8)
     call = levels.prepare(code, [row], code.new_totals())
     with pytest.raises(KernelError, match=re.escape(what)):
-        call.run(arguments)
+        call.run(*arguments)
     assert row[0] == 9
-    assert call.run((None, (1 << 32) - 1, -(1 << 31) + 1)).value == -(1 << 31)
+    assert call.run(None, (1 << 32) - 1, -(1 << 31) + 1).value == -(1 << 31)
     assert row[0] == 255
 
 
@@ -139,7 +139,7 @@ def test_totals_add_up_over_calls() -> None:
     totals = code.new_totals()
     row = np.zeros(32, np.uint8)
     call = total.prepare(code, [row], totals)
-    cycles = {call.run((row,)).issue_cclk for _ in range(5)}
+    cycles = {call.run(row).issue_cclk for _ in range(5)}
     assert cycles == {run(total, row).issue_cclk}
     assert (
         sum(int(n) * each.issue_cclk for n, each in zip(totals, code.counters, strict=True))

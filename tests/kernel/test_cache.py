@@ -31,7 +31,7 @@ real = instrument.instrument
 instrument.instrument = lambda *given, **named: compiles.append(1) or real(*given, **named)
 a = np.arange(64, dtype=np.uint8); b = a.copy()
 code = f.compile(VDSP_O2)
-work = f.prepare(code, [a, b], code.new_totals()).run((a, b))
+work = f.prepare(code, [a, b], code.new_totals()).run(a, b)
 assert (b == a // 3).all()
 print(work.issue_cclk, len(compiles))
 """

@@ -232,7 +232,7 @@ def test_accesses_are_counted_per_array() -> None:
     """A kernel's reads and writes of each array follow from its counts."""
     code = cost_kernels.copy_words.compile(VDSP_O2)
     totals = code.new_totals()
-    cost_kernels.copy_words.prepare(code, [words(17), words(17)], totals).run((words(17), words(17)))
+    cost_kernels.copy_words.prepare(code, [words(17), words(17)], totals).run(words(17), words(17))
     found: dict[str, tuple[int, int]] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=True):
         for name, reads, writes in counter.array_accesses:
@@ -258,7 +258,7 @@ def test_counting_does_not_change_the_pixels() -> None:
     code = cost_kernels.suppress.compile(VDSP_O2, counted=False)
     assert code.counters == ()
     arguments = (*rows, bare)
-    assert cost_kernels.suppress.prepare(code, arguments, code.new_totals()).run(arguments).issue_cclk == 0
+    assert cost_kernels.suppress.prepare(code, arguments, code.new_totals()).run(*arguments).issue_cclk == 0
     np.testing.assert_array_equal(counted, bare)
 
 

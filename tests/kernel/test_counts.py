@@ -52,7 +52,7 @@ def counted_lines(program: Kernel, arrays: dict[str, Any], x: int, y: int) -> di
     """Run the kernel in gcc-O0, where no block is merged with another, and count its lines from its decorator."""
     code = program.compile(GCC_O0)
     totals = code.new_totals()
-    program.prepare(code, list(arrays.values()), totals).run((*arrays.values(), x, y))
+    program.prepare(code, list(arrays.values()), totals).run(*arrays.values(), x, y)
     found: dict[int, int] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         if counter.value is None and counter.routine == program.function.symbol:
@@ -126,7 +126,7 @@ def test_a_routine_counts_alike_whether_inlined_or_called(
         kernel = import_text(CALLER, tmp_path, name).f
         code, arrays = kernel.compile(CALLING_VDSP), [a, a[::-1].copy()]
         totals = code.new_totals()
-        cclk = kernel.prepare(code, arrays, totals).run(arrays).issue_cclk
+        cclk = kernel.prepare(code, arrays, totals).run(*arrays).issue_cclk
         counts.append((cclk, totals.tolist(), arrays[1].tolist()))
         monkeypatch.setattr(instrument, "LARGE_PROGRAM_COUNTERS", 0)
         monkeypatch.setattr(instrument, "LARGE_ROUTINE_COUNTERS", 0)

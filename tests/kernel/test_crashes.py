@@ -36,7 +36,7 @@ row = np.ones(1 << 16, np.uint8)
 """
 UNCHECKED = """
 code = poke.compile(VDSP_O2, checked=False)
-poke.prepare(code, [row], code.new_totals()).run((row, 2**31 - 1))
+poke.prepare(code, [row], code.new_totals()).run(row, 2**31 - 1)
 """
 BY_SIGNAL = """
 spin(row, 1)

@@ -324,7 +324,7 @@ def test_the_profile_without_optimisation_is_checked() -> None:
     code = load.compile(GCC_O0)
     row = row_of(np.uint8)
     with pytest.raises(KernelError, match="index 8 is outside of row in kernel load"):
-        load.prepare(code, [row], code.new_totals()).run((row, 8))
+        load.prepare(code, [row], code.new_totals()).run(row, 8)
 
 
 REFERENCES = [each for each in CASES if measured()[each.name].role is Role.REFERENCE]
@@ -340,7 +340,7 @@ def test_checks_change_no_cycle_and_no_result(case: Any) -> None:
 
         def run(*arguments: Any, code: Any = code, totals: Any = totals) -> Any:
             arrays = [each for each in arguments if isinstance(each, np.ndarray)]
-            return case.kernel.prepare(code, arrays, totals).run(arguments).value
+            return case.kernel.prepare(code, arrays, totals).run(*arguments).value
 
         found.append((case.checksum(run), totals.tolist()))
     assert found[0] == found[1]

@@ -82,7 +82,7 @@ def counted(
     code = kernel.compile(profile)
     totals = code.new_totals()
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
-    kernel.prepare(code, arrays, totals).run(arguments)
+    kernel.prepare(code, arrays, totals).run(*arguments)
     entered: Tally[str] = Tally()
     lines: Tally[tuple[str, int]] = Tally()
     for counter, events in zip(code.counters, totals.tolist(), strict=True):

@@ -246,9 +246,7 @@ def test_counting_bits_is_one_operation(tmp_path: Path) -> None:
         tmp_path,
     ).f
     code = kernel.compile(GCC_O2)
-    cost = {
-        x: kernel.prepare(code, [], code.new_totals()).run((x,)).issue_cclk for x in (1, 0xFFFF, 0xFFFFFFFF)
-    }
+    cost = {x: kernel.prepare(code, [], code.new_totals()).run(x).issue_cclk for x in (1, 0xFFFF, 0xFFFFFFFF)}
     assert len(set(cost.values())) == 1
     assert kernel(0xFFFF) == 16
 

@@ -210,7 +210,7 @@ def test_a_copied_test_counts_as_the_source_says(tmp_path: Path) -> None:
     for bits in (0, 1, 8, 0x8000_0000):
         expected = min(20, (bits & -bits).bit_length() - 1 if bits else 32)
         code = digits.compile(GCC_O2)
-        assert digits.prepare(code, [], code.new_totals()).run((bits, 20)).value == expected
+        assert digits.prepare(code, [], code.new_totals()).run(bits, 20).value == expected
 
 
 @pytest.mark.parametrize(("first", "steps"), [("y * n", 0), ("0", 1)])

@@ -52,7 +52,7 @@ class Run:
         code = self.kernel.compile(self.profile, traced=True)
         rows = [placed[each] for each in self.arrays]
         totals = code.new_totals()
-        work = self.kernel.prepare(code, rows, totals, trace).run([*rows, *self.scalars])
+        work = self.kernel.prepare(code, rows, totals, trace).run(*rows, *self.scalars)
         found: Tally[tuple[str, str]] = Tally()
         for entry in trace.entries(work.accesses).tolist():
             at, kind = entry & log.OFFSET_MASK, entry >> log.KIND_BIT & log.KIND_MASK

@@ -125,7 +125,7 @@ def loads(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> int:
         given = [count if isinstance(each, int) else each for each in arguments(kernel)]
         totals = code.new_totals()
         arrays = [each for each in given if isinstance(each, np.ndarray)]
-        kernel.prepare(code, arrays, totals).run(tuple(given))
+        kernel.prepare(code, arrays, totals).run(*given)
         made.append(
             sum(
                 access.times(totals[number])

@@ -55,7 +55,7 @@ def test_a_load_on_each_way_is_made_on_each_way(tmp_path: Path) -> None:
         expected[x] = a[x] if a[x] >= 6 and a[x] >= before else 0
     code = kernel.compile(GCC_O2)
     totals = code.new_totals()
-    kernel.prepare(code, [a, b, kind, out], totals).run((a, b, kind, out, 6))
+    kernel.prepare(code, [a, b, kind, out], totals).run(a, b, kind, out, 6)
     np.testing.assert_array_equal(out, expected)
     reads = dict.fromkeys(("a", "b", "kind"), 0)
     writes = 0
@@ -126,7 +126,7 @@ def test_what_was_loaded_to_be_tested_is_not_loaded_again(
     arrays = [parents, *(np.ones(5, np.uint8) for _ in range(others))]
     code = kernel.compile(GCC_O2)
     totals = code.new_totals()
-    assert kernel.prepare(code, arrays, totals).run((*arrays, 3)).value == 0
+    assert kernel.prepare(code, arrays, totals).run(*arrays, 3).value == 0
     found = sum(
         events * read
         for counter, events in zip(code.counters, totals.tolist(), strict=True)

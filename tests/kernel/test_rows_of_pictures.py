@@ -203,7 +203,7 @@ def test_the_second_step_of_a_line_is_asked_for_behind_the_first_alone(tmp_path:
     picture, ends, count = arguments(kernel)
     code = kernel.compile(GCC_O2)
     totals = code.new_totals()
-    iterations = kernel.prepare(code, [picture, ends], totals).run((picture, ends, count)).value
+    iterations = kernel.prepare(code, [picture, ends], totals).run(picture, ends, count).value
     line = LINE.splitlines().index("            if e2 <= dx:") + 1
     tests = sum(
         events * each.times

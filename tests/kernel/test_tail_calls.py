@@ -119,7 +119,7 @@ def own_by_line(kernel: Kernel, *arguments: Any) -> Tally[tuple[int, str]]:
     """Return how often operations of a kernel's own ran, by line of the kernel and operation; what ran no time is there, too."""
     code = kernel.compile(CALLING_GCC)
     totals = code.new_totals()
-    kernel.prepare(code, [each for each in arguments if isinstance(each, np.ndarray)], totals).run(arguments)
+    kernel.prepare(code, [each for each in arguments if isinstance(each, np.ndarray)], totals).run(*arguments)
     found: Tally[tuple[int, str]] = Tally()
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         for place, name, times, _ in counter.line_operations:

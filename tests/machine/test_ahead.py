@@ -9,8 +9,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
+from bfsim.machine.bus import tape
 from bfsim.machine.bus.tape import Tape
-from bfsim.machine.core import ahead
 from bfsim.machine.program import Main
 from bfsim.trace import BoardRecord
 from tests.machine.kernels import copy, first, negate, spin
@@ -93,15 +93,15 @@ def test_calls_that_meet_nobody_end_a_stretch_before_its_room_does(monkeypatch: 
     lengths: list[int] = []
     clear = Tape.clear
 
-    def seen(tape: Tape) -> None:
-        lengths.append(tape.noted)
-        clear(tape)
+    def seen(of: Tape) -> None:
+        lengths.append(of.noted)
+        clear(of)
 
     monkeypatch.setattr(Tape, "clear", seen)
     deeds: tuple[Deeds, Deeds] = ([("rings", 1), *(60 * [("stage", 5)])], [("rings", 2)])
     in_step, whole = outcome(deeds, ahead=False), outcome(deeds)
     assert max(lengths) > 60
     lengths.clear()
-    monkeypatch.setattr(ahead, "MOST_OPERATIONS", 20)
+    monkeypatch.setattr(tape, "MOST_OPERATIONS", 20)
     assert outcome(deeds) == whole == in_step
     assert 20 < max(lengths) < 30

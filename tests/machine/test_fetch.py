@@ -38,7 +38,7 @@ def executed_bytes(kernel: Kernel, *arguments: Any) -> int:
     """Bytes of code that a call executes: those of each block, as often as it runs."""
     code = kernel.compile(VDSP_O2)
     totals = code.new_totals()
-    kernel.prepare(code, [], totals).run(arguments)
+    kernel.prepare(code, [], totals).run(*arguments)
     return sum(count * each.nbytes for count, each in zip(totals.tolist(), code.counters, strict=False))
 
 

@@ -113,6 +113,20 @@ def test_work_out_of_turn_ends_the_run(waits: bool, ahead: bool) -> None:
     outcome(task, handed_over=False)  # whose order the cycles decide
 
 
+@pytest.mark.parametrize("ahead", [False, True])
+def test_work_out_of_turn_ends_the_run_in_a_later_frame_too(ahead: bool) -> None:
+    """Where the calls of both cores are known, and were in turn before."""
+
+    def task(core: Core, frame: Frame) -> Play:
+        if core.name == "B" and frame.index == 2:
+            yield from work(core, 5)
+        yield from by_semaphores(core, frame)
+
+    assert len(outcome(task, ahead=ahead, frames=2).frames) == 2
+    with pytest.raises(FirmwareError, match=r"must not work on in_turns while core [AB] has it"):
+        outcome(task, ahead=ahead)
+
+
 def test_what_no_other_core_has_is_not_handed_over() -> None:
     """A buffer of one core is refused before the run."""
 

@@ -7,11 +7,15 @@ import pytest
 
 from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.tape import COPY_WORDS, MOST_OPERATIONS, Tape
+from bfsim.machine.bus.tape import MOST_OPERATIONS, Tape
+from bfsim.machine.bus.tape_lines import COPY_WORDS, NotedLines
 from tests.machine.rig import Bench
 
 CORE = 1
 MEET = w.CATCH_UP, 0, 0, 0, 0
+PROGRAM = w.SET_UP, 60, 5, 7, 3
+NO_PLAN = (w.NONE,) * COPY_WORDS
+RING = 5, w.RING_FULL, 60, 7, 3
 
 
 @pytest.fixture
@@ -31,6 +35,11 @@ def noted(tape: Tape) -> list[tuple[int, ...]]:
     return [tuple(each) for each in tape.operations(0, tape.noted).tolist()]
 
 
+def ring(tape: Tape, *copies: tuple[int, ...]) -> NotedLines:
+    """Return a ring with so many lines."""
+    return NotedLines(tape, np.array([len(copies), *RING, *(word for each in copies for word in each)]))
+
+
 def run(tape: Tape, issue_cclk: int, stall_cclk: int = 0) -> int:
     """Note a call that has met nobody."""
     work = Work(issue_cclk, stall_cclk)
@@ -40,17 +49,17 @@ def run(tape: Tape, issue_cclk: int, stall_cclk: int = 0) -> int:
 def test_the_first_calls_of_all_are_not_noted(tape: Tape) -> None:
     """The core's clock is known until something else is."""
     assert not run(tape, 7, 2)
-    tape.noting(w.CATCH_UP)()
+    tape.note(*MEET)
     assert run(tape, 7, 2)
     assert noted(tape) == [MEET, (w.RUN, 7, 2, 0, 0)]
 
 
 def test_calls_that_meet_nobody_are_noted_as_one(tape: Tape) -> None:
     """But not across what was noted between them, nor across a mark, where something is done at that moment."""
-    tape.noting(w.CATCH_UP)()
+    tape.note(*MEET)
     for _ in range(3):
         run(tape, 7, 2)
-    tape.noting(w.CATCH_UP)()
+    tape.note(*MEET)
     run(tape, 1, 0)
     assert tape.mark() == 4
     run(tape, 5, 0)
@@ -60,7 +69,7 @@ def test_calls_that_meet_nobody_are_noted_as_one(tape: Tape) -> None:
 
 def test_a_mark_is_gone_with_what_was_before_it(tape: Tape) -> None:
     """The next stretch begins anew."""
-    tape.noting(w.CATCH_UP)()
+    tape.note(*MEET)
     tape.mark()
     tape.clear()
     assert tape.noted == tape.mark() == 0
@@ -81,9 +90,7 @@ def test_a_copy_moves_its_bytes_and_no_others(bench: Bench, tape: Tape, nbytes: 
     arena = bench.memories.arena
     arena[:4096] = np.arange(4096) % 251
     before = arena[:4096].copy()
-    copies = np.full((2, COPY_WORDS), w.NONE)
-    copies[1] = 9, 100, 2048 + shift, 77, nbytes
-    copy = tape.copying(copies)
+    copy = ring(tape, NO_PLAN, (9, 100, 2048 + shift, 77, nbytes)).copy
     assert [copy(1), copy(0), copy(1)] == [0, w.NONE, 1]
     before[2048 + shift : 2048 + shift + nbytes] = before[100 : 100 + nbytes]
     assert np.array_equal(arena[:4096], before)
@@ -92,24 +99,61 @@ def test_a_copy_moves_its_bytes_and_no_others(bench: Bench, tape: Tape, nbytes: 
 
 def test_a_wait_counts_back_from_the_last_copy(tape: Tape) -> None:
     """As the bus looks for copies; also in a later stretch."""
-    copies = np.array([[9, 0, 64, 0, 4]])
+    lines = ring(tape, (9, 0, 64, 0, 4))
     for _ in range(3):
-        tape.copying(copies)(0)
+        lines.copy(0)
     tape.clear()
-    tape.waiting(w.RING_FULL, 5)(1)
+    lines.wait(1)
     assert noted(tape) == [(w.AWAIT, 2, w.RING_FULL, 5, 0)]
+
+
+def test_a_line_is_taken_and_sent_as_step_by_step(bench: Bench) -> None:
+    """The next one is on its way then, and the last has none behind it."""
+    at_once, by_steps = bench.bus.tape(0), bench.bus.tape(CORE)
+    copies = [(plan, 100 * plan, 2048 + 100 * plan, 0, 64) for plan in range(3)]
+    one, other = ring(at_once, *copies), ring(by_steps, *copies)
+    coming = w.NONE
+    for number in range(3):
+        coming = one.fetch(number, coming)
+    one.send(2)
+    by_steps.note(*MEET)
+    other.program()
+    came = other.copy(0)
+    for number in (1, 2):
+        following = other.copy(number)
+        other.wait(came)
+        by_steps.note(*MEET)
+        other.program()
+        came = following
+    other.wait(came)
+    other.program()
+    other.copy(2)
+    assert noted(at_once) == noted(by_steps)
+    assert PROGRAM in noted(at_once)
+
+
+def test_a_line_without_a_plan_is_neither_taken_nor_sent(tape: Tape) -> None:
+    """Nor one behind the last; nothing is noted."""
+    lines = ring(tape, (9, 0, 64, 0, 4), NO_PLAN)
+    assert [lines.fetch(0, w.NONE), lines.fetch(1, 0), lines.fetch(2, 0)] == 3 * [w.NONE]
+    assert [lines.send(1), lines.send(2)] == 2 * [w.NONE]
+    assert not tape.noted
 
 
 def test_cores_have_tapes_of_their_own(bench: Bench, tape: Tape) -> None:
     """Side by side in the state."""
     other = bench.bus.tape(0)
-    tape.noting(w.CATCH_UP)()
+    tape.note(*MEET)
     assert (other.noted, tape.noted) == (0, 1)
 
 
 def test_a_tape_is_full_with_room_to_spare(tape: Tape) -> None:
     """So that a core need not meet the others at every operation."""
-    note = tape.noting(w.CATCH_UP)
-    assert not any(note() for _ in range(MOST_OPERATIONS))
-    assert note()
+    for _ in range(MOST_OPERATIONS):
+        tape.note(*MEET)
+    assert not tape.is_full
+    tape.note(*MEET)
+    assert tape.is_full
     assert tape.noted < w.MAX_OPERATIONS
+    tape.clear()
+    assert not tape.is_full

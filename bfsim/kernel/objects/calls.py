@@ -71,7 +71,7 @@ class ObjectCall:
         _catch_faults()
         self.stays_in_l1 = access_trace is None
         """Whether no access of it can leave L1."""
-        self.run: Callable[[Sequence[Any]], Work] = subroutine_call(
+        self.run: Callable[..., Work] = subroutine_call(
             code.subroutine,
             _arguments(function, arrays, addresses),
             len(function.parameters),
@@ -99,16 +99,16 @@ def _refuse(subroutine: Subroutine, failure: int) -> NoReturn:
 
 
 def _run_beside(
-    run: Callable[[Sequence[Any]], Work],
+    run: Callable[..., Work],
     function: Function,
     read_only: Sequence[tuple[str, NDArray[Any], NDArray[np.uint8]]],
-    arguments: Sequence[Any],
+    *arguments: Any,
 ) -> Work:
     """Run code that may store into arrays that must not be changed; raise KernelError if it did so in their copies.
 
     `read_only`: the name of each, itself, and the bytes of its copy.
     """
-    work = run(arguments)
+    work = run(*arguments)
     for name, array, copied in read_only:
         if not np.array_equal(array.view(np.uint8), copied):
             raise KernelError(

@@ -185,8 +185,11 @@ MAX_OPERATIONS = 1 << 17
     NOTED,          # operations
     MARKED,         # how many of them the mark that was set last is behind
     NOTED_COPIES,   # copies, in all
-) = range(3)  # fmt: skip
-TAPE_WORDS = 3
+    MOST,           # operations that it has room for, before the core must meet the others
+    IS_FULL,        # whether the core must meet the others before it notes more
+    TAKES_CALLS,    # whether calls are noted without Python
+) = range(6)  # fmt: skip
+TAPE_WORDS = 6
 PLAN_WORDS = TRANSFER_WORDS
 MAX_PLANS = 1 << 17
 

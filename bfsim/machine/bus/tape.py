@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,9 @@ from bfsim.kernel import work as numbers
 from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
+from bfsim.machine_code.asking import Noted
 from bfsim.machine_code.built_in import built_in
 
-(PLAN, FROM, TO, NUMBER, NBYTES) = range(5)
-"""Of a copy: its plan, NONE if it has none yet, where it begins to read and to write, what is noted behind that, and how long it is."""
-COPY_WORDS = 5
 MOST_OPERATIONS, MOST_ACCESSES = w.MAX_OPERATIONS // 2, 1 << 16
 """What a tape has when it is full. Its room is larger, for a core cannot meet the others at every operation."""
 
@@ -30,18 +27,20 @@ def end_of(state: State, core: int) -> int:
 
 
 @native
-def write(state: State, core: int, kind: int, one: int, two: int, three: int, four: int) -> bool:
-    """Write an operation; return whether the tape is full."""
+def write(state: State, core: int, kind: int, one: int, two: int, three: int, four: int) -> int:
+    """Write an operation; return how many there are."""
     at, tape = end_of(state, core), w.TAPES_AT + core * w.TAPE_WORDS
     state[at], state[at + 1], state[at + 2], state[at + 3], state[at + 4] = kind, one, two, three, four
     state[tape + w.NOTED] += 1
     kept = state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.KEPT]
-    return state[tape + w.NOTED] > MOST_OPERATIONS or kept > MOST_ACCESSES
+    if state[tape + w.NOTED] > state[tape + w.MOST] or kept > MOST_ACCESSES:
+        state[tape + w.IS_FULL] = 1
+    return state[tape + w.NOTED]
 
 
 @native_entry("int64", "int64*", "int64", "int64", "int64", "int64", "int64", "int64")
 def note(state_at: Any, core: int, kind: int, one: int, two: int, three: int, four: int) -> int:
-    """Note an operation; return whether the tape is full."""
+    """Note an operation; return how many there are."""
     return write(words_at(state_at), core, kind, one, two, three, four)
 
 
@@ -62,7 +61,7 @@ def note_run(state_at: Any, core: int, work_at: Any) -> int:
 
 @native_entry("int64", "int64*", "int64", "int64*")
 def note_access(state_at: Any, core: int, work_at: Any) -> int:
-    """Note a call, by its numbers, and keep its accesses, which it has just logged; return whether the tape is full."""
+    """Note a call, by its numbers, and keep its accesses, which it has just logged; return how many operations there are."""
     state: State = words_at(state_at)
     work: State = words_at(work_at)
     trace = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS
@@ -72,67 +71,53 @@ def note_access(state_at: Any, core: int, work_at: Any) -> int:
     return write(state, core, w.ACCESS, work[numbers.ISSUE_CCLK], work[numbers.STALL_CCLK], first, last)
 
 
-@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
-def note_copy(state_at: Any, memory_at: Any, core: int, copies_at: Any, number: int) -> int:
-    """Do a copy, of a table of them; return the how-manieth of the core it is, or NONE if it has no plan yet."""
-    state: State = words_at(state_at)
-    memory, copies = words_at(memory_at), words_at(copies_at)
-    tape, copy = w.TAPES_AT + core * w.TAPE_WORDS, number * COPY_WORDS
-    if copies[copy + PLAN] == w.NONE:
-        return w.NONE
-    first, to = copies[copy + FROM], copies[copy + TO]
-    for octet in range(copies[copy + NBYTES]):
-        memory[to + octet] = memory[first + octet]
-    write(state, core, w.COPY, copies[copy + PLAN], first, to, copies[copy + NUMBER])
-    state[tape + w.NOTED_COPIES] += 1
-    return state[tape + w.NOTED_COPIES] - 1
-
-
-@native_entry("int64", "int64*", "int64", "int64", "int64", "int64")
-def note_wait(state_at: Any, core: int, reason: int, account: int, copy: int) -> int:
-    """Note that a core waits for the how-manieth of its copies; return whether the tape is full."""
-    state = words_at(state_at)
-    back = state[w.TAPES_AT + core * w.TAPE_WORDS + w.NOTED_COPIES] - copy
-    return write(state, core, w.AWAIT, back, reason, account, 0)
-
-
 class Tape:
     """The tape of one core, in the `state` of the bus; `memory`: all of the chip's.
 
-    What notes an operation is a built-in function, and as much as can be is bound to it beforehand.
+    What notes an operation is a built-in function.
     """
 
     def __init__(self, core: int, state: NDArray[np.int64], memory: NDArray[Any]) -> None:
-        self._core = core
+        self.at = state.ctypes.data, memory.ctypes.data, core
+        """The addresses of both, and the core."""
         self._state = state
-        self._memory = memory
         self._words: Any = state.data
-        self._noted = w.TAPES_AT + core * w.TAPE_WORDS + w.NOTED
+        self._tape = w.TAPES_AT + core * w.TAPE_WORDS
+        self._words[self._tape + w.MOST] = MOST_OPERATIONS
+        first = state.ctypes.data + state.itemsize * self._tape
+        self.takes_calls_at = first + state.itemsize * w.TAKES_CALLS
+        self.calls = Noted(state.ctypes.data, core, first + state.itemsize * w.IS_FULL)
+        """How machine code notes calls."""
         self._first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
+        self.note = built_in(note.address(), 5, state.ctypes.data, core)
+        """Notes an operation, of a kind and four numbers."""
         self.note_run = built_in(note_run.address(), 1, state.ctypes.data, core)
         self.note_access = built_in(note_access.address(), 1, state.ctypes.data, core)
         """Of a `Work`, by the address of its numbers."""
 
-    def noting(
-        self, kind: int, one: int = 0, two: int = 0, three: int = 0, four: int = 0
-    ) -> Callable[[], int]:
-        """Return what notes an operation."""
-        return built_in(note.address(), 0, self._state.ctypes.data, self._core, kind, one, two, three, four)
-
-    def copying(self, copies: NDArray[np.int64]) -> Callable[[int], int]:
-        """Return what does a copy of a table, by its number there: see `note_copy`."""
-        addresses = self._state.ctypes.data, self._memory.ctypes.data, self._core, copies.ctypes.data
-        return built_in(note_copy.address(), 1, *addresses)
-
-    def waiting(self, reason: int, account: int) -> Callable[[int], int]:
-        """Return what notes a wait for a copy, the how-manieth of the core it is, and returns whether the tape is full."""
-        return built_in(note_wait.address(), 1, self._state.ctypes.data, self._core, reason, account)
-
     @property
     def noted(self) -> int:
         """How many operations there are."""
-        count: int = self._words[self._noted]
+        count: int = self._words[self._tape + w.NOTED]
         return count
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the core must meet the others before it notes more."""
+        return bool(self._words[self._tape + w.IS_FULL])
+
+    @is_full.setter
+    def is_full(self, is_full: bool) -> None:
+        self._words[self._tape + w.IS_FULL] = is_full
+
+    @property
+    def takes_calls(self) -> bool:
+        """Whether calls are noted without Python."""
+        return bool(self._words[self._tape + w.TAKES_CALLS])
+
+    @takes_calls.setter
+    def takes_calls(self, takes_calls: bool) -> None:
+        self._words[self._tape + w.TAKES_CALLS] = takes_calls
 
     def operations(self, first: int, end: int) -> NDArray[np.int64]:
         """Return operations, a row each."""
@@ -141,10 +126,11 @@ class Tape:
 
     def mark(self) -> int:
         """Set a mark: calls before it and behind it are not noted as one. Return how many operations it is behind."""
-        marked = self._words[self._noted + w.MARKED - w.NOTED] = self.noted
+        marked = self._words[self._tape + w.MARKED] = self.noted
         return marked
 
     def clear(self) -> None:
         """Begin anew."""
-        self._words[self._noted] = 0
+        self._words[self._tape + w.NOTED] = 0
+        self.is_full = False
         self.mark()

@@ -18,16 +18,18 @@ from bfsim.machine.calls.conflicts import Accesses, StageGroups, SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import FrameCounts, Ledger
+from bfsim.machine.calls.ready_calls import ReadyCalls
 from bfsim.machine.calls.records import CoreRecords
 from bfsim.machine.memories import Row
 from bfsim.machine.owner_costs import Owner
+from bfsim.machine_code.calling import words_at
 from bfsim.trace import REST
 
 
 class BoundCall(Protocol):
     """What can be run with arguments."""
 
-    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+    def run(self, *arguments: Row | int) -> Work:
         """Run the kernel now and say what it cost."""
 
 
@@ -66,10 +68,15 @@ class KnownCall:
 
     name: str
     number: int
-    run: Callable[[tuple[Row | int, ...]], Work]
+    run: Callable[..., Work]
     stays_in_l1: bool
     is_alone: bool
     handed_over: tuple[str, ...]
+
+    @property
+    def words(self) -> int:
+        """The address by which machine code runs it, 0 if Python must."""
+        return words_at(self.run)
 
 
 KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, KnownCall]]
@@ -84,11 +91,11 @@ class WatchedCall:
     kernel: Kernel
     before: tuple[BeforeCall, ...]
 
-    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+    def run(self, *arguments: Row | int) -> Work:
         """Tell of the call, run the kernel, and say what it cost."""
         for tell in self.before:
             tell(self.kernel, arguments)
-        return self.call.run(arguments)
+        return self.call.run(*arguments)
 
 
 class DeferredWork(Work):
@@ -103,7 +110,7 @@ class DeferredWork(Work):
 
     def run(self) -> Work:
         """Run the kernel now and say what it cost."""
-        return self._call.run(self._arguments)
+        return self._call.run(*self._arguments)
 
 
 class CallCache:
@@ -144,7 +151,10 @@ class CallCache:
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._in_stage: dict[str, StageGroups] = {}
         self._calls: dict[str, dict[Kernel, KernelCalls]] = {}
-        self._count = 0
+        self.ready = ReadyCalls()
+        """Those that machine code finds."""
+        self.made: list[KnownCall] = []
+        """Those that were prepared, by their numbers."""
         self.on_prepared: BeforeCall = _nobody
         """Is told of each call that is prepared."""
         self.enter(REST)
@@ -155,6 +165,7 @@ class CallCache:
         self._in_stage.setdefault(stage, StageGroups())
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel, ready to run."""
+        self.ready.enter(stage)
 
     def accessed(self) -> Accesses:
         """Return what the calls of the present stage have accessed in L1 since this was asked last."""
@@ -177,7 +188,7 @@ class CallCache:
         call = self._prepared(kernel, arguments, was_traced=was_traced)
         rows_of, calls = self.known.setdefault(kernel, (kernel.arrays_of, {}))
         calls[rows_of(arguments)] = call
-        self._count += 1
+        self.made.append(call)
         self.on_prepared(kernel, arguments)
         return call
 
@@ -244,7 +255,7 @@ class CallCache:
             call = WatchedCall(call, kernel, self._before_call)
         return KnownCall(
             kernel.name,
-            self._count,
+            len(self.made),
             call.run,
             stays_in_l1=not (leaves_l1 or group.fetched),
             is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),

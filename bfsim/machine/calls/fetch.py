@@ -30,7 +30,7 @@ KeepRoutine = Callable[[int, int, int, int], None]
 class Runnable(Protocol):
     """A kernel bound to its rows."""
 
-    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+    def run(self, *arguments: Row | int) -> Work:
         """Run it."""
 
 
@@ -147,8 +147,8 @@ class FetchedCall:
     call: Runnable
     fetches: Fetches
 
-    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+    def run(self, *arguments: Row | int) -> Work:
         """Run the kernel now and say what it cost."""
-        work = self.call.run(arguments)
+        work = self.call.run(*arguments)
         work.accesses = self.fetches.add(work)
         return work

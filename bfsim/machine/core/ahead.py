@@ -22,13 +22,13 @@ from bfsim.kernel import Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import COUNTER_OF
-from bfsim.machine.bus.tape import COPY_WORDS, MOST_OPERATIONS
+from bfsim.machine.bus.tape_lines import COPY_WORDS, HEAD, NotedLines
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.in_step import InStep
 from bfsim.machine.core.interrupts import Handler
-from bfsim.machine.core.line_copies import Copy, LineCopies, Lines
+from bfsim.machine.core.line_copies import NO_COPY, Copy, LineCopies, Lines
 from bfsim.machine.core.progress import Away, Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
@@ -46,18 +46,19 @@ class CopiesAhead:
         self._ahead = ahead
         self._lines = lines
         self._in_step = in_step
-        self._table = np.full((len(lines), COPY_WORDS), w.NONE, np.int64)
-        self._note_program = ahead.programming(lines.owner, COPY_WRITES, COPY_READS)
-        self._note_copy = ahead.tape.copying(self._table)
-        self._note_wait: Callable[[Any], int] = ahead.tape.waiting(
-            COUNTER_OF[lines.reason], ahead.account_of(lines.owner)
-        )
+        words = np.full(HEAD + len(lines) * COPY_WORDS, w.NONE, np.int64)
+        cclk = ahead.programming_cclk(COPY_WRITES, COPY_READS)
+        why = ahead.account_of(lines.owner), COUNTER_OF[lines.reason]
+        words[:HEAD] = len(lines), *why, cclk, COPY_WRITES, COPY_READS
+        self._table = words[HEAD:].reshape(-1, COPY_WORDS)
+        self._noted = NotedLines(ahead.tape, words)
+        self.fetch, self.send = self._noted.fetch, self._noted.send
 
     def program(self) -> None:
         """Note it, or let its time pass."""
         ahead = self._ahead
         if ahead.runs_ahead or ahead.tape.noted:
-            self._note_program()
+            self._noted.program()
         else:
             self._in_step.program()
 
@@ -66,19 +67,17 @@ class CopiesAhead:
         ahead = self._ahead
         if not (ahead.runs_ahead or ahead.tape.noted):
             return self._in_step.copy(number)
-        copy = self._note_copy(number)
-        if copy == w.NONE:
+        copy = self._noted.copy(number)
+        if copy == NO_COPY:
             self._table[number] = ahead.planned(self._lines.stream, *self._lines.rows(number))
-            copy = self._note_copy(number)
+            copy = self._noted.copy(number)
         return copy
 
     def goes_on(self, copy: Copy) -> bool:
         """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""
-        ahead = self._ahead
-        if not ahead.runs_ahead:
-            return ahead.has(copy)
-        if self._note_wait(copy):
-            ahead.is_full = True
+        if not self._ahead.runs_ahead:
+            return self._ahead.has(copy)
+        self._noted.wait(copy)
         return True
 
 
@@ -100,7 +99,7 @@ class Ahead:
         self._access_trace = access_trace
         self._write_cclk, self._read_cclk = events.mmr_write_cclk, events.mmr_read_cclk
         self.tape = bus.tape(number)
-        self._meet = self.tape.noting(w.CATCH_UP)
+        self.tape.takes_calls = True
         self._owners: dict[str, int] = {}  # of accounts
         self._copies: dict[tuple[object, ...], CopiesAhead] = {}
         self._plans: dict[tuple[object, ...], int] = {}
@@ -110,23 +109,23 @@ class Ahead:
         """Begin anew: the clock is where the firmware is."""
         self.tape.clear()
         self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many operations
-        self.is_full = False
         self._access_trace.drop()
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the core must `sync` before it does more."""
+        return self.tape.is_full
 
     # ---- kernels
 
     def note_call(self, work: Work, call: KnownCall) -> None:  # noqa: ARG002
         """Note it."""
-        if self.tape.note_access(work.at):
-            self.is_full = True
+        self.tape.note_access(work.at)
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it behind what is noted, or charge it at once."""
-        noted = self.tape.note_run(work.at)
-        if not noted:
+        if not self.tape.note_run(work.at):
             self._in_step.charge_call(work, call)
-        elif noted > MOST_OPERATIONS:
-            self.is_full = True
 
     def play_call(self, work: Work, call: KnownCall) -> Wait:
         """Play it."""
@@ -146,8 +145,7 @@ class Ahead:
     def catch_up(self) -> simpy.Event | None:
         """Note that the core meets the simulated time, or meet it."""
         if self.runs_ahead:
-            if self._meet():
-                self.is_full = True
+            self.tape.note(w.CATCH_UP, 0, 0, 0, 0)
             return None
         return self._env.process(self.sync()) if self.tape.noted else self._in_step.catch_up()
 
@@ -165,15 +163,14 @@ class Ahead:
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Note it, or let its time pass."""
         if self.runs_ahead or self.tape.noted:
-            if self.programming(owner, writes, reads)():
-                self.is_full = True
+            cclk = self.programming_cclk(writes, reads)
+            self.tape.note(w.SET_UP, cclk, self.account_of(owner), writes, reads)
         else:
             self._in_step.program_device(owner, writes=writes, reads=reads)
 
-    def programming(self, owner: str, writes: int, reads: int) -> Callable[[], int]:
-        """Return what notes that."""
-        cclk = writes * self._write_cclk + reads * self._read_cclk
-        return self.tape.noting(w.SET_UP, cclk, self.account_of(owner), writes, reads)
+    def programming_cclk(self, writes: int, reads: int) -> int:
+        """Return how many cycles that takes."""
+        return writes * self._write_cclk + reads * self._read_cclk
 
     # ---- copies
 
@@ -232,7 +229,7 @@ class Ahead:
         self.stay_in_step()
         self.interrupts.source(source)  # a wrong one is told here
         self.when_there(partial(self._in_step.on_interrupt, source, handler))
-        self.is_full = bool(self.tape.noted)
+        self.tape.is_full = bool(self.tape.noted)
 
     def request_interrupt(self, source: str) -> None:
         """Ask for it when the clock is there."""
@@ -242,6 +239,7 @@ class Ahead:
     def stay_in_step(self) -> None:
         """Run ahead no more."""
         self.runs_ahead = False
+        self.tape.takes_calls = False
 
     # ---- stretches
 
@@ -253,7 +251,7 @@ class Ahead:
     def _play(self, noted: int) -> Wait:
         """Have the bus play so many operations, all in one."""
         with self.interrupts.held():  # no handler comes between,
-            self.is_full = False  # and no second play of the same
+            self.tape.is_full = False  # and no second play of the same
             stretches, owners, first = self._bus.stretches, list(self._owners), 0
             for end, what in (*self._moments, (noted, self._begin)):
                 if end > first:

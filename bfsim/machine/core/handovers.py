@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bfsim.errors import FirmwareError
 
 Gifts = dict[str, int]
@@ -19,8 +22,10 @@ class Handovers:
     """Who has given what away, and who knows of it: a vector clock (Mattern 1989) for each core and each thing that they wait for."""
 
     def __init__(self, cores: Iterable[str]) -> None:
-        self._known: dict[str, Gifts] = {core: dict.fromkeys(cores, 0) for core in cores}
-        """Of each core: the gifts that it knows of, and its own."""
+        self._given = {core: np.zeros(1, np.int64) for core in cores}
+        self._known: dict[str, Gifts] = {
+            core: {} for core in cores
+        }  # of each core: the others' gifts that it knows of
         self._carried: dict[str, Gifts] = {}
         self._users: dict[
             str, tuple[str, int]
@@ -28,9 +33,9 @@ class Handovers:
 
     def give(self, core: str, by: str) -> None:
         """Note that a core gives away what it has, by a semaphore, a lock or an interrupt."""
-        known = self._known[core]
-        known[core] += 1
-        self._carried[by] = _latest(self._carried.get(by, {}), known)
+        self._given[core] += 1
+        own = {core: int(self._given[core][0])}
+        self._carried[by] = _latest(self._carried.get(by, {}), self._known[core] | own)
 
     def take(self, core: str, by: str) -> None:
         """Note that a core has waited for a semaphore or a lock, or has been interrupted."""
@@ -38,15 +43,18 @@ class Handovers:
 
     def use(self, core: str, buffer: str) -> None:
         """Note that a core works on a buffer. Raises FirmwareError if another one may do so, too."""
-        known = self._known[core]
         user, gifts = self._users.get(buffer, (core, 0))
-        if user != core and known[user] <= gifts:
+        if user != core and self._known[core].get(user, 0) <= gifts:
             raise FirmwareError(
                 f"core {core} must not work on {buffer} while core {user} has it: the buffer is handed over (handed_over=True), "
                 f"but core {user} worked on it last, and core {core} has waited for nothing that core {user} has posted since. Wait "
                 f"for a semaphore first that core {user} posts when it is done, or declare {buffer} without handed_over"
             )
-        self._users[buffer] = core, known[core]
+        self._users[buffer] = core, int(self._given[core][0])
+
+    def turn_of(self, core: str) -> NDArray[np.int64]:
+        """Return how often a core has given away what it has, now and later: what it works on is its own until the next time."""
+        return self._given[core]
 
 
 def _latest(one: Gifts, other: Gifts) -> Gifts:

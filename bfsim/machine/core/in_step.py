@@ -30,6 +30,7 @@ class InStep:
     """`Progress` of a core that is never ahead."""
 
     runs_ahead = is_full = False
+    tape = None
     serve_interrupts: Callable[[], Wait]
     """Runs the handlers of the interrupts that wait: set by what plays the firmware."""
 

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import simpy
 
 from bfsim.kernel import Work
+from bfsim.machine.bus.tape import Tape
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.clock import CoreClock
@@ -34,8 +35,14 @@ class Progress(Protocol):
     """What the firmware has asked to wait for."""
     runs_ahead: bool
     """Whether calls that nobody else can meet are made as soon as the firmware asks for them."""
-    is_full: bool
-    """Whether the core must `sync` before it does more."""
+
+    @property
+    def tape(self) -> Tape | None:
+        """Where machine code notes calls that nobody else can meet."""
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the core must `sync` before it does more."""
 
     # ---- kernels
 

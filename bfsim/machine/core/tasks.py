@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from typing import Any, Protocol
 
 import simpy
@@ -12,14 +12,14 @@ from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.work import UNYIELDED
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork, KnownCall
+from bfsim.machine.core.asked import Asked
 from bfsim.machine.core.handovers import Handovers
 from bfsim.machine.core.progress import Progress, Wait
 from bfsim.machine.core.waits import name_of
 from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
+from bfsim.machine_code.asking import OVER
 from bfsim.trace import REST, StallReason
-
-Charge = Callable[[Work, KnownCall], None]
 
 
 class Run(Protocol):
@@ -30,7 +30,10 @@ class Run(Protocol):
 
 
 class Tasks:
-    """What the firmware of core `name` does, one thing after the other."""
+    """What the firmware of core `name` does, one thing after the other.
+
+    Calls that nobody can meet are made and noted by machine code (`machine_code.asking`); the others, and each for the first time, here.
+    """
 
     def __init__(
         self, name: str, progress: Progress, calls: CallCache, handovers: Handovers, events: EventSpec
@@ -41,56 +44,45 @@ class Tasks:
         self._calls = calls
         self._handovers = handovers
         self._events = events
-        self._unclaimed: Work | None = None
-        self._call: KnownCall  # the one that was asked for last,
-        self._charge: Charge | None  # and how it is charged, if it has been made:
-        self._charge_call, self._note_call = progress.charge_call, progress.note_call
+        self._asked = Asked(calls, progress.tape, handovers.turn_of(name), self._run)
+        self._work: Work  # of the call that was asked for last here
         self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
+        self.run: Run = self._asked.ask
+        """Runs a kernel now, or promises to: what it gives must be yielded next."""
         self.frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
 
-    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
-        """Run a kernel now, or promise to: what it gives must be yielded next."""
-        if self._unclaimed is not None:
-            self.check_claimed()
+    def _run(self, kernel: Kernel, *arguments: Row | int) -> Work:
+        """Run a kernel that machine code does not know, or promise to."""
+        self.check_claimed()
         try:
             rows_of, calls = self._calls.known[kernel]
             call = calls[rows_of(arguments)]
         except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
-        self._call = call
         for each in call.handed_over:
             self._handovers.use(self._name, each)
-        run = call.run
-        if call.stays_in_l1:
-            self._charge, work = self._charge_call, run(arguments)
-        elif call.is_alone and self._progress.runs_ahead:
-            self._charge, work = self._note_call, run(arguments)
+        self._asked.know(call, kernel, arguments)
+        if call.stays_in_l1 or (call.is_alone and self._progress.runs_ahead):
+            self._work = call.run(*arguments)
         else:  # it may meet what others do, and runs when the simulated time is there
-            self._charge, work = None, DeferredWork(call, arguments)
-        self._unclaimed = work
-        return work
+            self._work = DeferredWork(call, arguments)
+        self._asked.hold(self._work, call)
+        return self._work
 
     def perform(self, task: Generator[Any, Any, Any]) -> Wait:
         """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
         before, self._task = self._task, task
-        progress, interrupts, value = self._progress, self._interrupts, None
+        progress, interrupts, asked, value = self._progress, self._interrupts, self._asked, None
         while True:
             try:
-                item = task.send(value)
-            except StopIteration:
-                break
+                item = asked.go_on(task, value)
             except (Exception, SystemExit) as error:
                 raise self.told(error) from error
-            if item is self._unclaimed and item is not None:
-                self._unclaimed = None
-                if charge := self._charge:
-                    charge(item, self._call)
-                elif isinstance(item, DeferredWork):
-                    call = self._call
-                    yield from progress.sync()
-                    item = self._made(item, task)
-                    yield from progress.play_call(item, call)
+            if item is OVER:
+                break
+            if call := asked.claim(item):
+                item = yield from self._charged(item, call, task)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
@@ -101,6 +93,22 @@ class Tasks:
         self.check_claimed()
         self._check_waits(task)
         self._task = before
+
+    def _charged(
+        self, work: Work, call: KnownCall, task: Generator[Any, Any, Any]
+    ) -> Generator[Any, Any, Work]:
+        """Charge a call that `task` has yielded, unless that is done, and return what it left."""
+        if self._asked.is_noted:
+            return work
+        if isinstance(work, DeferredWork):
+            yield from self._progress.sync()
+            work = self._made(work, task)
+            yield from self._progress.play_call(work, call)
+        elif call.stays_in_l1:
+            self._progress.charge_call(work, call)
+        else:
+            self._progress.note_call(work, call)
+        return work
 
     def idle(self) -> Wait:
         """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
@@ -136,10 +144,10 @@ class Tasks:
 
     def check_claimed(self) -> None:
         """Raise FirmwareError if a call was not yielded."""
-        if self._unclaimed is not None:
+        if call := self._asked.unclaimed:
             raise FirmwareError(
                 f"core {self._name}: core.run(...) must be yielded, or its cycles are lost: "
-                f"write `yield core.run({self._call.name}, ...)`"
+                f"write `yield core.run({call.name}, ...)`"
             )
 
     def describe_wait(self) -> str:
@@ -162,7 +170,7 @@ class Tasks:
         what = f"{type(error).__name__}: {error}"
         if forgotten := self._progress.waits.forgotten():
             return FirmwareError(f"{forgotten} ({what}){line}")
-        if self._unclaimed is not None:
+        if self._asked.unclaimed:
             return FirmwareError(f"core {self._name}: {UNYIELDED} ({what}){line}")
         return FirmwareError(f"core {self._name}: firmware failed with {what}{line}")
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
 from bfsim.errors import FirmwareError
-from bfsim.machine.core.line_copies import Copy, Lines
+from bfsim.machine.core.line_copies import NO_COPY, Copy, Lines
 from bfsim.machine.core.progress import Progress
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
@@ -47,14 +47,23 @@ class InputRing:
         self._rows = rows
         self._on_line = on_line
         self._owner = f"ring {rows[0].buffer}"
-        self._lines = progress.copies(Lines(stream, tuple(image), tuple(rows), self._owner, EMPTY))
         self._height, self._depth = len(image), len(rows)
+        used = tuple(rows[: self._height])
+        self._lines = progress.copies(Lines(stream, tuple(image), used, self._owner, EMPTY))
         self._taken = 0
-        self._coming: Copy | None = None  # the next line
+        self._coming: Copy = NO_COPY  # the next line
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        progress, lines, number = self._progress, self._lines, self._taken
+        number = self._taken
+        if self._progress.runs_ahead and (coming := self._lines.fetch(number, self._coming)) != NO_COPY:
+            self._taken, self._coming = number + 1, coming
+            return self._rows[number % self._depth]
+        return (yield from self._waited_for(number))
+
+    def _waited_for(self, number: int) -> Generator[Any, Any, Row]:
+        """Do that step by step, for a core that has to wait for each, or whose copies are not known yet."""
+        progress, lines = self._progress, self._lines
         if late := progress.catch_up():
             yield late
         if number == self._height:
@@ -66,9 +75,9 @@ class InputRing:
         if timeline:
             self._on_line(number, self._height)
         lines.program()
-        copy = lines.copy(number) if self._coming is None else self._coming
+        copy = lines.copy(number) if self._coming == NO_COPY else self._coming
         # one line ahead: its row is the one that the core gave up with this call
-        self._coming = lines.copy(number + 1) if number + 1 < self._height else None
+        self._coming = lines.copy(number + 1) if number + 1 < self._height else NO_COPY
         progress.settle()
         is_there = lines.goes_on(copy)
         if timeline:
@@ -98,8 +107,9 @@ class OutputRing:
         self._image = image
         self._rows = rows
         self._owner = f"ring {rows[0].buffer}"
-        self._lines = progress.copies(Lines(stream, tuple(rows), tuple(image), self._owner, FULL))
         self._height, self._depth = len(image), len(rows)
+        used = tuple(rows[: self._height])
+        self._lines = progress.copies(Lines(stream, used, tuple(image), self._owner, FULL))
         self._copies: list[Copy] = []
         self._waits = progress.waits
 
@@ -113,6 +123,9 @@ class OutputRing:
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
         progress, number = self._progress, len(self._copies)
+        if progress.runs_ahead and (copy := self._lines.send(number)) != NO_COPY:
+            self._copies.append(copy)
+            return
         if number == self._height:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"

@@ -26,6 +26,7 @@ class RecordedAhead(Ahead):
 
     def __init__(self, *parts: Any) -> None:
         super().__init__(*parts)
+        self.tape.takes_calls = False
         self.notes = WorkNotes(self._name, self._bus.owners)
         self.is_paused = False
         self.is_too_late = False

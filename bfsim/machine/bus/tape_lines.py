@@ -1,0 +1,119 @@
+"""The lines of a ring on the tape of a core that runs ahead, compiled: their copies are done, and noted with all that belongs to them.
+
+Of a ring there are words: HEAD of them, and behind these COPY_WORDS of each line.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.state import State
+from bfsim.machine.bus.tape import Tape, write
+from bfsim.machine_code.built_in import built_in
+
+(COUNT, ACCOUNT, REASON, SET_UP_CCLK, SET_UP_WRITES, SET_UP_READS) = range(6)
+"""How many lines, the account of the ring, why a wait for one is a stall, and how long it takes to program the stream, with how many
+writes and reads of registers."""
+HEAD = 6
+(PLAN, FROM, TO, NUMBER, NBYTES) = range(5)
+"""Of a copy: its plan, NONE if it has none yet, where it begins to read and to write, what is noted behind that, and how long it is."""
+COPY_WORDS = 5
+
+
+@native
+def has_plan(lines: State, number: int) -> bool:
+    """Whether a line's copy has its plan already."""
+    return lines[HEAD + number * COPY_WORDS + PLAN] != w.NONE
+
+
+@native
+def program(state: State, core: int, lines: State) -> int:
+    """Note that the stream is programmed; return how many operations there are."""
+    cclk, writes, reads = lines[SET_UP_CCLK], lines[SET_UP_WRITES], lines[SET_UP_READS]
+    return write(state, core, w.SET_UP, cclk, lines[ACCOUNT], writes, reads)
+
+
+@native
+def copy(state: State, memory: State, core: int, lines: State, number: int) -> int:
+    """Do a line's copy, which has a plan; return the how-manieth of the core it is."""
+    tape, at = w.TAPES_AT + core * w.TAPE_WORDS, HEAD + number * COPY_WORDS
+    first, to = lines[at + FROM], lines[at + TO]
+    for octet in range(lines[at + NBYTES]):
+        memory[to + octet] = memory[first + octet]
+    write(state, core, w.COPY, lines[at + PLAN], first, to, lines[at + NUMBER])
+    state[tape + w.NOTED_COPIES] += 1
+    return state[tape + w.NOTED_COPIES] - 1
+
+
+@native
+def wait(state: State, core: int, lines: State, copied: int) -> int:
+    """Note that the core waits for the how-manieth of its copies; return how many operations there are."""
+    back = state[w.TAPES_AT + core * w.TAPE_WORDS + w.NOTED_COPIES] - copied
+    return write(state, core, w.AWAIT, back, lines[REASON], lines[ACCOUNT], 0)
+
+
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*")
+def note_program(state_at: Any, _memory_at: Any, core: int, lines_at: Any) -> int:
+    """Note that the stream is programmed; return how many operations there are."""
+    return program(words_at(state_at), core, words_at(lines_at))
+
+
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
+def note_copy(state_at: Any, memory_at: Any, core: int, lines_at: Any, number: int) -> int:
+    """Do the copy of a line; return the how-manieth of the core it is, or NONE if it has no plan yet."""
+    state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
+    return copy(state, memory, core, lines, number) if has_plan(lines, number) else w.NONE
+
+
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
+def note_wait(state_at: Any, _memory_at: Any, core: int, lines_at: Any, copied: int) -> int:
+    """Note that the core waits for the how-manieth of its copies; return how many operations there are."""
+    return wait(words_at(state_at), core, words_at(lines_at), copied)
+
+
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64", "int64")
+def note_fetch(state_at: Any, memory_at: Any, core: int, lines_at: Any, number: int, coming: int) -> int:
+    """Do all that takes a line: meet the others, program the stream, have the next line copied, and wait for this one.
+
+    `coming`: its copy, NONE if it is not on its way. Returns that of the next line, of the last one its own; NONE if one has no plan
+    yet, and nothing is done.
+    """
+    state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
+    following = number + 1
+    if following > lines[COUNT] or not has_plan(lines, number):
+        return w.NONE
+    if following < lines[COUNT] and not has_plan(lines, following):
+        return w.NONE
+    write(state, core, w.CATCH_UP, 0, 0, 0, 0)
+    program(state, core, lines)
+    copied = copy(state, memory, core, lines, number) if coming == w.NONE else coming
+    next_one = copy(state, memory, core, lines, following) if following < lines[COUNT] else copied
+    wait(state, core, lines, copied)
+    return next_one
+
+
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
+def note_send(state_at: Any, memory_at: Any, core: int, lines_at: Any, number: int) -> int:
+    """Program the stream, and have a line copied; return its copy, or NONE if it has no plan yet, and nothing is done."""
+    state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
+    if number >= lines[COUNT] or not has_plan(lines, number):
+        return w.NONE
+    program(state, core, lines)
+    return copy(state, memory, core, lines, number)
+
+
+class NotedLines:
+    """The lines of a ring on a tape: each function as above, a built-in one, told what is left to be told."""
+
+    def __init__(self, tape: Tape, words: NDArray[np.int64]) -> None:
+        at = *tape.at, words.ctypes.data
+        self.program = built_in(note_program.address(), 0, *at)
+        self.copy = built_in(note_copy.address(), 1, *at)
+        self.wait = built_in(note_wait.address(), 1, *at)
+        self.fetch = built_in(note_fetch.address(), 2, *at)
+        self.send = built_in(note_send.address(), 1, *at)

@@ -1,0 +1,126 @@
+"""The calls of a core that machine code finds, compiled: by the addresses of the kernel and the rows that firmware hands over.
+
+Nobody can meet these calls: they are made as soon as the firmware asks for them (`machine_code.asking`). What is not found here Python
+looks for, and lays it here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from bfsim.kernel import Kernel
+from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.machine.bus.state import State
+
+ALWAYS = -1
+"""In place of a turn: the call can be made in each."""
+
+STAGE, FREE, COUNT = range(3)
+"""Of the table: the stage whose calls are found, where the next call has room, and how many there are."""
+KERNELS_AT, MOST_KERNELS = 3, 1 << 9  # each kernel, and which of its arguments are rows: a bit each
+PLACES_AT, PLACES = (
+    KERNELS_AT + 2 * MOST_KERNELS,
+    1 << 13,
+)  # where each call stands: the first free place behind its own
+CALLS_AT, ROOM = PLACES_AT + PLACES, 1 << 16
+OF_STAGE, TURN, NOTE, BLOCK, NUMBER, GIVEN, ARGUMENTS = range(7)
+"""Of a call: its stage, the turn in which it can be made, three words of what is asked for, how many arguments, and the kernel and its
+rows among these, 0 for numbers."""
+MOST_ARGUMENTS = 32
+SAME_BITS = 4
+"""Of an address, that are the same for all objects."""
+
+
+@native
+def kernel_at(table: State, kernel: int) -> int:
+    """Return where a kernel stands, or the place for it."""
+    place = kernel >> SAME_BITS & MOST_KERNELS - 1
+    while table[KERNELS_AT + 2 * place] not in (0, kernel):
+        place = place + 1 & MOST_KERNELS - 1
+    return KERNELS_AT + 2 * place
+
+
+@native
+def place_of(table: State, arguments: State, count: int) -> int:
+    """Return where it says where a call stands, or the first free place for it."""
+    rows = table[kernel_at(table, arguments[0]) + 1]
+    place = (arguments[0] >> SAME_BITS) + table[STAGE]
+    for number in range(1, count):
+        if rows >> number & 1:
+            place = 31 * (place & PLACES - 1) + (arguments[number] >> SAME_BITS)
+    place &= PLACES - 1
+    while table[PLACES_AT + place] and not is_at(table, table[PLACES_AT + place], arguments, count):
+        place = place + 1 & PLACES - 1
+    return PLACES_AT + place
+
+
+@native
+def is_at(table: State, call: int, arguments: State, count: int) -> bool:
+    """Whether a call is that with these arguments."""
+    if table[call + OF_STAGE] != table[STAGE] or table[call + GIVEN] != count:
+        return False
+    for number in range(count):  # noqa: SIM110  # numba knows no generator
+        if table[call + ARGUMENTS + number] not in (0, arguments[number]):
+            return False
+    return True
+
+
+@native_entry("int64", "int64*", "int64*", "int64", "int64")
+def find_call(table_at: Any, arguments_at: Any, count: int, turn: int) -> int:
+    """Return where what was asked for stands, of a call that can be made in this turn; else 0."""
+    table, arguments = words_at(table_at), words_at(arguments_at)
+    if not 0 < count <= MOST_ARGUMENTS:
+        return 0
+    call = table[place_of(table, arguments, count)]
+    if call and table[call + TURN] in (ALWAYS, turn):
+        return int(call + NOTE)
+    return 0
+
+
+class ReadyCalls:
+    """The table of one core."""
+
+    def __init__(self) -> None:
+        self._table = np.zeros(CALLS_AT + ROOM, np.int64)
+        self._words: Any = self._table.data
+        self._words[FREE] = CALLS_AT
+        self._stages: dict[str, int] = {}
+        self._kernels = 0
+        self.at: int = self._table.ctypes.data
+        """Its address."""
+
+    def enter(self, stage: str) -> None:
+        """Have the calls of a stage found from now on."""
+        self._words[STAGE] = self._stages.setdefault(stage, len(self._stages))
+
+    def lay(self, kernel: Kernel, arguments: Sequence[Any], turn: int, asked: Sequence[int]) -> None:
+        """Have a call found, with three words of what is `asked` for then. What it is told by must live as long as this."""
+        words, count = self._words, 1 + len(arguments)
+        if count > MOST_ARGUMENTS:
+            return
+        if words[COUNT] == PLACES // 2 or words[FREE] + ARGUMENTS + count > len(words):
+            self._clear()
+        at = kernel_at(words, id(kernel))
+        if not words[at]:
+            if self._kernels == MOST_KERNELS // 2:
+                return
+            self._kernels += 1
+            words[at], words[at + 1] = id(kernel), sum(2 << each for each in kernel.array_positions)
+        told = [id(kernel), *map(id, arguments)]
+        place = place_of(words, told, count)
+        call = words[place]
+        if not call:
+            call = words[place] = words[FREE]
+            words[FREE] += ARGUMENTS + count
+            words[COUNT] += 1
+            by_address = [each if words[at + 1] >> number & 1 else 0 for number, each in enumerate(told)]
+            self._table[call : words[FREE]] = words[STAGE], turn, *asked, count, id(kernel), *by_address[1:]
+        words[call + TURN] = turn
+
+    def _clear(self) -> None:
+        """Begin anew: what is asked for comes again."""
+        self._table[PLACES_AT:CALLS_AT] = 0
+        self._words[FREE], self._words[COUNT] = CALLS_AT, 0
