@@ -133,8 +133,8 @@ def loaded(code: bytes) -> llvm.ExecutionEngine:
     return engine
 
 
-METH_FASTCALL, METH_O = 0x80, 0x08
-"""CPython: a function gets its `self`, and the address of its arguments and their number, or its only argument."""
+METH_FASTCALL, METH_KEYWORDS = 0x80, 0x02
+"""CPython: a function gets its `self`, and the address of its arguments and their number; and the names of some of them."""
 
 
 class _Method(ctypes.Structure):

@@ -20,6 +20,20 @@ def built_in(address: int, taken: int, *bound: int) -> Callable[..., int]:
 
 
 @cache
+def idle() -> Callable[..., None]:
+    """Return a function that takes anything and does nothing."""
+    machine_code.add(
+        native_code(
+            "@_Py_NoneStruct = external global i8\ndeclare void @Py_IncRef(ptr)\n"
+            "define ptr @bfsim_idle(ptr %self, ptr %objects, i64 %handed, ptr %names) {\n"
+            "  call void @Py_IncRef(ptr @_Py_NoneStruct)\n  ret ptr @_Py_NoneStruct\n}"
+        )
+    )
+    flags = machine_code.METH_FASTCALL | machine_code.METH_KEYWORDS
+    return machine_code.python_function(machine_code.address_of("bfsim_idle"), b"", flags)
+
+
+@cache
 def _caller(bound: int, taken: int) -> int:
     """Return the address of what calls a function with so many integers for Python."""
     name = f"bfsim_call_{bound}_{taken}"

@@ -42,42 +42,41 @@ MOST_COPIES = 1 << 10
 class CopiesAhead:
     """`LineCopies` of a core that runs ahead: bytes are moved at once, and it is noted when that was asked for."""
 
-    def __init__(self, ahead: Ahead, lines: Lines, in_step: LineCopies) -> None:
-        self._ahead = ahead
+    def __init__(self, core: Ahead, lines: Lines, in_step: LineCopies) -> None:
+        self._core = core
         self._lines = lines
         self._in_step = in_step
         words = np.full(HEAD + len(lines) * COPY_WORDS, w.NONE, np.int64)
-        cclk = ahead.programming_cclk(COPY_WRITES, COPY_READS)
-        why = ahead.account_of(lines.owner), COUNTER_OF[lines.reason]
+        cclk = core.programming_cclk(COPY_WRITES, COPY_READS)
+        why = core.account_of(lines.owner), COUNTER_OF[lines.reason]
         words[:HEAD] = len(lines), *why, cclk, COPY_WRITES, COPY_READS
         self._table = words[HEAD:].reshape(-1, COPY_WORDS)
-        self._noted = NotedLines(ahead.tape, words)
-        self.fetch, self.send = self._noted.fetch, self._noted.send
+        self.ahead = NotedLines(core.tape, words)
 
     def program(self) -> None:
         """Note it, or let its time pass."""
-        ahead = self._ahead
-        if ahead.runs_ahead or ahead.tape.noted:
-            self._noted.program()
+        core = self._core
+        if core.runs_ahead or core.tape.noted:
+            self.ahead.program()
         else:
             self._in_step.program()
 
     def copy(self, number: int) -> Copy:
         """Copy at once."""
-        ahead = self._ahead
-        if not (ahead.runs_ahead or ahead.tape.noted):
+        core = self._core
+        if not (core.runs_ahead or core.tape.noted):
             return self._in_step.copy(number)
-        copy = self._noted.copy(number)
+        copy = self.ahead.copy(number)
         if copy == NO_COPY:
-            self._table[number] = ahead.planned(self._lines.stream, *self._lines.rows(number))
-            copy = self._noted.copy(number)
+            self._table[number] = core.planned(self._lines.stream, *self._lines.rows(number))
+            copy = self.ahead.copy(number)
         return copy
 
     def goes_on(self, copy: Copy) -> bool:
         """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""
-        if not self._ahead.runs_ahead:
-            return self._ahead.has(copy)
-        self._noted.wait(copy)
+        if not self._core.runs_ahead:
+            return self._core.has(copy)
+        self.ahead.wait(copy)
         return True
 
 

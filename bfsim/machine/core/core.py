@@ -23,6 +23,7 @@ from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
+from bfsim.machine_code.built_in import idle
 
 SPI = "SPI"
 """The peripheral that is meant where firmware names none."""
@@ -35,6 +36,8 @@ class Core:
         self._parts = parts
         self._waits = parts.progress.waits
         self._tasks, self._pictures = parts.tasks, parts.pictures  # firmware asks for these most
+        if not parts.clock.timeline:
+            self.at = idle()  # type: ignore[method-assign]  # nobody looks, and firmware says it all the time
         self.name = parts.name
         """Name of the core: A or B."""
 

@@ -84,11 +84,11 @@ class Layouts:
             raise FirmwareError(
                 f"a part of rows of {length} elements must lie in them, not at {first} to {first + count - 1}"
             )
+        if count == len(rows[0].array) and all(each.nbytes == rows[0].nbytes for each in rows):
+            return tuple(rows)  # nothing is cut off
         return tuple(self._part(row, first, count) for row in rows)
 
     def _part(self, row: Row, first: int, count: int) -> Row:
-        if count == len(row.array):
-            return row
         if (row, first, count) not in self._parts:
             skipped = first * row.array.itemsize
             self._parts[row, first, count] = Row(

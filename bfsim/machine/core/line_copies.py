@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.tape_lines import NotedLines
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.dma.mdma import MdmaStream
@@ -51,19 +51,11 @@ class Lines:
 
 
 class LineCopies(Protocol):
-    """The copies of lines, as a core has them done.
-
-    The first two do all that belongs to a line at once, of a core that runs ahead. Where they return NO_COPY they have done nothing, and
-    the others must do it.
-    """
+    """The copies of lines, as a core has them done."""
 
     @property
-    def fetch(self) -> Callable[[int, Any], int]:
-        """Take line `number`, whose copy is on its way unless it is NO_COPY; return the copy of the next line, which is on its way then."""
-
-    @property
-    def send(self) -> Callable[[int], int]:
-        """Have line `number` copied; return the copy."""
+    def ahead(self) -> NotedLines | None:
+        """What does all that belongs to a line at once, while the core runs ahead. What it has not done must be done step by step."""
 
     def program(self) -> None:
         """Program the stream."""
@@ -78,17 +70,11 @@ class LineCopies(Protocol):
 class CopiesInStep:
     """`LineCopies` of a core in step with the simulated time, by its clock."""
 
+    ahead = None
+
     def __init__(self, lines: Lines, clock: CoreClock) -> None:
         self._lines = lines
         self._clock = clock
-
-    def fetch(self, number: int, coming: Copy) -> int:  # noqa: ARG002
-        """Do nothing: the core is not ahead."""
-        return NO_COPY
-
-    def send(self, number: int) -> int:  # noqa: ARG002
-        """Do nothing: the core is not ahead."""
-        return NO_COPY
 
     def program(self) -> None:
         """Let the time of the registers pass."""

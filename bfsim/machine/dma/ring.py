@@ -50,19 +50,22 @@ class InputRing:
         self._height, self._depth = len(image), len(rows)
         used = tuple(rows[: self._height])
         self._lines = progress.copies(Lines(stream, tuple(image), used, self._owner, EMPTY))
+        self._ahead = self._lines.ahead
         self._taken = 0
         self._coming: Copy = NO_COPY  # the next line
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
         number = self._taken
-        if self._progress.runs_ahead and (coming := self._lines.fetch(number, self._coming)) != NO_COPY:
-            self._taken, self._coming = number + 1, coming
-            return self._rows[number % self._depth]
+        if (ahead := self._ahead) and self._progress.runs_ahead:
+            coming = ahead.fetch(number, self._coming)
+            if coming != NO_COPY:
+                self._taken, self._coming = number + 1, coming
+                return self._rows[number % self._depth]
         return (yield from self._waited_for(number))
 
     def _waited_for(self, number: int) -> Generator[Any, Any, Row]:
-        """Do that step by step, for a core that has to wait for each, or whose copies are not known yet."""
+        """Do that step by step: the core is in step, or the copies come for the first time."""
         progress, lines = self._progress, self._lines
         if late := progress.catch_up():
             yield late
@@ -110,20 +113,25 @@ class OutputRing:
         self._height, self._depth = len(image), len(rows)
         used = tuple(rows[: self._height])
         self._lines = progress.copies(Lines(stream, used, tuple(image), self._owner, FULL))
+        self._ahead = self._lines.ahead
         self._copies: list[Copy] = []
         self._waits = progress.waits
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
         number, depth = len(self._copies), self._depth
-        if number >= depth and self._must_wait(self._copies[number - depth]):
-            yield from self._progress.wait_transfer(self._copies[number - depth], FULL, self._owner)
+        if number >= depth:
+            copy = self._copies[number - depth]
+            if (ahead := self._ahead) and self._progress.runs_ahead:
+                ahead.wait(copy)
+            elif self._must_wait(copy):
+                yield from self._progress.wait_transfer(copy, FULL, self._owner)
         return self._rows[number % depth]
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
         progress, number = self._progress, len(self._copies)
-        if progress.runs_ahead and (copy := self._lines.send(number)) != NO_COPY:
+        if (ahead := self._ahead) and progress.runs_ahead and (copy := ahead.send(number)) != NO_COPY:
             self._copies.append(copy)
             return
         if number == self._height:

@@ -206,22 +206,24 @@ def scan(
     )
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
     joined = core.array("joined_colours")
+    gauss_row = gauss3_row if reach == 1 else gauss5_row
+    gains = () if thresholds.is_balanced else thresholds.gains
+    limits, least = thresholds.colour_limits, thresholds.edge_threshold
     rim = [core.array(f"sighted_{end}") for end in ("first", "last") if core.has_buffer(f"sighted_{end}")]
     for y in range(height + reach + 2):
         if y < height:
             core.at(y)
             line = yield from camera.line()
             yield core.run(grey_row, line, grey[y])
-            if not thresholds.is_balanced:
-                yield core.run(balance_row, line, *thresholds.gains)
+            if gains:
+                yield core.run(balance_row, line, *gains)
             row = yield from colours.row()
-            yield core.run(colour_row, line, atan, joined, row, *thresholds.colour_limits)
+            yield core.run(colour_row, line, atan, joined, row, *limits)
             colours.send()
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2
         if 0 <= smoothed < height:
             core.at(smoothed)
-            gauss_row = gauss3_row if reach == 1 else gauss5_row
             yield core.run(gauss_row, *window(grey, smoothed, height, reach), smooth[smoothed])
         if 0 <= sloped < height:
             core.at(sloped)
@@ -232,7 +234,7 @@ def scan(
             core.at(done)
             near = window(magnitude, done, height)
             edges = yield from found.row()
-            yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
+            yield core.run(suppress_row, *near, direction[done], edges, least)
             if rim:
                 yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
             yield from found.add(done, edges, direction[done])

@@ -125,6 +125,8 @@ class Candidates:
     store: tuple[Row, Row, Row]
     levels: Row
     least: Row
+    band_edges: Row
+    gradients: Row
     outward: OutputRing
 
     @classmethod
@@ -132,7 +134,8 @@ class Candidates:
         """Return those of a core."""
         outward = core.output_ring("candidate_ring", core.rows("edge_candidates"))
         levels, *_ = core.overlay("segments", u16, BANDS * LEVELS)  # the lines come later
-        return cls(core, height, edge_store(core), levels, core.array("least_gradients"), outward)
+        tables = levels, core.array("least_gradients"), core.array("band_edges")
+        return cls(core, height, edge_store(core), *tables, core.rows("edge_ring")[0], outward)
 
     def band(self, y: int) -> int:
         """Return the band that a row belongs to."""
@@ -141,12 +144,12 @@ class Candidates:
     def begin(self) -> Generator[Any, Any, None]:
         """Begin a picture."""
         yield self.core.run(clear_levels, self.levels)
-        yield self.core.run(clear_levels, self.core.array("band_edges"))
+        yield self.core.run(clear_levels, self.band_edges)
 
     def row(self) -> Generator[Any, Any, Row]:
         """Return the row for gradients: the same one for each line, since they go no further."""
         yield from ()
-        return self.core.rows("edge_ring")[0]
+        return self.gradients
 
     def add(self, y: int, gradients: Row, directions: Row) -> Generator[Any, Any, None]:
         """Keep the edges of row `y` as candidates: its pixels with a gradient."""
@@ -171,7 +174,7 @@ class Candidates:
             self.least,
             self.band(y),
             *self.store,
-            self.core.array("band_edges"),
+            self.band_edges,
             y,
             found,
         )

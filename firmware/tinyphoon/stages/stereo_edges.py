@@ -138,13 +138,22 @@ def _disparity_rows(core: Core, element: Any, columns: int) -> tuple[Row, ...]:
     return (*left, *right, *core.overlay("edge_ring", element, columns))[:WINDOW_ROWS]
 
 
+def _windows(rows: tuple[Row, ...]) -> tuple[tuple[Row, ...], ...]:
+    """Return for each row of a ring those around it and, in their middle, itself."""
+    steps = range(-REACH, REACH + 1)
+    return tuple(
+        tuple(rows[(middle + step) % WINDOW_ROWS] for step in steps) for middle in range(WINDOW_ROWS)
+    )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Search:
     """The search for the disparities of left edges, row by row from the bottom of the picture.
 
     They are found in two steps: `match` asks the edges, and `settle`, `delay` rows later, the disparities around; the
     thesis's way has the first one only, and one row of disparities: those around stay empty. `least` and `most` are the
-    disparities that are wanted, in pixels.
+    disparities that are wanted, in pixels; `around`: the rows of disparities around each of WINDOW_ROWS and, in their middle, its own;
+    `is_mutual`: whether it is our way.
     """
 
     core: Core
@@ -156,8 +165,9 @@ class _Search:
     partners: Row
     scores: tuple[Row, ...]
     path: tuple[Row, Row, Row]
-    disparities: tuple[Row, ...]
+    around: tuple[tuple[Row, ...], ...]
     words: tuple[Row, ...]
+    is_mutual: bool
 
     @classmethod
     def of(cls, core: Core, frame: Frame, thresholds: StereoEdgeThresholds, least: int, most: int) -> _Search:
@@ -165,28 +175,21 @@ class _Search:
         _, *scores = core.overlay(_SCORES, u16, frame.width)
         values, *_ = core.overlay("camera_ring", i32, frame.width)
         ends, *_ = core.overlay("grey_ring", u16, frame.width)
+        around = _windows(_disparity_rows(core, i16, frame.width))
+        is_mutual = thresholds.correspondence is Correspondence.MUTUAL
         return cls(
             core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), thresholds=thresholds,
             height=frame.height, least=least, most=most, partners=partners, scores=tuple(scores),
             path=(values, ends, core.array("edge_groups")),
-            disparities=_disparity_rows(core, i16, frame.width),
+            around=around if is_mutual else WINDOW_ROWS * around[:1],
             words=_disparity_rows(core, u32, frame.width // 2),
+            is_mutual=is_mutual,
         )  # fmt: skip
-
-    @property
-    def is_mutual(self) -> bool:
-        """Whether it is our way."""
-        return self.thresholds.correspondence is Correspondence.MUTUAL
 
     @property
     def delay(self) -> int:
         """How many rows later a row is settled than matched."""
         return REACH if self.is_mutual else 0
-
-    def around(self, y: int) -> list[Row]:
-        """Return the disparities of the rows around row `y` and, in their middle, its own."""
-        middle = y if self.is_mutual else 0
-        return [self.disparities[(middle + step) % WINDOW_ROWS] for step in range(-REACH, REACH + 1)]
 
     def open(self) -> Generator[Any, Any, None]:
         """Begin below the picture."""
@@ -215,12 +218,12 @@ class _Search:
             yield self.core.run(match_edges, *left, *right, *self.rows.windows, slot, *room, *limits)
         else:
             yield self.core.run(match_nearest, *left, *right, self.partners, limit, self.least, self.most)
-        yield self.core.run(place_disparities, *left, right[0], self.partners, self.around(y)[REACH])
+        yield self.core.run(place_disparities, *left, right[0], self.partners, self.around[slot][REACH])
 
     def settle(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row]]:
         """Return the edges of the left picture in row `y`, how many, and their disparities."""
         left = yield from self.rows.take_left(y)
-        around = self.around(y)
+        around = self.around[y % WINDOW_ROWS]
         if self.is_mutual:
             right = self.rows.right_window_rows[y % WINDOW_ROWS]
             yield self.core.run(believe_edges, *left, *around, right)
@@ -233,7 +236,7 @@ class _Search:
     def means(self, y: int, left: Row, count: int) -> Generator[Any, Any, Row]:
         """Return the disparities of the `count` edges of a settled row, in 1/16 px: the means with those around."""
         means = self.partners  # which have been placed
-        yield self.core.run(mean_disparities, left, count, *self.around(y), means)
+        yield self.core.run(mean_disparities, left, count, *self.around[y % WINDOW_ROWS], means)
         return means
 
 

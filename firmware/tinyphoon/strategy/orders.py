@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -168,14 +169,21 @@ def read_mode(core: Core) -> Generator[Any, Any, Mode]:
 
 def mode_in(mode: NDArray[np.int32], models: NDArray[np.int32]) -> Mode:
     """Return the mode and the models that are in memory."""
-    known = tuple(_model(each) for each in models.reshape(-1, MODEL_WORDS) if each[MODEL_NUMBER])
-    ordered = from_words(INDOOR_FIELD, mode.tolist())
+    return _mode_of(tuple(mode.tolist()), tuple(models.tolist()))
+
+
+@lru_cache(maxsize=4)
+def _mode_of(mode: tuple[int, ...], models: tuple[int, ...]) -> Mode:
+    """Return those of these words: nearly always those of the frame before."""
+    each_words = (models[first : first + MODEL_WORDS] for first in range(0, len(models), MODEL_WORDS))
+    known = tuple(_model(each) for each in each_words if each[MODEL_NUMBER])
+    ordered = from_words(INDOOR_FIELD, mode)
     blobs = replace(ordered.blobs, colour_groups=colour_groups(known))
     return replace(ordered, blobs=blobs, models=known)
 
 
-def _model(words: NDArray[np.int32]) -> ObjectModel:
-    model = from_words(MODELS[0], words.tolist())
+def _model(words: tuple[int, ...]) -> ObjectModel:
+    model = from_words(MODELS[0], words)
     names = {each.number: each.name for each in MODELS}
     return replace(model, name=names.get(model.number) or _what_it_is(model))
 
