@@ -7,6 +7,7 @@ import re
 import sys
 import sysconfig
 import traceback
+from functools import cache
 from itertools import takewhile
 from pathlib import Path
 from types import FrameType
@@ -29,10 +30,15 @@ TASKS = str(Path(__file__).parent / "core" / "tasks.py")
 """What goes on with the generators of the firmware."""
 
 
+@cache
+def _is_firmware(file: str) -> bool:
+    return not NOT_FIRMWARE.match(file)
+
+
 def running_line(of: FrameType | None = None) -> str:
     """Return the innermost line of the firmware that has called here, or what runs in a frame of Python, such as firmware/core_a.py:41."""
     frame = of or sys._getframe()  # noqa: SLF001  # the way to one's callers
-    while frame.f_back is not None and NOT_FIRMWARE.match(frame.f_code.co_filename):
+    while frame.f_back is not None and not _is_firmware(frame.f_code.co_filename):
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
 
@@ -48,7 +54,7 @@ def line_at(task: Any) -> str:
     place = ""
     while task is not None and getattr(task, "gi_frame", None) is not None:
         code = task.gi_frame.f_code
-        if not NOT_FIRMWARE.match(code.co_filename):
+        if _is_firmware(code.co_filename):
             place = f" ({code.co_filename}:{task.gi_frame.f_lineno})"
         task = task.gi_yieldfrom
     return place
@@ -59,12 +65,12 @@ def line_at_work(interruption: KeyboardInterrupt) -> str:
     calls = traceback.extract_tb(interruption.__traceback__)
     tasks = [number for number, each in enumerate(calls) if each.filename == TASKS and each.name == "perform"]
     called = calls[tasks[-1] + 1 :] if tasks else []
-    own = list(takewhile(lambda each: not NOT_FIRMWARE.match(each.filename), called))
+    own = list(takewhile(lambda each: _is_firmware(each.filename), called))
     return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
 
 
 def line_of(error: BaseException) -> str:
     """Return the innermost line of the firmware that `error` came through, as ` (file:line)`; nothing if none."""
     calls = traceback.extract_tb(error.__traceback__)
-    places = [f"{each.filename}:{each.lineno}" for each in calls if not NOT_FIRMWARE.match(each.filename)]
+    places = [f"{each.filename}:{each.lineno}" for each in calls if _is_firmware(each.filename)]
     return f" ({places[-1]})" if places else ""

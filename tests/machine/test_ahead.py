@@ -88,6 +88,20 @@ def test_what_is_done_ahead_is_charged_as_if_it_were_not(deeds: tuple[Deeds, Dee
     assert outcome(deeds) == outcome(deeds, ahead=False)
 
 
+def test_a_stage_whose_calls_have_accessed_l1_once_may_access_it_more() -> None:
+    """A single column that calls accessed had the next ones laid by rows: a clock was off by 2 ** 63 cycles."""
+    record = outcome(([("stage", 1), ("own", 1), ("stage", 1), ("shared", 1)], []))
+    stalls = [
+        cclk
+        for frame in record.frames
+        for core in frame.cores
+        for each in core.stages
+        for cclk in each.stall_cclk.values()
+    ]
+    assert min(stalls) > 0
+    assert max(stalls) < record.frames[-1].result_cclk
+
+
 def test_calls_that_meet_nobody_end_a_stretch_before_its_room_does(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each in a stage of its own, and no wait between: more than there was room for wrote over the other core's, and the run never ended."""
     lengths: list[int] = []

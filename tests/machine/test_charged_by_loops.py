@@ -7,8 +7,6 @@ import pytest
 
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.conflicts import AMONG, BANK, COUNTER, EACH, SITE, charge_conflicts, count_events
-from bfsim.machine.calls.conflicts import CHARGE as CHARGE_CONFLICTS
-from bfsim.machine.calls.conflicts import COUNT as COUNT_EVENTS
 from bfsim.machine.calls.ledger import (
     CHARGE,
     CHARGE_SITES,
@@ -22,6 +20,7 @@ from bfsim.machine.calls.ledger import (
     charge_sites,
 )
 from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE
+from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason
 
 SITES, COUNTERS, OWNERS, COUNT = 40, 30, 6, 200
@@ -53,7 +52,7 @@ def test_conflicts_are_shared_out(seed: int) -> None:
     np.add.at(shares, spread[SITE], np.diff(ends, prepend=0))
 
     arrays = (each.ctypes.data for each in (state, before, *rooms, spread, events))
-    charge = CHARGE_CONFLICTS(charge_conflicts.address())
+    charge = built_in(charge_conflicts.address(), 10)
     assert charge(*arrays, COUNT, elapsed, 2, at_sites.ctypes.data) == cclk == at_sites.sum()
     assert (at_sites == shares).all()
     assert (before == state[w.SUBBANKS_AT :]).all()
@@ -67,7 +66,7 @@ def test_nothing_is_charged_where_no_time_has_passed() -> None:
     rest = np.zeros(w.MAX_SUBBANKS), np.ones((5, 1), np.int64), np.ones(1, np.int64)
     sites = np.zeros(2, np.int64)
     addresses = (each.ctypes.data for each in (state, before, moved, *rest))
-    assert CHARGE_CONFLICTS(charge_conflicts.address())(*addresses, 1, 0, 2, sites.ctypes.data) == 0
+    assert built_in(charge_conflicts.address(), 10)(*addresses, 1, 0, 2, sites.ctypes.data) == 0
     assert before[0] == 5
     assert not sites.any()
 
@@ -79,7 +78,7 @@ def test_events_are_counted_since_the_last_time() -> None:
     counters, before, events = np.array([4, 5, 9]), np.array([1, 4, 9]), np.zeros(3, np.int64)
     arrays = [each.ctypes.data for each in (spread, counters, before, events)]
     for expected in ([8, 0, 0], [0, 0, 0]):
-        COUNT_EVENTS(count_events.address())(arrays[0], 3, *arrays[1:])
+        built_in(count_events.address(), 5)(arrays[0], 3, *arrays[1:])
         assert events.tolist() == expected
 
 

@@ -62,6 +62,7 @@ class Sanitizer:
 class KnownCall:
     """The kernel `name` bound to its rows, ready to run. `number`: the how-manieth of its core.
 
+    `words`: the address by which machine code runs it, 0 if Python must.
     `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_alone`: whether its accesses reach nothing there but buffers
     that belong to its core alone, and those that are `handed_over`, at the time. Code is read only.
     """
@@ -69,14 +70,10 @@ class KnownCall:
     name: str
     number: int
     run: Callable[..., Work]
+    words: int
     stays_in_l1: bool
     is_alone: bool
     handed_over: tuple[str, ...]
-
-    @property
-    def words(self) -> int:
-        """The address by which machine code runs it, 0 if Python must."""
-        return words_at(self.run)
 
 
 KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, KnownCall]]
@@ -257,6 +254,7 @@ class CallCache:
             kernel.name,
             len(self.made),
             call.run,
+            words_at(call.run),
             stays_in_l1=not (leaves_l1 or group.fetched),
             is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
             handed_over=tuple(

@@ -7,7 +7,6 @@ have them by their part in those accesses.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import MutableSequence
 from typing import Any, NamedTuple
 
@@ -19,6 +18,7 @@ from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.memories import Memories, Row
+from bfsim.machine_code.built_in import built_in
 
 COUNTER, BANK, EACH, AMONG, SITE = range(5)
 """What an event accesses: its counter among the core's, a sub-bank, accesses, sub-banks to share them, and the core's site that makes them."""
@@ -43,9 +43,9 @@ def made(spread: Numbers, events: Numbers, count: int, number: int) -> float:
     return events[number] * spread[EACH * count + number] / spread[AMONG * count + number]
 
 
-@native_entry("void", "int64*", "int64", "int64*", "int64*", "int64*")
-def count_events(spread_at: Any, count: int, counters_at: Any, before_at: Any, events_at: Any) -> None:
-    """Count what the `counters` of a core have counted since `before`, for each of `count` columns."""
+@native_entry("int64", "int64*", "int64", "int64*", "int64*", "int64*")
+def count_events(spread_at: Any, count: int, counters_at: Any, before_at: Any, events_at: Any) -> int:
+    """Count what the `counters` of a core have counted since `before`, for each of `count` columns; return how many these are."""
     spread, counters, before, events = (
         words_at(spread_at), words_at(counters_at), words_at(before_at), words_at(events_at)
     )  # fmt: skip
@@ -53,6 +53,7 @@ def count_events(spread_at: Any, count: int, counters_at: Any, before_at: Any, e
         now = counters[spread[COUNTER * count + number]]
         events[number] = now - before[number]
         before[number] = now
+    return count
 
 
 @native_entry(
@@ -97,10 +98,6 @@ def charge_conflicts(
     return cclk
 
 
-COUNT = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
-CHARGE = ctypes.PYFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, *[ctypes.c_int64] * 3, ctypes.c_void_p)
-
-
 class StageGroups:
     """The groups of calls of one stage, and what each of their events accesses: the `spread` of all of them, and its counts before."""
 
@@ -109,6 +106,7 @@ class StageGroups:
         self._spread = np.zeros((5, 0), np.int64)
         self._before = np.zeros(0, np.int64)
         self._addresses = 0, 0  # of these
+        self._count = built_in(count_events.address(), 5)
 
     def add(self, group: CallGroup) -> None:
         """Add a group. Where its rows lie is looked up when it has run."""
@@ -117,13 +115,14 @@ class StageGroups:
     def accessed(self, counters_at: int) -> Accesses:
         """Return what the calls have accessed since the last time, by what the core's counters, at an address, have counted."""
         if self._new:
-            self._spread = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
+            joined = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
+            self._spread = np.ascontiguousarray(joined)  # behind a single column numpy lays others by rows
             self._before = np.pad(self._before, (0, self._spread.shape[1] - len(self._before)))
             self._addresses = self._spread.ctypes.data, self._before.ctypes.data
             self._new = []
         events = np.empty_like(self._before)
         (spread_at, before_at), events_at = self._addresses, events.ctypes.data
-        COUNT(count_events.address())(spread_at, len(events), counters_at, before_at, events_at)
+        self._count(spread_at, len(events), counters_at, before_at, events_at)
         return Accesses(self._spread, events, (spread_at, events_at))
 
 
@@ -142,7 +141,7 @@ class SubBanks:
             np.zeros(w.MAX_SUBBANKS, np.int64),  # and room for
             np.zeros(w.MAX_SUBBANKS, np.float64),
         )
-        self._addresses = [each.ctypes.data for each in self._arrays]
+        self._charge = built_in(charge_conflicts.address(), 6, *(each.ctypes.data for each in self._arrays))
 
     def of(self, row: Row) -> range:
         """Return the sub-banks that a row lies in, none outside L1."""
@@ -156,10 +155,8 @@ class SubBanks:
 
         They are added to what conflicts cost at each site, at an address.
         """
-        cclk: int = CHARGE(charge_conflicts.address())(
-            *self._addresses, *accessed.addresses, len(accessed.events), elapsed_cclk, self._conflict_cclk, at_sites_at
-        )  # fmt: skip
-        return cclk
+        count = len(accessed.events)
+        return self._charge(*accessed.addresses, count, elapsed_cclk, self._conflict_cclk, at_sites_at)
 
 
 def _spread(group: CallGroup) -> NDArray[np.int64]:

@@ -88,6 +88,7 @@ class ReadyCalls:
         self._words: Any = self._table.data
         self._words[FREE] = CALLS_AT
         self._stages: dict[str, int] = {}
+        self._places: dict[int, int] = {}  # of each call that was laid, by its number
         self._kernels = 0
         self.at: int = self._table.ctypes.data
         """Its address."""
@@ -99,6 +100,9 @@ class ReadyCalls:
     def lay(self, kernel: Kernel, arguments: Sequence[Any], turn: int, asked: Sequence[int]) -> None:
         """Have a call found, with three words of what is `asked` for then. What it is told by must live as long as this."""
         words, count = self._words, 1 + len(arguments)
+        if call := self._places.get(asked[-1]):
+            words[call + TURN] = turn
+            return
         if count > MOST_ARGUMENTS:
             return
         if words[COUNT] == PLACES // 2 or words[FREE] + ARGUMENTS + count > len(words):
@@ -111,16 +115,14 @@ class ReadyCalls:
             words[at], words[at + 1] = id(kernel), sum(2 << each for each in kernel.array_positions)
         told = [id(kernel), *map(id, arguments)]
         place = place_of(words, told, count)
-        call = words[place]
-        if not call:
-            call = words[place] = words[FREE]
-            words[FREE] += ARGUMENTS + count
-            words[COUNT] += 1
-            by_address = [each if words[at + 1] >> number & 1 else 0 for number, each in enumerate(told)]
-            self._table[call : words[FREE]] = words[STAGE], turn, *asked, count, id(kernel), *by_address[1:]
-        words[call + TURN] = turn
+        call = words[place] = self._places[asked[-1]] = words[FREE]
+        words[FREE] += ARGUMENTS + count
+        words[COUNT] += 1
+        by_address = [each if words[at + 1] >> number & 1 else 0 for number, each in enumerate(told)]
+        self._table[call : words[FREE]] = words[STAGE], turn, *asked, count, id(kernel), *by_address[1:]
 
     def _clear(self) -> None:
         """Begin anew: what is asked for comes again."""
         self._table[PLACES_AT:CALLS_AT] = 0
         self._words[FREE], self._words[COUNT] = CALLS_AT, 0
+        self._places.clear()

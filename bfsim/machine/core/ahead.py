@@ -22,13 +22,13 @@ from bfsim.kernel import Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import COUNTER_OF
-from bfsim.machine.bus.tape_lines import COPY_WORDS, HEAD, NotedLines
+from bfsim.machine.bus.tape_lines import COPY_WORDS, HEAD, PLAN, NotedLines
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.in_step import InStep
 from bfsim.machine.core.interrupts import Handler
-from bfsim.machine.core.line_copies import NO_COPY, Copy, LineCopies, Lines
+from bfsim.machine.core.line_copies import Copy, LineCopies, Lines
 from bfsim.machine.core.progress import Away, Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
@@ -66,11 +66,14 @@ class CopiesAhead:
         core = self._core
         if not (core.runs_ahead or core.tape.noted):
             return self._in_step.copy(number)
-        copy = self.ahead.copy(number)
-        if copy == NO_COPY:
-            self._table[number] = core.planned(self._lines.stream, *self._lines.rows(number))
-            copy = self.ahead.copy(number)
-        return copy
+        self.plan(number)
+        return self.ahead.copy(number)
+
+    def plan(self, *numbers: int) -> None:
+        """Plan the copies of lines that have none yet; there may be no such line."""
+        for number in numbers:
+            if number < len(self._table) and self._table[number, PLAN] == w.NONE:
+                self._table[number] = self._core.planned(self._lines.stream, *self._lines.rows(number))
 
     def goes_on(self, copy: Copy) -> bool:
         """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""

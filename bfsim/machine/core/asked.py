@@ -27,19 +27,17 @@ class Asked:
         self, calls: CallCache, tape: Tape | None, turn: NDArray[np.int64], other: Callable[..., Work]
     ) -> None:
         """`turn`: the core's, which buffers that are handed over are its own in. `other` makes the other calls."""
-        self._words = np.zeros(ASKED, np.int64)
+        words = np.zeros(ASKED, np.int64)
+        self._words: Any = words.data
+        at = words.ctypes.data
         self._made = calls.made
         self._ready = calls.ready
         self._tape = tape
         self._turn = turn
-        self.ask, self.go_on = other, going_on(self._at, tape.calls if tape else Noted(0, 0, self._at))
+        self.ask, self.go_on = other, going_on(at, tape.calls if tape else Noted(0, 0, at))
         if tape:
             found = Found(find_call.address(), calls.ready.at, turn.ctypes.data, tape.takes_calls_at)
-            self.ask = asking(self._at, found, other)
-
-    @property
-    def _at(self) -> int:
-        return int(self._words.ctypes.data)
+            self.ask = asking(at, found, other)
 
     def know(self, call: KnownCall, kernel: Kernel, arguments: Sequence[Any]) -> None:
         """Let machine code make a call from now on, if it can."""

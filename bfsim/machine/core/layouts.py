@@ -86,16 +86,16 @@ class Layouts:
             )
         if count == len(rows[0].array) and all(each.nbytes == rows[0].nbytes for each in rows):
             return tuple(rows)  # nothing is cut off
-        return tuple(self._part(row, first, count) for row in rows)
+        known = self._parts
+        return tuple(known.get((row, first, count)) or self._new_part(row, first, count) for row in rows)
 
-    def _part(self, row: Row, first: int, count: int) -> Row:
-        if (row, first, count) not in self._parts:
-            skipped = first * row.array.itemsize
-            self._parts[row, first, count] = Row(
-                row.buffer,
-                row.memory,
-                row.address + skipped,
-                row.offset + skipped,
-                row.array[first : first + count],
-            )
-        return self._parts[row, first, count]
+    def _new_part(self, row: Row, first: int, count: int) -> Row:
+        skipped = first * row.array.itemsize
+        part = self._parts[row, first, count] = Row(
+            row.buffer,
+            row.memory,
+            row.address + skipped,
+            row.offset + skipped,
+            row.array[first : first + count],
+        )
+        return part

@@ -55,7 +55,10 @@ class LineCopies(Protocol):
 
     @property
     def ahead(self) -> NotedLines | None:
-        """What does all that belongs to a line at once, while the core runs ahead. What it has not done must be done step by step."""
+        """What does all that belongs to a line at once, while the core runs ahead. Its copies must have been planned."""
+
+    def plan(self, *numbers: int) -> None:
+        """Plan the copies of lines, of those that there are."""
 
     def program(self) -> None:
         """Program the stream."""
@@ -75,6 +78,9 @@ class CopiesInStep:
     def __init__(self, lines: Lines, clock: CoreClock) -> None:
         self._lines = lines
         self._clock = clock
+
+    def plan(self, *numbers: int) -> None:
+        """Do nothing: each is planned when it is posted."""
 
     def program(self) -> None:
         """Let the time of the registers pass."""

@@ -59,13 +59,16 @@ class InputRing:
         number = self._taken
         if (ahead := self._ahead) and self._progress.runs_ahead:
             coming = ahead.fetch(number, self._coming)
+            if coming == NO_COPY:
+                self._lines.plan(number, number + 1)
+                coming = ahead.fetch(number, self._coming)
             if coming != NO_COPY:
                 self._taken, self._coming = number + 1, coming
                 return self._rows[number % self._depth]
         return (yield from self._waited_for(number))
 
     def _waited_for(self, number: int) -> Generator[Any, Any, Row]:
-        """Do that step by step: the core is in step, or the copies come for the first time."""
+        """Do that step by step."""
         progress, lines = self._progress, self._lines
         if late := progress.catch_up():
             yield late
@@ -131,9 +134,14 @@ class OutputRing:
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
         progress, number = self._progress, len(self._copies)
-        if (ahead := self._ahead) and progress.runs_ahead and (copy := ahead.send(number)) != NO_COPY:
-            self._copies.append(copy)
-            return
+        if (ahead := self._ahead) and progress.runs_ahead:
+            copy = ahead.send(number)
+            if copy == NO_COPY:
+                self._lines.plan(number)
+                copy = ahead.send(number)
+            if copy != NO_COPY:
+                self._copies.append(copy)
+                return
         if number == self._height:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"

@@ -273,14 +273,15 @@ def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gene
     opened = core.input_ring(core.rows("opened_image"), "opened_ring")
     labels, parents, blobs = core.array("label_row"), core.array("label_parents"), core.array("blob_data")
     groups = core.array("colour_groups")
-    for number, colours in enumerate(thresholds.colour_groups):
-        yield core.run(store_group, groups, number, colours)
+    for number, group in enumerate(thresholds.colour_groups):
+        yield core.run(store_group, groups, number, group)
     yield core.run(clear_labels, labels)
+    colours = thresholds.colours
     used = lost = 0
     for y in range(frame.height):
         core.at(y)
         line = yield from opened.line()
-        row = line, labels, parents, blobs, groups, thresholds.colours, y
+        row = line, labels, parents, blobs, groups, colours, y
         wanted = yield core.run(segment_row, *row, used)
         used = min(wanted, LABELS - 1)
         lost += wanted - used

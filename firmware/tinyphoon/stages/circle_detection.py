@@ -252,13 +252,14 @@ def select_edges(
     top, bottom = yield from open_outline(core, frame, blob, thresholds)
     first = max(top - 1, 0)
     image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
-    lines = core.input_ring(image, "colour_ring")
+    ring = core.input_ring(image, "colour_ring")
+    lines: list[Row] = []
     store = edge_store(core)
     filters = area, thresholds.angle_range, int(thresholds.beside_colour), atan
     found = 0
     for ahead in range(first, bottom + 2):
         if ahead < frame.height:
-            yield from lines.line()
+            lines.append((yield from ring.line()))
         y = ahead - 1
         if top <= y:
             near = window(lines, y - first, len(image))

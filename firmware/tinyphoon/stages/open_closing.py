@@ -91,7 +91,8 @@ def open_closing(
 ) -> Generator[Any, Any, None]:
     """Leave the colour image without its noise in `opened_image` in SDRAM. `erode` and `dilate` make a row."""
     for image, closes in noise.passes:
-        colours = core.input_ring(core.rows(image), "colour_ring")
+        ring = core.input_ring(core.rows(image), "colour_ring")
+        colours: list[Row] = []
         first, second = (dilate, erode) if closes else (erode, dilate)
         opened = core.output_ring("opened_ring", core.rows("opened_image"))
         height = frame.height
@@ -99,7 +100,7 @@ def open_closing(
         for y in range(height + LAG_LINES):
             if y < height:
                 core.at(y)
-                yield from colours.line()
+                colours.append((yield from ring.line()))
             if 1 <= y <= height:
                 core.at(y - 1)
                 yield from first_row(core, first, window(colours, y - 1, height), between[y - 1], closes)
