@@ -17,7 +17,7 @@ from bfsim.linker import link
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
 from bfsim.trace import BoardRecord, OwnerCost, StallReason
-from tests.machine.kernels import copy, spin
+from tests.machine.kernels import copy, first, spin
 from tests.machine.made_boards import in_work, play
 from tests.machine.owners import assert_owned
 from tests.machine.rig import WORDS, Play, cycles_of, every_frame
@@ -42,6 +42,20 @@ def test_owners_of_random_traffic_fill_every_stage(seed: int, ldf: str) -> None:
     firmware = hammer(seed)
     places = link(LDFS[ldf], symbols_of(firmware, SIZE), CM_BF561.chip.regions)
     assert_owned(Board(CM_BF561, firmware, SIZE, places).run(pictures(2, seed)))
+
+
+@pytest.mark.parametrize("later", [1, 3])
+def test_owners_of_a_single_count_fill_every_stage_when_others_come(later: int) -> None:
+    """A first frame with one kernel of one block: what others charge, frame after frame, is laid beside it."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield core.run(first, core.rows("image")[0])
+        for number in range(later * frame.index):
+            yield core.run(spin, 10 + number)
+        if frame.index > 1:
+            yield core.run(copy, core.rows("image")[1], core.array("single_row"))
+
+    assert_owned(play(every_frame(work), frames=4))
 
 
 # ---- whose they are

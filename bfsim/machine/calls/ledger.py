@@ -178,7 +178,8 @@ class Ledger:
         """Return the kernels in each stage, what they cost since the last time, rows of an `OwnerCosts` table, and all counts of that."""
         costs, count = np.zeros((len(self._owners), COLUMNS), np.int64), self._site_count
         if self._new_charges:
-            self._charges = np.concatenate([self._charges, *self._new_charges], axis=1)
+            joined = np.concatenate([self._charges, *self._new_charges], axis=1)
+            self._charges = np.ascontiguousarray(joined)  # behind a single column numpy lays others by rows
             self._owners_of_sites = np.array(self._site_owners, np.int64)
             self._new_charges = []
         events, before = self.events, self._events_before[: self.event_count]
