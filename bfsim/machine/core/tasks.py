@@ -82,7 +82,13 @@ class Tasks:
             if item is OVER:
                 break
             if call := asked.claim(item):
-                item = yield from self._charged(item, call, task)
+                if isinstance(item, DeferredWork):
+                    yield from progress.sync()
+                    item = self._made(item, task)
+                    yield from progress.play_call(item, call)
+                elif not asked.is_noted:
+                    charge = progress.charge_call if call.stays_in_l1 else progress.note_call
+                    charge(item, call)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
@@ -93,22 +99,6 @@ class Tasks:
         self.check_claimed()
         self._check_waits(task)
         self._task = before
-
-    def _charged(
-        self, work: Work, call: KnownCall, task: Generator[Any, Any, Any]
-    ) -> Generator[Any, Any, Work]:
-        """Charge a call that `task` has yielded, unless that is done, and return what it left."""
-        if self._asked.is_noted:
-            return work
-        if isinstance(work, DeferredWork):
-            yield from self._progress.sync()
-            work = self._made(work, task)
-            yield from self._progress.play_call(work, call)
-        elif call.stays_in_l1:
-            self._progress.charge_call(work, call)
-        else:
-            self._progress.note_call(work, call)
-        return work
 
     def idle(self) -> Wait:
         """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
