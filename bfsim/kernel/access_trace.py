@@ -170,7 +170,10 @@ class AccessTrace:
 
     def caches(self, offset: int) -> bool:
         """Whether the data cache holds lines of the memory at `offset`."""
-        regions = self._state[FIRST_REGION : FIRST_REGION + 3 * int(self._state[REGIONS])].reshape(-1, 3)
+        count = self._words[REGIONS]
+        if not count:  # most boards have none, and each ring asks
+            return False
+        regions = self._state[FIRST_REGION : FIRST_REGION + 3 * count].reshape(-1, 3)
         return any(first <= offset < end for first, end, _ in regions.tolist())
 
     def forget(self, first: int, nbytes: int) -> int:
