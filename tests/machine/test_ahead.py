@@ -8,9 +8,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bfsim.api import Core, Frame
+from bfsim.api import Core, Frame, Kernel, Row
+from bfsim.kernel import Work
 from bfsim.machine.bus import tape
 from bfsim.machine.bus.tape import Tape
+from bfsim.machine.core.tasks import Tasks
 from bfsim.machine.program import Main
 from bfsim.trace import BoardRecord
 from tests.machine.kernels import copy, first, negate, spin
@@ -100,6 +102,27 @@ def test_a_stage_whose_calls_have_accessed_l1_once_may_access_it_more() -> None:
     ]
     assert min(stalls) > 0
     assert max(stalls) < record.frames[-1].result_cclk
+
+
+def test_python_makes_each_call_once_and_machine_code_those_that_come_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of kernels in L1 and on memory of the core's own, with or without a value; in step Python makes them all."""
+    asked: list[str] = []
+    run = Tasks._run  # what makes a call that machine code does not know
+
+    def seen(tasks: Tasks, kernel: Kernel, *arguments: Row | int) -> Work:
+        asked.append(kernel.name)
+        return run(tasks, kernel, *arguments)
+
+    monkeypatch.setattr(Tasks, "_run", seen)
+    deeds: tuple[Deeds, Deeds] = (20 * [("rings", 5), ("own", 1)], [])
+    whole = outcome(deeds)
+    made = {name: asked.count(name) for name in asked}
+    assert made["spin"] == made["first"] == made["copy"] == 1
+    asked.clear()
+    assert outcome(deeds, ahead=False) == whole
+    assert min(asked.count(name) for name in made) >= 2 * 20
 
 
 def test_calls_that_meet_nobody_end_a_stretch_before_its_room_does(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from bfsim.chip.spec import EventSpec
 from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.work import UNYIELDED
-from bfsim.machine.calls.call_cache import CallCache, DeferredWork, KnownCall
+from bfsim.machine.calls.call_cache import CallCache, DeferredWork
 from bfsim.machine.core.asked import Asked
 from bfsim.machine.core.handovers import Handovers
 from bfsim.machine.core.progress import Progress, Wait
