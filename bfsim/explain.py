@@ -111,7 +111,7 @@ def _lines(
     used = {one.line.line for each in own for one in each.charges}
     return tuple(
         row
-        for line, text in enumerate(function.source.splitlines(), start=1)
+        for line, text in enumerate(function.lines, start=1)
         for row in _line(function, line, text, own if line in used else (), records)
     )
 

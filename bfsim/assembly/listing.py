@@ -161,7 +161,7 @@ class _Listing:
             return None
         at = places.line_of(address)
         function = places.functions[at.routine]
-        rows = function.source.splitlines()
+        rows = function.lines
         shown = rows[at.line - 1] if 0 < at.line <= len(rows) else ""
         return SourceText(file=function.file, line=function.first_line + at.line - 1, text=shown)
 

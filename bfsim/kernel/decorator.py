@@ -185,7 +185,7 @@ class Kernel:
             line = first_float(each)
             if line is not None:
                 place = f"{each.file}:{each.first_line + line - 1}"
-                shown = each.source.splitlines()[line - 1]
+                shown = each.lines[line - 1]
                 raise KernelError(
                     f"{place}: {each.name} must do without floats, for the profile {profile.name} has no library for "
                     f"them; use fixed point, or another profile\n    {shown}"

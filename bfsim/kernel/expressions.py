@@ -282,6 +282,8 @@ class Expressions(Names):
         if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
             name = ast.unparse(node.value.value)
             self.source.refuse(node, "an array has one dimension and no shape", f"write len({name})")
+        if isinstance(node.value, ast.Subscript):
+            self.source.refuse(node, "an array has one dimension", "write a[y * width + x]")
         if not isinstance(node.value, ast.Name) or node.value.id not in self.arrays:
             self.source.refuse(node, "only array parameters can be indexed", "pass the array as a parameter")
         return node.value.id, self.arrays[node.value.id].element
@@ -289,7 +291,12 @@ class Expressions(Names):
     def index(self, node: ast.Subscript) -> tree.Expr:
         """Read the index of `node`."""
         if isinstance(node.slice, (ast.Slice, ast.Tuple)):
-            self.source.refuse(node.slice, "an array has one integer index", "loop over the elements")
+            is_part = isinstance(node.slice, ast.Slice)
+            self.source.refuse(
+                node.slice,
+                "an array has one integer index",
+                "loop over the elements" if is_part else "write a[y * width + x]",
+            )
         index = self.integer(node.slice)
         if isinstance(index, tree.Const) and index.value < 0:
             name = ast.unparse(node.value)

@@ -27,7 +27,7 @@ def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> Kernel
     what, must_be = told(sites, note[FIRST], note[SECOND])
     return KernelError(
         f"{_place(routine, first)}: {what} in kernel {routine.name}{same}; {must_be}{calls}\n"
-        f"    {routine.source.splitlines()[first - 1].strip()}"
+        f"    {routine.lines[first - 1].strip()}"
     )
 
 

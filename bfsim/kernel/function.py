@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
+from bfsim.file_content import lines_of
 from bfsim.kernel.types import ArrayType, Number, Value
 
 if TYPE_CHECKING:
@@ -78,6 +79,11 @@ class Function:
     def array_names(self) -> tuple[str, ...]:
         """Names of the parameters that are arrays."""
         return tuple(each.name for each in self.parameters if isinstance(each.type, ArrayType))
+
+    @property
+    def lines(self) -> list[str]:
+        """Lines of its source."""
+        return lines_of(self.source)
 
     def siblings(self) -> tuple[Function, ...]:
         """The other kernels of its file."""

@@ -17,7 +17,7 @@ from typing import NamedTuple, TypeGuard
 from bfsim.errors import with_article
 from bfsim.kernel import tree
 from bfsim.kernel.function import Body, Parameter
-from bfsim.kernel.operators import BINARY
+from bfsim.kernel.operators import BINARY, in_words
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
 from bfsim.kernel.signature import SCALARS, named_type, parameters_of, result_type
@@ -25,8 +25,12 @@ from bfsim.kernel.split_assignments import each_alike, together
 from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i32
 
 STATEMENTS = {
-    "try": "tests with if",
-    "with": "plain statements",
+    "try": "test with if",
+    "raise": "return a number that the main loop understands",
+    "assert": "test the kernel in a unit test, where it is a function of numpy arrays",
+    "with": "write its statements alone",
+    "import": "import at the top of the module",
+    "from": "import at the top of the module",
     "match": "write if and elif",
     "def": "write another @kernel beside this one, and call it",
     "global": "keep it in an element of an array parameter",
@@ -84,20 +88,26 @@ def parsed(text: str) -> ast.AST:
 
 def _check_names(source: KernelSource, definition: ast.FunctionDef, code: CodeType) -> None:
     """Refuse names that the machine code cannot have: those of an outer function, and non-ASCII ones."""
-    if code.co_freevars:
-        names = ", ".join(code.co_freevars)
+    for name in code.co_freevars:
         source.refuse(
-            definition,
-            f"a kernel cannot close over {names}",
+            _first_use(definition, name),
+            f"a kernel cannot close over {name}",
             "pass it as a parameter or make it a module constant",
         )
     for name in code.co_varnames:
         if not name.isascii():
             source.refuse(
-                definition,
+                _first_use(definition, name),
                 f"the name {name} is not ASCII",
                 "use the letters a to z, as a C compiler wants them",
             )
+
+
+def _first_use(definition: ast.FunctionDef, name: str) -> ast.AST:
+    """Return where a definition names a variable first."""
+    names = [each for each in ast.walk(definition) if isinstance(each, (ast.Name, ast.arg))]
+    uses = [each for each in names if name == (each.id if isinstance(each, ast.Name) else each.arg)]
+    return min(uses, key=lambda each: (each.lineno, each.col_offset), default=definition)
 
 
 def _without_docstring(body: list[ast.stmt]) -> list[ast.stmt]:
@@ -195,7 +205,9 @@ class _Reader:
 
     def _augassign(self, node: ast.AugAssign) -> list[tree.Stmt]:
         if type(node.op) not in BINARY:
-            self.scope.source.refuse(node, "a kernel cannot use this operator", "use + - * // % << >> & | ^")
+            self.scope.source.refuse(
+                node, f"a kernel cannot use {in_words(node.op)}", "write it with + - * // % << >> & | ^"
+            )
         if isinstance(node.target, ast.Subscript) and tree.calls_in(self.scope.index(node.target)):
             self.scope.source.refuse(
                 node.target, "this call would run twice", "put its result in a local name first"
@@ -275,8 +287,18 @@ class _Reader:
         self._no_else(node)
         source, call = self.scope.source, node.iter
         if self._is_array(call):
+            if isinstance(node.target, ast.Tuple):
+                source.refuse(
+                    node.target, "an array gives one value at a time", "write for i, v in enumerate(a)"
+                )
             return self._for_each(node, self._hidden(), node.target, call)
-        if self._is_call_of(call, enumerate) and len(call.args) == 1 and self._is_array(call.args[0]):
+        is_call = isinstance(call, ast.Call) and not call.keywords
+        if (
+            is_call
+            and self._is_call_of(call, enumerate)
+            and len(call.args) == 1
+            and self._is_array(call.args[0])
+        ):
             names = node.target.elts if isinstance(node.target, ast.Tuple) else []
             if len(names) != 2 or not isinstance(names[0], ast.Name):
                 source.refuse(node.target, "enumerate gives two values", "write for i, v in enumerate(a)")
@@ -287,10 +309,10 @@ class _Reader:
                 "a kernel loops over range(...), an array or enumerate(array) only",
                 "write for i in range(start, stop, step) and use a[i]",
             )
-        if not isinstance(node.target, ast.Name) or node.target.id in self.scope.arrays or call.keywords:
-            source.refuse(node, "a loop counts one plain name", "write for i in range(...)")
+        if not isinstance(node.target, ast.Name) or node.target.id in self.scope.arrays:
+            source.refuse(node.target, "a loop counts one plain name", "write for i in range(...)")
         bounds = [self.scope.integer(each, i32) for each in call.args]
-        if not 1 <= len(bounds) <= 3:
+        if call.keywords or not 1 <= len(bounds) <= 3:
             source.refuse(
                 call, "range takes one to three numbers", "write range(stop) or range(start, stop, step)"
             )

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import ast
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from bfsim.errors import with_article
+from bfsim.errors import shown, with_article
 from bfsim.kernel import tree
 from bfsim.kernel.constants import constant_of, members_of
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import BOOL, ArrayType, Value, f32, i32, u32
+
+LARGEST_F32 = 3.4028234663852886e38
 
 
 @dataclass(slots=True)
@@ -37,7 +40,7 @@ class Names:
         if type(node.value) is int:
             return replace(self._literal(node, node.value), written=self._hexadecimal(node))
         if type(node.value) is float:
-            return tree.Const(f32(node.value), f32, node.lineno)
+            return self._real(node, node.value)
         is_letter = isinstance(node.value, str) and len(node.value) == 1
         instead = f"write its number, ord({node.value!r})" if is_letter else "use numbers"
         self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", instead)
@@ -54,9 +57,18 @@ class Names:
     def _literal(self, node: ast.expr, value: int) -> tree.Const:
         if not i32.bounds[0] <= value <= u32.bounds[1]:
             self.source.refuse(
-                node, f"{value} does not fit in 32 bits", "use a value in -2147483648..4294967295"
+                node, f"{shown(value)} does not fit in 32 bits", "use a value in -2147483648..4294967295"
             )
         return tree.Const(value, i32 if value <= i32.bounds[1] else u32, node.lineno)
+
+    def _real(self, node: ast.expr, value: float, written: str = "") -> tree.Const:
+        if math.isfinite(value) and abs(value) > LARGEST_F32:
+            self.source.refuse(
+                node,
+                f"{value} does not fit in an f32",
+                f"use a value in -{LARGEST_F32:.4g}..{LARGEST_F32:.4g}",
+            )
+        return tree.Const(f32(value), f32, node.lineno, written)
 
     def _name(self, node: ast.Name) -> tree.Expr:
         name = node.id
@@ -91,7 +103,7 @@ class Names:
         if isinstance(constant, bool):
             return self._truth(node, value=constant, written=name)
         if isinstance(constant, float):
-            return tree.Const(f32(constant), f32, node.lineno, written=name)
+            return self._real(node, constant, written=name)
         return replace(self._literal(node, constant), written=name)
 
     def _attribute(self, node: ast.Attribute) -> tree.Expr:

@@ -36,14 +36,16 @@ BUILT_IN = ("len", "min", "max", "abs", "ord")
 INSTEAD = {
     "print input open breakpoint": "return a number, or store it in an array that the firmware publishes; to print while you "
     "search a mistake, call the kernel's `.python(...)` in a test, which runs it as plain Python",
-    "sum any all sorted reversed enumerate zip map filter iter next": "write a loop, for i in range(...)",
+    "sum any all mean dot sorted reversed enumerate zip map filter iter next": "write a loop, for i in range(...)",
     "range slice": "it counts a loop only, for i in range(...)",
-    "list tuple dict set frozenset bytes bytearray memoryview str chr repr format": "a kernel has numbers and the arrays "
-    "that it is given; pass an array as a parameter",
+    "list tuple dict set frozenset bytes bytearray memoryview str chr repr format array zeros ones empty full arange "
+    "copy astype tolist join append": "a kernel has numbers and the arrays that it is given; pass an array as a parameter",
     "int bool": "write i32(x), or a comparison such as x != 0",
     "float complex": "write f32(x)",
     "round": "write i32(x + 0.5) for an f32 that is not negative",
-    "pow": "multiply, or shift for a power of two",
+    "pow square": "multiply, or shift for a power of two",
+    "clip": "write min(max(x, low), high)",
+    "sqrt": "write sqrt(x) of an f32, which `from bfsim.api import sqrt` brings",
     "divmod": "write // and %",
     "isinstance issubclass type hasattr getattr setattr callable id hash vars dir super object": "types are fixed when the "
     "kernel is read; write a kernel for each",
@@ -52,15 +54,16 @@ INSTEAD = {
 
 
 def instead_of(name: str) -> str:
-    """Return what to do instead of calling the built-in function `name` of Python."""
+    """Return what to do instead of calling the function `name` of Python or numpy."""
     known = (advice for names, advice in INSTEAD.items() if name in names.split())
     return next(known, "use numbers, arrays, loops, len, min, max, abs, quotient, remainder, sqrt and casts")
 
 
 def in_words(node: ast.AST) -> str:
     """What `node` is, in words."""
-    names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",
-             "dict": "dictionaries", "lambda": "lambda", "namedexpr": "`:=`",
-             "pow": "**", "matmult": "@", "is": "`is`", "isnot": "`is not`", "in": "`in`", "notin": "`not in`"}  # fmt: skip
+    names = {"listcomp": "comprehensions", "setcomp": "comprehensions", "dictcomp": "comprehensions",
+             "generatorexp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists", "set": "sets",
+             "dict": "dictionaries", "lambda": "lambda", "namedexpr": "`:=`", "starred": "`*` before a value",
+             "yieldfrom": "`yield from`", "pow": "**", "matmult": "@", "is": "`is`", "isnot": "`is not`", "in": "`in`", "notin": "`not in`"}  # fmt: skip
     name = type(node).__name__.lower()
     return names.get(name, f"`{name}`")

@@ -8,6 +8,10 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from bfsim.errors import KernelError
+from bfsim.file_content import lines_of
+
+LONGEST_EXCERPT = 100
+"""As many characters of a line are shown on either side of the caret."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,14 +24,14 @@ class KernelSource:
 
     def text_of(self, node: ast.expr) -> str:
         """Return a part of one line, as `ast.get_source_segment` does in a hundred times the time."""
-        line = self.text.splitlines()[node.lineno - 1]
-        return line.encode()[node.col_offset : node.end_col_offset].decode()
+        return lines_of(self.text)[node.lineno - 1].encode()[node.col_offset : node.end_col_offset].decode()
 
     def refuse(self, node: ast.AST, what: str, instead: str) -> NoReturn:
         """Raise a KernelError that points at `node`."""
         line: int = getattr(node, "lineno", 1)
-        shown = self.text.splitlines()[line - 1]
+        shown = lines_of(self.text)[line - 1]
         before = shown.encode()[: getattr(node, "col_offset", 0)].decode()  # `ast` counts columns in bytes
         place = f"{self.file}:{self.first_line + line - 1}:{len(before) + 1}"
-        margin = re.sub(r"\S", " ", before)
-        raise KernelError(f"{place}: {what}; {instead}\n    {shown}\n    {margin}^")
+        begin, end = max(0, len(before) - LONGEST_EXCERPT), len(before) + LONGEST_EXCERPT
+        margin = re.sub(r"\S", " ", before[begin:])
+        raise KernelError(f"{place}: {what}; {instead}\n    {shown[begin:end]}\n    {margin}^")

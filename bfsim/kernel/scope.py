@@ -60,9 +60,12 @@ class KernelScope(Expressions):
         name = ast.unparse(node.func)
         if target in (abs, sqrt):
             self._refuse_call(node, f"give {name} one argument")
-        self._refuse_call(
-            node, f"give {name} two arguments" if known else f"make {name} a @kernel, or inline it"
-        )
+        if known is not None:
+            of_array = any(isinstance(each, ast.Name) and each.id in self.arrays for each in node.args)
+            self._refuse_call(
+                node, f"give {name} two arguments{', in a loop over the array' if of_array else ''}"
+            )
+        self._refuse_call(node, f"make {name} a @kernel, or inline it")
 
     def _refuse_call(self, node: ast.Call, advice: str) -> NoReturn:
         self.source.refuse(node, f"a kernel cannot call {ast.unparse(node.func)} like this", advice)
@@ -82,12 +85,15 @@ class KernelScope(Expressions):
         own = getattr(builtins, name, None)
         if own is not None and name not in (*BUILT_IN, *self.own) and self.outer.get(name) is own:
             self.source.refuse(node, f"a kernel cannot call {name}, which is Python's", instead_of(name))
-        if not name or node.keywords:
-            self.source.refuse(
-                node,
-                "a kernel can only call kernels, len, min, max, abs, quotient, remainder, sqrt and casts",
-                "call by name, without keywords",
-            )
+        if not name:
+            self._refuse_unnamed(node)
+        for each in node.keywords:
+            self.source.refuse(each, "a kernel calls without keywords", f"give {name} its arguments in order")
+        for each in node.args:
+            if isinstance(each, ast.Starred):
+                self.source.refuse(
+                    each, "a kernel calls without `*`", f"give {name} its arguments one by one"
+                )
         if name == self.kernel:
             self.source.refuse(
                 node, "a kernel cannot call itself", "write a loop, or give the other kernel another name"
@@ -96,7 +102,22 @@ class KernelScope(Expressions):
             self.source.refuse(
                 node, f"{name} is a variable here, not a function", "give the variable another name"
             )
+        if name not in self.outer:
+            self.source.refuse(
+                node, f"the name {name} is not defined above this kernel", "put it above, or import it"
+            )
         return name
+
+    def _refuse_unnamed(self, node: ast.Call) -> NoReturn:
+        """Refuse a call of what is no plain name, such as a method or a function of numpy."""
+        if not isinstance(node.func, ast.Attribute):
+            self.source.refuse(node, "a kernel calls by name", "write the name of a kernel or a function")
+        last = node.func.attr
+        self.source.refuse(
+            node,
+            f"a kernel cannot call {ast.unparse(node.func)}: it has no modules and no methods",
+            f"write {last}(...) of numbers" if last in BUILT_IN else instead_of(last),
+        )
 
     def _letter(self, node: ast.Call) -> tree.Expr:
         """The number of a character, which is a constant."""

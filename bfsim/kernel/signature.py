@@ -17,17 +17,19 @@ SCALARS = (i32, u32, f32)
 def parameters_of(scope: KernelScope, definition: ast.FunctionDef) -> tuple[Parameter, ...]:
     """Read the parameters of a kernel, and tell `scope` of them. Raises KernelError."""
     arguments = definition.args
-    if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
-        scope.source.refuse(
-            definition, "a kernel takes plain parameters only", "remove *, ** and default values"
-        )
+    for each in (arguments.vararg, *arguments.kwonlyargs, arguments.kwarg, *arguments.defaults):
+        if each is not None:
+            scope.source.refuse(
+                each, "a kernel takes plain parameters only", "remove *, ** and default values"
+            )
     parameters = []
     for each in [*arguments.posonlyargs, *arguments.args]:
         kind = named_type(scope.outer, each.annotation)
         if not isinstance(kind, ArrayType) and kind not in SCALARS:
+            has = f"cannot be {ast.unparse(each.annotation)}" if each.annotation else "needs a type"
             scope.source.refuse(
                 each,
-                f"the parameter {each.arg} needs a type",
+                f"the parameter {each.arg} {has}",
                 "write i32, u32, f32, or an array such as u8[:] or i16[:]",
             )
         parameters.append(Parameter(each.arg, kind))

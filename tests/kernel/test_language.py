@@ -67,6 +67,12 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("y = [x, x]", "[x, x]", "cannot use lists"),
         ("y = {x: 1}", "{x: 1}", "cannot use dictionaries"),
         ("y = [i for i in range(3)]", "[i for", "cannot use comprehensions"),
+        ("y = {i for i in row}", "{i for", "cannot use comprehensions"),
+        ("y = {i: 1 for i in row}", "{i: 1", "cannot use comprehensions"),
+        ("y = (i for i in row)", "(i for", "cannot use comprehensions"),
+        ("y = {x, 1}", "{x, 1}", "cannot use sets"),
+        ("y = x + 0x" + 5000 * "f", "0xf", "a number of thousands of digits does not fit in 32 bits"),
+        ("y = 1e39", "1e39", "1e+39 does not fit in an f32; use a value in -3.403e+38..3.403e+38"),
         ("y = lambda: 1", "lambda: 1", "cannot use lambda"),
         ("y = row.shape[0]", "row.shape", "an array has one dimension and no shape; write len(row)"),
         ("y = row.size", "row.size", "cannot use attributes; write len(row) for how many elements it has"),
@@ -75,17 +81,19 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("y = x in row", "x in row", "cannot use `in`; write < <= > >= == !="),
         ("y = x is not x", "x is not x", "cannot use `is not`; write < <= > >= == !="),
         ("y = x not in row", "x not in row", "cannot use `not in`; write < <= > >= == !="),
-        ("try:\n        y = x\n    except ValueError:\n        y = 1", "try:", "cannot use `try` statements; tests with if"),
+        ("try:\n        y = x\n    except ValueError:\n        y = 1", "try:", "cannot use `try` statements; test with if"),
         ("with x:\n        pass", "with x:", "cannot use `with` statements"),
         ("del x", "del x", "cannot use `del` statements"),
-        ("assert x", "assert x", "cannot use `assert` statements"),
+        ("assert x", "assert x", "cannot use `assert` statements; test the kernel in a unit test"),
         ("global SIZE", "global SIZE", "cannot use `global` statements"),
-        ("import math", "import math", "cannot use `import` statements"),
-        ("raise ValueError", "raise ValueError", "cannot use `raise` statements"),
+        ("import math", "import math", "cannot use `import` statements; import at the top of the module"),
+        ("from math import pi", "from math", "cannot use `from` statements; import at the top of the module"),
+        ("raise ValueError", "raise ValueError", "cannot use `raise` statements; return a number that the main loop"),
         ("def g():\n        pass", "def g():", "cannot use `def` statements; write another @kernel beside this one, and call it"),
         ("match x:\n        case 1:\n            pass", "match x:", "cannot use `match` statements; write if and elif"),
         ("return x, w", "x, w", "a kernel returns one number; store several into an array that is a parameter"),
         ("yield x", "yield x", "cannot use `yield`"),
+        ("yield from row", "yield from", "cannot use `yield from`"),
         ("y, z = x", "y, z", "only as many values, or an intrinsic with two results, are assigned to several names; write `a, b = x"),
         ("y, z = x, x, x", "y, z", "only as many values, or an intrinsic with two results"),
         ("y = z, v = x, x", "x, x", "cannot use tuples"),
@@ -95,10 +103,13 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("row = col", "row = col", "only a local name or an array element can be assigned"),
         ("for v in (1, 2):\n        pass", "(1, 2)", "loops over range(...), an array or enumerate(array) only; write for i in range("),
         ("for w in row:\n        pass", "row:", "u32 is needed here, not i32"),
+        ("for i, v in row:\n        pass", "i, v", "an array gives one value at a time; write for i, v in enumerate(a)"),
+        ("for i, v in enumerate(row, start=1):\n        pass", "enumerate(row", "loops over range(...), an array or"),
         ("for v in enumerate(row):\n        pass", "v in", "enumerate gives two values; write for i, v in enumerate(a)"),
         ("for i, v in enumerate(row, 1):\n        pass", "enumerate(row, 1)", "loops over range(...), an array or"),
         ("for v in enumerate:\n        pass", "enumerate", "loops over range(...), an array or"),
-        ("for i, j in range(3):\n        pass", "for i, j", "a loop counts one plain name"),
+        ("for i, j in range(3):\n        pass", "i, j", "a loop counts one plain name"),
+        ("for i in range(stop=3):\n        pass", "range(stop", "range takes one to three numbers"),
         ("for i in range():\n        pass", "range()", "range takes one to three numbers"),
         ("for i in range(0, 9, 0):\n        pass", "0):", "step of a range cannot be 0; write 1 or more, or a negative constant"),
         ("for i in range(9, 0, -x):\n        pass", "-x):", "a negative step of a range must be a constant; count upwards, or"),
@@ -126,7 +137,8 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x = 2147483647 * 4", "2147483647 * 4", "8589934588 does not fit in 32 bits"),
         ("x = row[-1]", "-1", "an index cannot be negative; write row[len(row) - 1] for the end"),
         ("x = row[0:2]", "0:2", "an array has one integer index; loop over the elements"),
-        ("x = row[0, 1]", "0, 1", "an array has one integer index"),
+        ("x = row[0, 1]", "0, 1", "an array has one integer index; write a[y * width + x]"),
+        ("x = row[0][1]", "row[0][1]", "an array has one dimension; write a[y * width + x]"),
         ("x = row + 1", "row", "the array row is used like a number; write row[i] or len(row)"),
         ("x = len(x)", "len(x)", "len is for array parameters"),
         ("x = x // 0", "0", "the division is by zero"),
@@ -136,7 +148,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x %= 0", "0", "the division is by zero"),
         ("x = x << 40", "40", "a shift must be by 0..31, not by 40"),
         ("x >>= -1", "-1", "a shift must be by 0..31, not by -1"),
-        ("x **= 2", "x **= 2", "cannot use this operator"),
+        ("x **= 2", "x **= 2", "cannot use **; write it with + - *"),
         ("y = x and x", "x and x", "`and` and `or` give truth values, not numbers, outside of a condition; write a comparison, `x != 0`"),
         ("y = x < 1 or x", "x", "`and` and `or` give truth values, not numbers"),
         ("y = (1 if x else 2) + (x and 3)", "x and 3", "give truth values, not numbers, outside of a condition"),
@@ -175,8 +187,16 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x = min(x)", "min(x", "cannot call min like this; give min two arguments"),
         ("x = abs(x, 2)", "abs(x", "cannot call abs like this; give abs one argument"),
         ("x = min(x, 1, w)", "w", "the two sides are i32 and u32"),
-        ("x = row.sum()", "row.sum()", "can only call kernels, len, min, max, abs, quotient, remainder, sqrt and casts"),
-        ("x = other(x, row=row)", "other(x", "call by name, without keywords"),
+        ("x = min(row)", "min(row", "cannot call min like this; give min two arguments, in a loop over the array"),
+        ("x = row.sum()", "row.sum()", "cannot call row.sum: it has no modules and no methods; write a loop, for i in range(...)"),
+        ("x = np.abs(x)", "np.abs(x)", "cannot call np.abs: it has no modules and no methods; write abs(...) of numbers"),
+        ("y = np.zeros(4)", "np.zeros", "no methods; a kernel has numbers and the arrays that it is given; pass an array as a parameter"),
+        ("x = np.clip(x, 0, 9)", "np.clip", "no methods; write min(max(x, low), high)"),
+        ("x = other(x, row)(1)", "other(x", "a kernel calls by name; write the name of a kernel or a function"),
+        ("x = other(x, row=row)", "row=row", "a kernel calls without keywords; give other its arguments in order"),
+        ("x = other(*row)", "*row", "a kernel calls without `*`; give other its arguments one by one"),
+        ("x = other(**row)", "**row", "a kernel calls without keywords"),
+        ("x = below(x)", "below(x)", "the name below is not defined above this kernel; put it above, or import it"),
         ("x = other(x)", "other(x)", "other takes 2 arguments, not 1; match its def"),
         ("x = other(w, row)", "w, row", "i32 is needed here, not u32"),
         ("x = other(x, col)", "col", "row must be an array u8[:]; pass such a parameter on"),
@@ -205,19 +225,19 @@ def test_what_is_outside_the_language_is_refused_where_it_stands(
     ("head", "at", "what"),
     [
         ("def f(x):", "x)", "the parameter x needs a type; write i32, u32, f32, or an array such as u8[:]"),
-        ("def f(x: u8):", "x: u8", "the parameter x needs a type"),
-        ("def f(x: float):", "x: float", "the parameter x needs a type"),
-        ("def f(x: 'i32 +'):", "x: 'i32 +'", "the parameter x needs a type"),
-        ("def f(x: u8[4]):", "x: u8[4]", "the parameter x needs a type"),
-        ("def f(x: i32 = 1):", "def f", "takes plain parameters only; remove *, ** and default values"),
-        ("def f(*x: i32):", "def f", "takes plain parameters only"),
-        ("def f(**x: i32):", "def f", "takes plain parameters only"),
-        ("def f(*, x: i32):", "def f", "takes plain parameters only"),
+        ("def f(x: u8):", "x: u8", "the parameter x cannot be u8; write i32, u32"),
+        ("def f(x: float):", "x: float", "the parameter x cannot be float; write i32, u32"),
+        ("def f(x: 'i32 +'):", "x: 'i32 +'", "the parameter x cannot be 'i32 +'"),
+        ("def f(x: u8[4]):", "x: u8[4]", "the parameter x cannot be u8[4]"),
+        ("def f(x: i32 = 1):", "1", "takes plain parameters only; remove *, ** and default values"),
+        ("def f(*x: i32):", "x: i32", "takes plain parameters only"),
+        ("def f(**x: i32):", "x: i32", "takes plain parameters only"),
+        ("def f(*, x: i32):", "x: i32", "takes plain parameters only"),
         ("def f(x: i32) -> u8:", "u8", "returns i32, u32, f32 or nothing; write -> i32"),
         ("def f(x: i32) -> bool:", "bool", "returns i32, u32, f32 or nothing"),
         ("def f(x: i32) -> i32:", "def f", "f can end without a value; return an i32 on every way"),
         ("async def f(x: i32):", "async def", "must be a plain `def`; write def, not lambda or async def"),
-        ("def f(größe: i32):", "def f", "the name größe is not ASCII"),
+        ("def f(größe: i32):", "größe: i32", "the name größe is not ASCII"),
     ],
 )
 def test_a_head_outside_the_language_is_refused(head: str, at: str, what: str, tmp_path: Path) -> None:
@@ -247,6 +267,37 @@ def test_the_caret_stands_right_behind_wide_letters_and_tabs(tmp_path: Path) -> 
     _, shown, caret = str(caught.value).splitlines()
     assert shown[caret.index("^") :] == "'äöü' + 'é'"
     assert caret.startswith("    \t")
+
+
+@pytest.mark.parametrize("sign", ["\f", "\v", "\x1c", "\x85", "\N{LINE SEPARATOR}"])
+def test_the_caret_stands_in_its_line_behind_what_is_no_end_of_a_line(sign: str, tmp_path: Path) -> None:
+    """A form feed in a comment above ends no line, neither in a refusal nor in the lines of a kernel."""
+    _, shown, above_caret = refusal_of(
+        f"@kernel\ndef f(x: i32):\n    x = 1  #{sign}\n    y = [x]\n", tmp_path
+    )
+    assert shown.strip() == "y = [x]"
+    assert above_caret == "[x]"
+    f: Kernel = import_text(f"@kernel\ndef f(x: i32):\n    x = 1  #{sign}\n", tmp_path).f
+    assert len(f.function.lines) == 3
+
+
+def test_of_a_long_line_what_is_about_the_caret_is_shown(tmp_path: Path) -> None:
+    """A line of thousands of letters leaves room for what is wrong in it."""
+    _, shown, above_caret = refusal_of(
+        f"@kernel\ndef f(x: i32):\n    x = 0x{5000 * '0'}1; y = [x]{500 * ' '}# end\n", tmp_path
+    )
+    assert len(shown) < 300
+    assert above_caret.startswith("[x]")
+
+
+def test_a_variable_of_the_function_around_a_kernel_is_refused_where_it_is_used(tmp_path: Path) -> None:
+    """A kernel cannot close over a name, and the caret stands below its first use."""
+    text = (
+        "def outer(size: int):\n    @kernel\n    def f(x: i32) -> i32:\n        return x + size\nouter(3)\n"
+    )
+    message, _, above_caret = refusal_of(text, tmp_path)
+    assert "a kernel cannot close over size; pass it as a parameter" in message
+    assert above_caret == "size"
 
 
 ODD = {

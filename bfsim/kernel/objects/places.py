@@ -62,7 +62,7 @@ class Places:
             function = self.of_file[line.file]
             self.functions[function.symbol] = function
             # what leaves it has the line of the C's closing brace, which is behind the Python
-            last = len(function.source.splitlines())
+            last = len(function.lines)
             return SourceLine(function.symbol, min(line.line, last))
         function, source = self._source(self._routine(address))
         return SourceLine(function.symbol, source.lines.get(address, 1))

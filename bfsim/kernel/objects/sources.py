@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from bfsim import store
 from bfsim.blackfin.image import Image, Routine
+from bfsim.file_content import lines_of
 from bfsim.kernel import keys
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def file_lines(path: Path) -> list[str] | None:
             octets = file.read(MOST_BYTES + 1)
     except OSError:
         return None
-    return None if len(octets) > MOST_BYTES else octets.decode(errors="replace").splitlines()
+    return None if len(octets) > MOST_BYTES else lines_of(octets.decode(errors="replace"))
 
 
 def _head(rows: list[str], begin: int, name: str) -> int:

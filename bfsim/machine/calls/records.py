@@ -92,7 +92,7 @@ class CoreRecords:
                 symbol=symbol,
                 file=function.file,
                 first_line=first,
-                text=tuple(function.source.splitlines()),
+                text=tuple(function.lines),
                 calls=each.calls,
                 issue_cclk=sum(cost.issue_cclk for cost in costs),
                 stall_cclk=stalls_by_reason(
