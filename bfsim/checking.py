@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bfsim import shipped
-from bfsim.errors import ConfigError, FirmwareError, RecordingError, cut, shown
+from bfsim.errors import BfsimError, ConfigError, cut, shown
 from bfsim.identifying import recording_digest
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
 from bfsim.report.check.judge import require_stages
@@ -30,9 +30,7 @@ def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
     arguments |= {key: folder / given[key] for key in ("recording", "script") if key in given}
     arguments |= {key: _moved(given[key], folder) for key in ("firmware", "board", "profile") if key in given}
     if configuration.ldf:
-        there = folder / configuration.ldf
-        is_shipped = not there.exists() and shipped.ldf_at(Path(configuration.ldf)) is not None
-        arguments["ldf"] = Path(configuration.ldf) if is_shipped else there
+        arguments["ldf"] = shipped.ldf_at(Path(configuration.ldf), folder) or folder / configuration.ldf
     return arguments
 
 
@@ -48,8 +46,8 @@ def configuration_given(given: Mapping[str, Any], folder: Path) -> Configuration
             plain[key] = f"{_from(place, folder)}.py{name}"
     if "ldf" in plain:
         found = shipped.ldf_at(plain["ldf"])
-        is_own = found is not None and found.parent != shipped.LDF_FOLDER
-        plain["ldf"] = _from(plain["ldf"], folder) if is_own else str(plain["ldf"])
+        is_shipped = found is not None and found.parent == shipped.LDF_FOLDER
+        plain["ldf"] = str(plain["ldf"]) if is_shipped else _from(plain["ldf"], folder)
     names = {"settings": "set", "defines": "define", "include_dirs": "include"}
     plain = {names.get(key, key): value for key, value in plain.items()}
     if "include" in plain:
@@ -84,7 +82,7 @@ def require_comparable(case: Case, path: Path) -> None:
     arguments = arguments_of(case.configuration, path.parent)
     try:
         identity, frames = identified(**arguments)
-    except (ConfigError, FirmwareError, RecordingError) as error:
+    except BfsimError as error:
         raise type(error)(f"{path}: run {shown(case.name)}: {error}") from error
     if case.measured_on:
         names = {"board": identity.board, "compiler": identity.compiler, "script": case.script}

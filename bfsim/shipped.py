@@ -40,15 +40,13 @@ def accuracy_on(section: str) -> str:
     return rest.partition("\n## ")[0].strip()
 
 
-def ldf_at(path: Path) -> Path | None:
-    """Return the LDF that is meant by `path`: the shipped one of that name, with or without `.ldf`, unless there is such a file.
+def ldf_at(path: Path, folder: Path = Path()) -> Path | None:
+    """Return the LDF that is meant by `path`: a file in `folder`, or by a name alone a shipped one, with or without `.ldf`.
 
-    None where a name alone is neither.
+    None where there is neither.
     """
-    if len(path.parts) > 1 or _is_file(path):
-        return path
-    named = (LDF_FOLDER / path.name, LDF_FOLDER / f"{path.name}.ldf")
-    return next((each for each in named if _is_file(each)), None)
+    shipped = (LDF_FOLDER / path.name, LDF_FOLDER / f"{path.name}.ldf") if len(path.parts) == 1 else ()
+    return next((each for each in (folder / path, *shipped) if _is_file(each)), None)
 
 
 def _is_file(path: Path) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -214,7 +215,10 @@ def _expanded(file: File, defined: Mapping[str, str], include_dirs: Sequence[Pat
 
 
 def _read(path: Path) -> str:
-    return read_bounded(path).decode("utf-8-sig", errors="replace")
+    """Return the text of a file, in UTF-16 where it begins with that mark, as editors of Windows write it."""
+    content = read_bounded(path)
+    is_utf_16 = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
+    return content.decode("utf-16" if is_utf_16 else "utf-8-sig", errors="replace")
 
 
 def _macro(define: re.Match[str]) -> Macro:

@@ -18,6 +18,7 @@ from click.testing import CliRunner, Result
 from bfsim.cli.main import main
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.report.check.history import append_history
+from bfsim.shipped import LDF_FOLDER
 from tests.test_run import FIRMWARE, record
 
 SLOWER = FIRMWARE.replace(
@@ -152,7 +153,7 @@ def refused(*arguments: object) -> str:
     [
         ([*WHAT, "--frames", "2"], "--firmware fw_eyes.py', differs: frames is the default there and 2 here; --update adds"),
         ([*WHAT, "--ldf", "l2"], "ldf is the default there and 'l2' here"),
-        ([*WHAT, "--ldf", "none.ldf", "--update"], "LDF must be a file or a shipped one"),
+        ([*WHAT, "--ldf", "none.ldf", "--update"], "limits.toml: run 'drive --firmware fw_eyes.py --ldf none.ldf': LDF must be a file or a shipped one"),
         (["--case", "drove"], "--case must name one of its 2 runs, not 'drove'; the nearest are"),
         (["--case", "drive --firmware fw_eyes.py", "--frames", "2"], "says itself what to run: "),
         (["a\udcff.mcap", "--update"], "recording must have a name that can be written into a baseline file"),
@@ -207,6 +208,18 @@ def test_a_mistake_in_the_file_is_told_with_its_run() -> None:
         assert f"limits.toml: run 'drive --firmware fw_eyes.py': {message}" in refused(
             "--baseline", "limits.toml"
         )
+
+
+def test_an_ldf_lies_beside_the_file_and_is_none_of_the_current_folder(idle_repository: Path) -> None:
+    """What a run names is sought from there alone, also where the current folder has a file of that name."""
+    text = (idle_repository / "limits.toml").read_text()
+    (idle_repository / "limits.toml").write_text(text.replace("[[run]]", '[[run]]\nldf = "mine.ldf"', 1))
+    (idle_repository / "ci").mkdir()
+    shutil.copy(LDF_FOLDER / "l2.ldf", "ci/mine.ldf")
+    with chdir("ci"):
+        message = refused("--baseline", "../limits.toml")
+    assert "LDF must be a file or a shipped one" in message
+    assert message.endswith("not '../mine.ldf'")
 
 
 def test_a_file_is_the_same_by_any_way_to_it(repository: Path) -> None:

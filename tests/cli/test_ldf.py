@@ -152,7 +152,10 @@ def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, why: str
         (["--firmware", "nowhere:at_all"], "'nowhere' must be installed"),
         (["--picture", "map.jpg"], "--picture must be a file *.png or *.svg, not map.jpg"),
         (["--picture", "/no/such/folder/map.png"], "the folder /no/such/folder must exist"),
-        (["far/no.ldf"], "LDF must be a readable file, not far/no.ldf"),
+        (
+            ["far/no.ldf"],
+            "LDF must be a file or a shipped one (cache, cm-bf533, l2, sdram, thesis), not 'far/no.ldf'",
+        ),
         (["--size", "1280x960"], "Out of memory in output section"),
     ],
 )

@@ -329,6 +329,20 @@ def test_a_file_that_is_not_there_is_one_error(tmp_path: Path) -> None:
         parse_ldf(tmp_path)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-be"])
+def test_an_ldf_that_windows_saved_is_read(encoding: str, tmp_path: Path) -> None:
+    """With the mark of its encoding at the beginning, and with what it includes."""
+    mark = "\ufeff" if encoding == "utf-16-be" else ""
+    included, path = tmp_path / "memory.ldfi", tmp_path / "test.ldf"
+    text = L1_ONLY.format(input="x.doj(a)")
+    included.write_bytes((mark + text).encode(encoding))
+    path.write_bytes(f'{mark}// Speicher für mich\r\n#include "memory.ldfi"\r\nno;'.encode(encoding))
+    with pytest.raises(LinkError, match=r"test\.ldf:3:1: .*\nno;\n\^"):
+        parse_ldf(path)
+    path.write_bytes(f'{mark}#include "memory.ldfi"\r\n'.encode(encoding))
+    assert [each.name for each in parse_ldf(path).segments] == ["MEM_DATA"]
+
+
 def test_a_file_of_anything_is_an_error_and_no_crash(tmp_path: Path) -> None:
     """Bytes that are no text end in a LinkError with a short excerpt."""
     path = tmp_path / "binary.ldf"

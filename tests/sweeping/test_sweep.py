@@ -113,7 +113,8 @@ def test_a_failing_point_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
     assert ran == ["frames=1 ldf=thesis", "frames=2 ldf=thesis"]
     assert not outcomes[ran[0]].error
     assert "index" in outcomes[ran[1]].error
-    assert "LDF must be a readable file" in outcomes["frames=1 ldf=none"].error
+    must_be = "LDF must be a file or a shipped one (cache, cm-bf533, l2, sdram, thesis)"
+    assert must_be in outcomes["frames=1 ldf=none"].error
     assert swept(file) == (outcomes, [])
 
 
