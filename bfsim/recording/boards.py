@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.images import image_paths, load_image
+from bfsim.recording.images import images_and_others, load_image
 from bfsim.recording.pairs import pairs_of
 from bfsim.recording.planes import Plane, YuvPlanes, fit_matrix
 from bfsim.recording.sources import Skipped
@@ -64,14 +64,15 @@ def find_views(
 def _together(folder: Path, *, mono: bool) -> tuple[list[tuple[Path, ...]], list[Skipped]]:
     """Return the pictures that were taken at once, and those that have no partner."""
     if mono:
-        return [(path,) for path in image_paths(str(folder))], []
-    lefts, rights = (_pictures_of(folder, side) for side in SIDES)
+        images, others = images_and_others(str(folder))
+        return [(path,) for path in images], others
+    (lefts, no_lefts), (rights, no_rights) = (_pictures_of(folder, side) for side in SIDES)
     pairs, alone = pairs_of(lefts, rights, f"{folder}: chessboard pictures")
-    return list(pairs), alone
+    return list(pairs), [*no_lefts, *no_rights, *alone]
 
 
-def _pictures_of(folder: Path, side: str) -> list[Path]:
-    return image_paths(str(folder / side if (folder / side).is_dir() else folder / f"{side}*"))
+def _pictures_of(folder: Path, side: str) -> tuple[list[Path], list[Skipped]]:
+    return images_and_others(str(folder / side if (folder / side).is_dir() else folder / f"{side}*"))
 
 
 def _grey(path: Path, size: tuple[int, int], *, resize: bool) -> tuple[Plane, NDArray[np.float64]]:

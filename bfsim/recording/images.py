@@ -21,12 +21,12 @@ _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", 
 
 def open_image_pair(left: str, right: str, *, mixed: bool) -> list[PictureSource]:
     """Images of both cameras as `open_images` has them, those that belong together: as many of either."""
-    lefts, rights = (_images_and_others(source) for source in (left, right))
+    lefts, rights = (images_and_others(source) for source in (left, right))
     pairs, alone = pairs_of(lefts[0], rights[0], f"{left} and {right}: images")
     sides = list(zip(*pairs, strict=True))
     return [
-        _source(left, list(sides[0]), lefts[1], tuple(alone), mixed=mixed),
-        _source(right, list(sides[1]), rights[1], (), mixed=mixed),
+        _source(left, list(sides[0]), [*lefts[1], *alone], mixed=mixed),
+        _source(right, list(sides[1]), rights[1], mixed=mixed),
     ]
 
 
@@ -36,12 +36,10 @@ def open_images(source: str, *, mixed: bool) -> PictureSource:
     Images that cannot be read are skipped, if one can; others that are of another size than the first are refused,
     unless they may be `mixed`.
     """
-    return _source(source, *_images_and_others(source), (), mixed=mixed)
+    return _source(source, *images_and_others(source), mixed=mixed)
 
 
-def _source(
-    source: str, paths: list[Path], others: list[Path], alone: tuple[Skipped, ...], *, mixed: bool
-) -> PictureSource:
+def _source(source: str, paths: list[Path], skipped: list[Skipped], *, mixed: bool) -> PictureSource:
     first = _first_readable(paths)
     return PictureSource(
         name=source,
@@ -49,7 +47,7 @@ def _source(
         count=len(paths),
         fps=None,
         pictures=lambda: _pictures(paths, None if mixed else first),
-        skipped=(*(Skipped(path.name, "no image by its name") for path in others), *alone),
+        skipped=tuple(skipped),
     )
 
 
@@ -88,12 +86,8 @@ def picture_of_file(path: Path) -> UyvyImage:
     return YuvPlanes.from_image(picture.crop((0, 0, picture.width // 2 * 2, picture.height))).to_uyvy()
 
 
-def image_paths(source: str) -> list[Path]:
-    """Image files of a folder, of a pattern or of one file, in natural order of their names."""
-    return _images_and_others(source)[0]
-
-
-def _images_and_others(source: str) -> tuple[list[Path], list[Path]]:
+def images_and_others(source: str) -> tuple[list[Path], list[Skipped]]:
+    """Return the image files of a folder, of a pattern or of one file, in natural order of their names, and the files beside them."""
     path = Path(source)
     if is_pattern(source):
         found = _matching(path)
@@ -107,15 +101,13 @@ def _images_and_others(source: str) -> tuple[list[Path], list[Path]]:
         )
     # A link that leads nowhere is a picture that cannot be read, and not none.
     files = sorted((each for each in found if each.is_file() or _is_broken_link(each)), key=_natural_key)
-    images = [
-        file for file in files if file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
-    ]
+    images = [file for file in files if _is_image(file)]
     if not images:
         raise RecordingError(
             f"{source}: source must hold images ({', '.join(sorted(IMAGE_SUFFIXES))}), "
             f"but none of its {len(found)} files is one{_names_of(found)}"
         )
-    return images, [file for file in files if file not in images]
+    return images, [Skipped(file.name, "no image by its name") for file in files if not _is_image(file)]
 
 
 def _matching(pattern: Path) -> list[Path]:
@@ -126,6 +118,11 @@ def _matching(pattern: Path) -> list[Path]:
     if not is_pattern(rest[0]):
         raise RecordingError(f"{pattern}: the folder {folder / rest[0]} must be there, but is not")
     return list(folder.glob(str(Path(*rest))))
+
+
+def _is_image(file: Path) -> bool:
+    """Whether a file is an image by its name."""
+    return file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
 
 
 def _is_broken_link(path: Path) -> bool:

@@ -79,8 +79,8 @@ def import_recording(
     its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
     picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`). A bag of ROS is one source with both cameras' topics, which `topics` names and
     `slop_s` pairs (see `open_bag`); its time stamps are kept, from the first picture on, and geometry and rectification are
-    those of its camera_info unless they are given. Of other sources the k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
-    `output` needs `force`. Raises RecordingError, with the file and the frame.
+    those of its camera_info unless they are given. Of other sources the k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30, and an uneven
+    video's own times. An existing `output` needs `force`. Raises RecordingError, with the file and the frame.
     """
     names = [os.fspath(source) for source in sources]
     is_bag = any((format or guess_format(name)) == "rosbag" for name in names)
@@ -133,7 +133,8 @@ def import_recording(
             sizes |= {side.size for side in sides if isinstance(side, YuvPlanes)}
             even_ns = round(writer.frame_count * 1_000_000_000 / rate)
             left_ns, right_ns = (
-                even_ns if each.times_ns is None else each.times_ns[index] for each in (opened[0], opened[-1])
+                even_ns if each.times_ns is None or fps is not None else each.times_ns[index]
+                for each in (opened[0], opened[-1])
             )
             coded = left.to_uyvy(), right.to_uyvy()
             exchange.look_at(*coded)
@@ -153,7 +154,12 @@ def import_recording(
         size_bytes=writer.path.stat().st_size,
         source_sizes=tuple(sorted(sizes)),
         skipped=tuple(skipped),
-        notes=(*(bag.notes if bag else ()), *rig.notes, *(f"Warning: {each}" for each in exchange.warnings)),
+        notes=(
+            *(bag.notes if bag else ()),
+            *(note for source in opened for note in source.notes if fps is None),
+            *rig.notes,
+            *(f"Warning: {each}" for each in exchange.warnings),
+        ),
     )
 
 

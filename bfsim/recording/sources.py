@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 SourceFormat = Literal["images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag"]
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
 
-IMAGE_SUFFIXES = frozenset({".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"})
+IMAGE_SUFFIXES = frozenset(
+    {".bmp", ".gif", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"}
+)
 
 _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ".uyvy": "uyvy", ".422": "uyvy",
@@ -42,7 +44,7 @@ class PictureSource:
     count is None when only reading to the end tells; fps is None when the source does not say. `pictures`
     opens the source and yields from the first picture on, one in memory at a time; in the place of one that cannot be
     read, why not. `skipped` are files beside them that are no pictures. `times_ns` says when each was taken, if the
-    source knows.
+    source knows, at least of those that it has yielded. `notes` are for who imports it.
     """
 
     name: str
@@ -51,17 +53,19 @@ class PictureSource:
     fps: Fraction | None
     pictures: Callable[[], Iterator[YuvPlanes | Skipped]]
     skipped: tuple[Skipped, ...] = ()
-    times_ns: tuple[int, ...] | None = None
+    times_ns: Sequence[int] | None = None
+    notes: tuple[str, ...] = ()
 
 
 def guess_format(source: str) -> SourceFormat | None:
-    """Format of a source by its name; None if the name does not tell."""
+    """Format of a source by its name; None if the name does not tell. A GIF by itself is an animation."""
     path = Path(source)
     if (path / "metadata.yaml").is_file():
         return "rosbag"
-    if path.is_dir() or is_pattern(source) or path.suffix.lower() in IMAGE_SUFFIXES:
+    if path.is_dir() or is_pattern(source):
         return "images"
-    return _FILE_SUFFIXES.get(path.suffix.lower())
+    suffix = path.suffix.lower()
+    return _FILE_SUFFIXES.get(suffix, "images" if suffix in IMAGE_SUFFIXES else None)
 
 
 def is_pattern(source: str) -> bool:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,27 +15,48 @@ from bfsim.errors import RecordingError
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.sources import PictureSource
 
+LARGEST_JITTER_S = Fraction(1, 1000)
+"""Pictures of an even rate may be off by less than this, or than a tick of the video's clock."""
+
 
 def open_video(source: str) -> PictureSource:
-    """The first video stream of a file, upright as it says, in full-range BT.601 whatever range and matrix it was coded in."""
-    with _stream_of(source) as (_, stream):
-        rate = stream.average_rate
-        first = next(_pictures(source), None)
-        if first is None:
-            raise RecordingError(
-                f"{source}: video must have at least one frame that can be decoded, not none"
-            )
-        return PictureSource(
-            name=source,
-            size=first.size,
-            count=None,
-            fps=Fraction(rate) if rate else None,
-            pictures=lambda: _pictures(source),
+    """The first video stream of a file, upright as it says, in full-range BT.601 whatever range and matrix it was coded in.
+
+    Pictures that do not come at the rate that the video has, as those of phones, keep their times.
+    """
+    with _stream_of(source) as (container, stream):
+        rate = Fraction(stream.average_rate) if stream.average_rate else None
+        times_s = sorted(
+            each.pts * stream.time_base for each in container.demux(stream) if each.pts is not None
         )
+        jitter_s = max(stream.time_base, LARGEST_JITTER_S)
+        first = next(_pictures(source, []), None)
+    if first is None:
+        raise RecordingError(f"{source}: video must have at least one frame that can be decoded, not none")
+    own = PictureSource(
+        name=source, size=first.size, count=None, fps=rate, pictures=lambda: _pictures(source, [])
+    )
+    gaps_s = [after - before for before, after in pairwise(times_s)]
+    is_even = rate and all(
+        abs(time_s - times_s[0] - index / rate) < jitter_s for index, time_s in enumerate(times_s)
+    )
+    if is_even or not any(gaps_s):
+        return own
+    least, most = (f"{float(each) * 1000:.0f}" for each in (min(gaps_s), max(gaps_s)))
+    times_ns: list[int] = []
+    return replace(
+        own,
+        fps=len(gaps_s) / sum(gaps_s),
+        pictures=lambda: _pictures(source, times_ns),
+        times_ns=times_ns,
+        notes=(f"{source}: pictures are {least} to {most} ms apart, as there; `--fps` spaces them evenly",),
+    )
 
 
-def _pictures(source: str) -> Iterator[YuvPlanes]:
-    size = None
+def _pictures(source: str, times_ns: list[int]) -> Iterator[YuvPlanes]:
+    """Yield the pictures; `times_ns` then says when each of them was taken, from the first one on."""
+    size, ticks = None, list[int]()
+    times_ns.clear()
     with _stream_of(source) as (container, stream):
         for index, frame in enumerate(container.decode(stream)):
             full_range = frame.reformat(format="yuv444p", dst_colorspace="ITU601", dst_color_range="JPEG")
@@ -46,6 +69,9 @@ def _pictures(source: str) -> Iterator[YuvPlanes]:
                 raise RecordingError(
                     f"{source}: frame {index} must be {size[0]}x{size[1]} like the first, not {width}x{height}"
                 )
+            tick = 0 if frame.pts is None else frame.pts
+            ticks.append(max(tick, ticks[-1] + 1) if ticks else tick)  # time stamps rise
+            times_ns.append(round((ticks[-1] - ticks[0]) * stream.time_base * 1_000_000_000))
             yield picture
 
 

@@ -391,6 +391,21 @@ class TestBadPictures:
         assert len(report.used) == 23
         assert report.reprojection_px < 0.2
 
+    @pytest.mark.parametrize("mono", [False, True])
+    def test_files_beside_the_pictures_are_listed(self, tmp_path: Path, mono: bool) -> None:
+        """As those of an import are: one might take them for pictures that were used."""
+        pytest.importorskip("cv2")
+        for side in ("left", "right"):
+            (tmp_path / side).mkdir()
+            Image.new("L", SIZE, 80).save(tmp_path / side / "1.png")
+        (tmp_path / "left" / "2.heic").write_text("no picture")
+        with pytest.raises(
+            RecordingError, match=r"skipped were 2\.heic: no image by its name; 1\.png: no whole"
+        ):
+            calibrate(
+                tmp_path / "left" if mono else tmp_path, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=mono
+            )
+
     @pytest.mark.exhaustive
     def test_other_chessboard(self, pictures: Path) -> None:
         for k in range(2, 27):

@@ -260,6 +260,40 @@ def test_video(tmp_path: Path) -> None:
     assert set(frames[0].left[:, 0::4].flat) == {128}
 
 
+@pytest.mark.parametrize(
+    ("times_ms", "recorded_ms", "note"),
+    [
+        ([0, 33, 67, 100], [0, 33 + 1 / 3, 66 + 2 / 3, 100], ""),
+        (
+            [7, 40, 240, 273],
+            [0, 33, 233, 266],
+            "pictures are 33 to 200 ms apart, as there; `--fps` spaces them",
+        ),
+        ([0, 67, 133, 200], [0, 67, 133, 200], "pictures are 66 to 67 ms apart, as there"),
+    ],
+)
+def test_pictures_of_a_video_come_when_they_came(
+    tmp_path: Path, times_ms: list[int], recorded_ms: list[float], note: str
+) -> None:
+    """Phones take a picture when there is light enough: of a rate that the video does not keep it was recorded, without a word."""
+    av = pytest.importorskip("av", reason="needs the optional extra: video")
+    with av.open(tmp_path / "a.mkv", "w") as container:
+        stream = container.add_stream("ffv1", rate=30)
+        stream.width, stream.height, stream.pix_fmt = 32, 16, "yuv420p"
+        stream.codec_context.time_base = Fraction(1, 1000)
+        for time_ms in times_ms:
+            frame = av.VideoFrame.from_ndarray(np.full((24, 32), 99, np.uint8), format="yuv420p")
+            frame.pts, frame.time_base = time_ms, Fraction(1, 1000)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+    notes = import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True).notes
+    assert [note in each for each in notes] == ([True] if note else [])
+    assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "a.mcap")] == pytest.approx(recorded_ms)
+    even = import_recording([tmp_path / "a.mkv"], tmp_path / "even.mcap", mono=True, fps=10)
+    assert (even.fps, even.notes) == (10, ())
+    assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "even.mcap")] == [0, 100, 200, 300]
+
+
 def animation(path: Path, format: str) -> None:
     """Write three pictures that differ."""
     pictures = [Image.fromarray(each) for each in noise((3, 4, 8, 3))]
@@ -273,6 +307,19 @@ def test_all_pictures_of_an_animation_are_a_video(tmp_path: Path, name: str) -> 
     animation(tmp_path / name, "GIF" if name == "a.gif" else "PNG")
     summary = import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True)
     assert (summary.frame_count, summary.fps) == (3, 10)
+
+
+def test_gifs_in_a_folder_are_pictures(tmp_path: Path) -> None:
+    """They were passed over by their name; an animation among them is none, as any file of several pictures."""
+    for side in ("left", "right"):
+        (tmp_path / side).mkdir()
+        for number, level in enumerate((10, 200)):
+            Image.new("L", (8, 4), level).save(tmp_path / side / f"{number}.gif")
+        animation(tmp_path / side / "9.gif", "GIF")
+    summary = import_recording([tmp_path / "left", tmp_path / "right"], tmp_path / "a.mcap")
+    assert [frame.left[0, 1] for frame in frames_of(tmp_path / "a.mcap")] == [10, 200]
+    assert {each.name for each in summary.skipped} == {"9.gif"}
+    assert summary.skipped[0].reason.startswith("image must be one picture, not 3")
 
 
 @pytest.mark.parametrize(("name", "format"), [("a.png", "PNG"), ("a.webp", "WEBP"), ("a.tiff", "TIFF")])
