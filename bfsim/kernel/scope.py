@@ -87,8 +87,10 @@ class KernelScope(Expressions):
             self.source.refuse(node, f"a kernel cannot call {name}, which is Python's", instead_of(name))
         if not name:
             self._refuse_unnamed(node)
-        for each in node.keywords:
-            self.source.refuse(each, "a kernel calls without keywords", f"give {name} its arguments in order")
+        for keyword in node.keywords:
+            self.source.refuse(
+                keyword, "a kernel calls without keywords", f"give {name} its arguments in order"
+            )
         for each in node.args:
             if isinstance(each, ast.Starred):
                 self.source.refuse(

@@ -309,7 +309,9 @@ def test_a_failure_is_explained_by_the_baseline_alone(tmp_path: Path) -> None:
     assert found is not None
     assert (found.cclk, sum(each.cclk for each in found.stages)) == (9400, 9400)
     assert any("library division: +2 x 100 x 47 cycles: +9,400" in each for each in explanation(outcome))
-    assert verdict_line(outcome).startswith("FAILED: drive: 3 of 8 limits broken, ")
+    assert verdict_line(outcome).startswith("FAILED: drive: 5 of 8 limits broken, ")
+    (told,) = json.loads(check_json([outcome]))["runs"]
+    assert sum(each["broken"] for each in told["verdicts"]) == 5
     assert difference_of_outcome(hold(run(0), path)).cclk == 0
 
 

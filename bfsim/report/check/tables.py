@@ -35,7 +35,7 @@ def check_report(outcome: Outcome, path: Path) -> RenderableType:
 def verdict_line(outcome: Outcome) -> str:
     """Return the outcome in one line."""
     rate = next(iter(outcome.figures["frame_rate",].values))
-    count = f"{len(list(worst_of_each(outcome.broken)))} of {len(outcome.verdicts)} limits broken"
+    count = f"{len(outcome.broken)} of {len(outcome.verdicts)} limits broken"
     kept = f"all {len(outcome.verdicts)} limits kept"
     word = "Passed" if outcome.passed else "FAILED"
     return f"{word}: {outcome.case.name}: {kept if outcome.passed else count}, {rate:.2f} frames/s{of_one_frame(outcome.run)}."
