@@ -15,7 +15,11 @@ from bfsim.errors import ConfigError, cut, shown
 from bfsim.file_content import read_bounded
 from bfsim.report.as_json import SCHEMA
 from bfsim.report.owners import OwnerFrames, owner_frames
+from bfsim.report.wrong_value import key_of, wrong_value
 from bfsim.trace import RunRecord, WarningKind
+
+OWNERS = "owners"
+"""The key of whose the cycles were."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +49,10 @@ def read_result(path: Path) -> Result:
         )
     try:
         run = _records().validate_python({**plain, "assumptions": _assumptions(plain)})
-        owners = _owners().validate_python(plain.get("owners"))
+        owners = _owners().validate_python({OWNERS: plain.get(OWNERS)})[OWNERS]
     except ValidationError as error:
         first = error.errors()[0]
-        key = cut(".".join(str(part) for part in first["loc"])) or "the result"
-        must_be = first["msg"].replace("Input should", "must").replace("Field required", "must be there")
-        raise ConfigError(f"{path}: {key} {must_be}, not {shown(first['input'])}") from None
+        raise ConfigError(f"{path}: {key_of(first['loc'])} {wrong_value(first)}") from None
     if any(len(each.elapsed_cclk) != len(run.frames) for each in owners):
         raise ConfigError(f"{path}: owners must have a number for each of the {len(run.frames)} frames")
     if not run.frames:
@@ -80,8 +82,8 @@ def _records() -> TypeAdapter[RunRecord]:
 
 
 @cache
-def _owners() -> TypeAdapter[tuple[OwnerFrames, ...]]:
-    return TypeAdapter(tuple[OwnerFrames, ...])
+def _owners() -> TypeAdapter[dict[str, tuple[OwnerFrames, ...]]]:
+    return TypeAdapter(dict[str, tuple[OwnerFrames, ...]])
 
 
 def _assumptions(plain: Mapping[str, Any]) -> list[Mapping[str, Any]]:

@@ -19,6 +19,7 @@ from bfsim.errors import ConfigError, cut, shown
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.check.settings import leaves, text_of
 from bfsim.report.save import write_text
+from bfsim.report.wrong_value import key_of, wrong_value
 
 Options = Mapping[str, Any]
 """Values by their paths. Of two that lead to the same place the later one holds."""
@@ -87,9 +88,7 @@ def configured(options: Options, folder: Path, scripts: Path) -> Configuration:
         return Configuration.model_validate(plain)
     except ValidationError as error:
         first = error.errors()[0]
-        must_be = first["msg"].replace("Input should", "must")
-        where = cut(".".join(map(str, first["loc"])))
-        raise ConfigError(f"{where} {must_be}, not {shown(first['input'])}") from error
+        raise ConfigError(f"{key_of(first['loc'])} {wrong_value(first)}") from error
 
 
 def _text(value: object, path: str) -> str:

@@ -284,6 +284,15 @@ def test_history_has_a_line_a_run_and_draws_the_trend(repository: Path) -> None:
     assert "▁█▁" in result.output
 
 
+@pytest.mark.usefixtures("idle_repository")
+@pytest.mark.parametrize("median", ['"3.99"', "NaN", "-Infinity", "1e999", "null", "9" * 400])
+def test_a_history_whose_figures_cannot_be_drawn_is_told_before_anything_runs(median: str) -> None:
+    """A median that is no number, or none that has a place in a trend."""
+    Path("odd.jsonl").write_text(f'\n{{"run": "drive", "figures": {{"frame.median ms": {median}}}}}\n')
+    message = refused("--baseline", "limits.toml", "--history", "odd.jsonl")
+    assert "odd.jsonl:2 must be a line that `bfsim check --history` wrote" in message
+
+
 def test_a_history_that_has_no_room_is_named_and_stays_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

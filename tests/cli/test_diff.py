@@ -108,7 +108,7 @@ def test_a_run_does_not_differ_from_itself(home: Path) -> None:
         ("[]", "must be a result of `bfsim run --json`, not []"),
         ('{"schema": "bfsim.run/1"}', "must be a result of this version of bfsim"),
         ('{"schema": "SCHEMA"}', "frames must be there"),
-        ('{"schema": "SCHEMA", "frames": 3}', "frames must be a valid"),
+        ('{"schema": "SCHEMA", "frames": 3}', "frames must be a valid list, not 3"),
     ],
 )
 def test_a_file_that_is_no_result_is_refused(home: Path, text: str, told: str) -> None:
@@ -119,6 +119,26 @@ def test_a_file_that_is_no_result_is_refused(home: Path, text: str, told: str) -
     refused = bfsim("diff", "wrong.json", "no-such-recording.mcap")
     assert refused.exit_code == 2
     assert "wrong.json" in refused.stderr
+    assert told in " ".join(refused.stderr.split())
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("owners", 3, "wrong.json: owners must be a valid list, not 3"),
+        ("owners", [3], "wrong.json: owners.0 must be a dictionary, not 3"),
+        ("kernels", "all", "wrong.json: kernels must be a valid list, not 'all'"),
+        ("code", [{}], "wrong.json: code.0.core must be there"),
+    ],
+)
+def test_a_result_that_was_edited_is_told_with_its_key(
+    home: Path, key: str, value: object, told: str
+) -> None:
+    """In words of the file, and none of Python's."""
+    keep("once.json", "--firmware", "slow.py:firmware")
+    (home / "wrong.json").write_text(json.dumps(json.loads((home / "once.json").read_text()) | {key: value}))
+    refused = bfsim("diff", "once.json", "wrong.json")
+    assert refused.exit_code == 2
     assert told in " ".join(refused.stderr.split())
 
 

@@ -115,6 +115,13 @@ def refusal(tmp_path: Path, text: str) -> str:
         ("runs = 1", "runs must not be there; known keys are run"),
         ("run = 1", "run must be a valid list, not 1"),
         ("run = [1]", "run 1, it must be a valid dictionary, not 1"),
+        ("[[run]]\nname = ''", "name must have at least 1 character, not ''"),
+        ("[[run]]\nname = 'a'\ncosts.of = [{x = 1}]", "run 'a', the key costs.frames must be there; --update writes costs anew once it is removed"),
+        ("[[run]]\nname = 'a'\ncosts = {frames = 1, frame_ms = 1.0, cclk_hz = 1.0, least_cclk = 1, of = [{stage = 'a', owner = 'b', cclk = 1, x = 1}]}",
+         "costs.of.0.x must not be there; known keys are stage, owner, symbol, place, cclk, lines; --update writes"),
+        ("[[run]]\nname = 'a'\nmeasured_on = 3", "measured_on must be a valid dictionary, not 3; --update writes measured_on anew"),
+        (f"[[run]]\nname = 'a'\nrequire = ['latency <= {'9' * 5000} ms']", "after <= must come numbers of at most 30 digits"),
+        ("[[run]]\nname = 'a'\nrequire = ['results.x == 1*999999 2*999999']", "after == must come counts of at most 1,000,000 frames"),
         ("tolerance_percent = 0\n[measured_on]\nx = 1", "older bfsim, and must be made anew"),
     ],
 )  # fmt: skip

@@ -18,6 +18,7 @@ from bfsim.errors import ConfigError, cut, shown
 from bfsim.file_content import read_bounded
 from bfsim.report.check.requirement import Requirement, parse_requirement
 from bfsim.report.check.settings import leaves, text_of
+from bfsim.report.wrong_value import key_of, wrong_value
 from bfsim.trace import Identity
 
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
@@ -161,6 +162,14 @@ class Baseline(_Table):
     run: list[Case] = []
 
 
+TABLES: dict[int | str, type[_Table]] = {
+    "measured_on": MeasuredOn, "costs": Costs, "of": KeptOwner, "lines": KeptLine,
+}  # fmt: skip
+"""What is in a run, by the keys that lead there."""
+WRITTEN = (["limits"], ["measured_on"], ["costs"])
+"""Keys of a run that `--update` writes."""
+
+
 def read_baseline(path: Path) -> Baseline:
     """Read a baseline file. Raises ConfigError that names the file, the key and what must be there."""
     if not path.exists():
@@ -258,14 +267,13 @@ def _told(error: ValidationError, plain: Mapping[str, Any], path: Path) -> Confi
         name = entry.get("name") if isinstance(entry, dict) else None
         where = f"run {shown(name) if isinstance(name, str) else place[1] + 1}, "
         place = place[2:]
-    key = cut(".".join(map(str, place))) or "it"
+    key = key_of(place) or "it"
+    advice = f"; --update writes {place[0]} anew once it is removed" if place[:1] in WRITTEN else ""
     match first["type"]:
         case "missing":
-            return ConfigError(f"{path}: {where}the key {key} must be there")
+            return ConfigError(f"{path}: {where}the key {key} must be there{advice}")
         case "extra_forbidden":
-            known = ", ".join(Case.model_fields if where else Baseline.model_fields)
-            return ConfigError(f"{path}: {where}{key} must not be there; known keys are {known}")
-    must_be = (
-        first["msg"].replace("Input should", "must").partition(" or instance of")[0].removesuffix(" instance")
-    )
-    return ConfigError(f"{path}: {where}{key} {must_be}, not {shown(first['input'])}")
+            tables = [TABLES[each] for each in place[:-1] if each in TABLES]
+            known = ", ".join((tables[-1] if tables else Case if where else Baseline).model_fields)
+            return ConfigError(f"{path}: {where}{key} must not be there; known keys are {known}{advice}")
+    return ConfigError(f"{path}: {where}{key} {wrong_value(first)}{advice}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -74,12 +75,12 @@ def trend_table(history: Sequence[dict[str, Any]], names: Sequence[str]) -> Tabl
 def _entry(line: str, where: str) -> dict[str, Any]:
     try:
         entry: dict[str, Any] = json.loads(line)
-        float(entry["figures"][TREND])
-        str(entry["run"])
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise ConfigError(
-            f"{where} must be a line that `bfsim check --history` wrote, but is none"
-        ) from error
+        is_one = isinstance(entry["figures"][TREND], int | float) and math.isfinite(entry["figures"][TREND])
+        is_one = is_one and isinstance(entry["run"], str)
+    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+        is_one = False
+    if not is_one:
+        raise ConfigError(f"{where} must be a line that `bfsim check --history` wrote, but is none")
     return entry
 
 

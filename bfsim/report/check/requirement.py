@@ -55,6 +55,12 @@ _COMPARISON = re.compile(r"\s*(<=|>=|==)\s*")
 _NUMBER = re.compile(r"(-?\d[\d_]*(?:\.\d+)?)\s*")
 _COUNT = r"-?\d[\d_]*(?:\*[1-9]\d{0,6})?"
 _COUNTS = re.compile(rf"{_COUNT}(?:\s+{_COUNT})*\s*")
+_TIMES = re.compile(r"\*(\d+)")
+LONGEST_NUMBER = 30
+"""Digits; more is no figure of a run."""
+_TOO_LONG = re.compile(rf".*[\d_]{{{LONGEST_NUMBER + 1}}}")
+MOST_FRAMES = 1_000_000
+"""A number for each frame is kept in memory; so many are eleven hours at 25 a second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +110,11 @@ def parse_requirement(text: str, where: str) -> Requirement:
     wanted = f"after {comparison} must come a number{'' if is_published else ' that is not negative'}"
     begin = at
     counts = _COUNTS.fullmatch(text, at)
+    if _TOO_LONG.match(text, at):
+        _fail(f"after {comparison} must come numbers of at most {LONGEST_NUMBER} digits", text, at, where)
     if counts and unit is Unit.COUNT:
+        if sum(int(each) for each in _TIMES.findall(counts[0])) > MOST_FRAMES:
+            _fail(f"after {comparison} must come counts of at most {MOST_FRAMES:,} frames", text, at, where)
         numbers, named = _counted(counts[0]), ""
         if len(numbers) > 1 and (comparison != "==" or stands_for):
             _fail("a number for each frame must come after == and a name without statistic", text, at, where)
