@@ -118,7 +118,11 @@ def _point(
     words = {key: each.words for key, each in chosen.items() if len(axes[key]) > 1 or key == POINT}
     recording = words.pop(RECORDING, "")
     setting = printable(" ".join(words.values()))
-    return Point(configured(options, folder, scripts), options, setting, printable(recording))
+    try:
+        configuration = configured(options, folder, scripts)
+    except ConfigError as error:
+        raise ConfigError(f"point {shown(setting or BASE)}: {error}") from error
+    return Point(configuration, options, setting, printable(recording))
 
 
 def _axes(table: object, folder: Path) -> Iterator[tuple[str, list[_Choice]]]:
