@@ -88,7 +88,9 @@ def check(
     outputs = {each: what.pop(each) for each in OUTPUTS}
     cases = _cases(path, _given(what, path.parent), name, update=update)
     read = [file for case in cases for file in files_of_run(arguments_of(case.configuration, path.parent))]
-    _require_places([path, history, *outputs.values()], read)
+    if update:
+        _require_places([path], read)
+    _require_places([history, *outputs.values()], [path, *read])
     require_json_place(json_path, (path, history, *outputs.values(), *read))
     if history:
         read_history(history)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import resource
 import shutil
@@ -308,6 +309,16 @@ def test_a_history_that_has_no_room_is_named_and_stays_as_it_was(
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert path.read_text() == "{}\n"
+
+
+def test_a_baseline_that_is_only_read_may_lie_where_nothing_can_be_written(
+    repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in a container that mounts the repository to be read; --update must write."""
+    access = os.access
+    monkeypatch.setattr("os.access", lambda path, *mode: Path(path) != repository and access(path, *mode))
+    assert call("--baseline", "limits.toml", "--case", "drive --firmware fw_eyes.py").exit_code == 0
+    assert "limits.toml: the folder . must be writable" in refused("--baseline", "limits.toml", "--update")
 
 
 def test_a_person_requires_more(repository: Path) -> None:
