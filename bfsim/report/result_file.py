@@ -18,6 +18,8 @@ from bfsim.report.owners import OwnerFrames, owner_frames
 from bfsim.report.wrong_value import key_of, wrong_value
 from bfsim.trace import RunRecord, WarningKind
 
+LARGEST, LONGEST_NUMBER = (1 << 63) - 1, 20
+"""Of whole numbers, the latter in digits and a sign."""
 OWNERS = "owners"
 """The key of whose the cycles were."""
 
@@ -62,7 +64,7 @@ def read_result(path: Path) -> Result:
 
 def _plain(path: Path) -> dict[str, Any]:
     try:
-        plain = json.loads(read_bounded(path, most_mb=512))
+        plain = json.loads(read_bounded(path, most_mb=512), parse_int=_whole)
     except FileNotFoundError:
         raise ConfigError(
             f"{path} must be a result of `bfsim run --json`, but there is no such file"
@@ -74,6 +76,14 @@ def _plain(path: Path) -> dict[str, Any]:
     if not isinstance(plain, dict):
         raise ConfigError(f"{path} must be a result of `bfsim run --json`, not {shown(plain)}")
     return plain
+
+
+def _whole(digits: str) -> int:
+    """Return a whole number, of at most 64 bits: what is more has no place among floats."""
+    number = int(digits) if len(digits) <= LONGEST_NUMBER else LARGEST + 1
+    if abs(number) > LARGEST:
+        raise ValueError(f"a number must have at most 64 bits, not be {digits[:LONGEST_NUMBER]}")
+    return number
 
 
 @cache

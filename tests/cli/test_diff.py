@@ -126,6 +126,8 @@ def test_a_file_that_is_no_result_is_refused(home: Path, text: str, told: str) -
     ("key", "value", "told"),
     [
         ("owners", 3, "wrong.json: owners must be a valid list, not 3"),
+        ("version", 1 << 1000, "a number must have at most 64 bits, not be 10715086071862673209"),
+        ("version", -(1 << 63) - 1, "a number must have at most 64 bits, not be -9223372036854775809"),
         ("owners", [3], "wrong.json: owners.0 must be a dictionary, not 3"),
         ("kernels", "all", "wrong.json: kernels must be a valid list, not 'all'"),
         ("code", [{}], "wrong.json: code.0.core must be there"),

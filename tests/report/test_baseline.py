@@ -119,6 +119,8 @@ def refusal(tmp_path: Path, text: str) -> str:
         ("[[run]]\nname = 'a'\ncosts.of = [{x = 1}]", "run 'a', the key costs.frames must be there; --update writes costs anew once it is removed"),
         ("[[run]]\nname = 'a'\ncosts = {frames = 1, frame_ms = 1.0, cclk_hz = 1.0, least_cclk = 1, of = [{stage = 'a', owner = 'b', cclk = 1, x = 1}]}",
          "costs.of.0.x must not be there; known keys are stage, owner, symbol, place, cclk, lines; --update writes"),
+        (f"[[run]]\nname = 'a'\ncosts = {{frames = {10**12}, frame_ms = 1.0, cclk_hz = 1.0, least_cclk = {10**400}}}", "costs.frames must be less than"),
+        (f"[[run]]\nname = 'a'\ncosts = {{frames = 1, frame_ms = 1.0, cclk_hz = 1.0, least_cclk = {10**400}}}", "costs.least_cclk must be less than 9223"),
         ("[[run]]\nname = 'a'\nmeasured_on = 3", "measured_on must be a valid dictionary, not 3; --update writes measured_on anew"),
         (f"[[run]]\nname = 'a'\nrequire = ['latency <= {'9' * 5000} ms']", "after <= must come numbers of at most 30 digits"),
         ("[[run]]\nname = 'a'\nrequire = ['results.x == 1*999999 2*999999']", "after == must come counts of at most 1,000,000 frames"),

@@ -20,7 +20,7 @@ from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.markdown import diff_markdown
 from bfsim.report.diff.sentences import clock, code, reason, verdict, work
 from bfsim.report.diff.side import Line, Owner, Source, Stall
-from bfsim.report.diff.tables import diff_report
+from bfsim.report.diff.tables import diff_report, shown
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
 from tests.report.records import IDENTITY, cost, frame, run_of
@@ -126,6 +126,16 @@ def test_a_line_that_takes_longer_is_named_with_its_cause() -> None:
         "The largest part, in cycles of both cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300 "
         "(operations: 2 → 5 cycles x 100)."
     )
+
+
+def test_what_is_told_in_words_is_in_the_table_first() -> None:
+    """The largest part of the largest stage may have many small causes, and others, which cancel each other, larger ones."""
+    before = run(kernel(line(12, 100, 9000), line(13, 100, 100)), kernel(line(12, 100, 900), name="other"))
+    after = run(kernel(line(12, 100, 100), line(13, 100, 9010)), kernel(line(12, 100, 1300), name="other"))
+    found = difference_of(before, after)
+    assert "in it other (mine.py:10) +400; in it line 12 +400" in reason(found)
+    assert [each.name for _, each in shown(found, 1)][1] == "other"
+    assert "other (mine.py:10)" in diff_markdown(found, top=1)
 
 
 def test_running_more_often_and_taking_longer_are_told_apart() -> None:

@@ -16,12 +16,14 @@ from tomlkit.exceptions import TOMLKitError
 
 from bfsim.errors import ConfigError, cut, shown
 from bfsim.file_content import read_bounded
-from bfsim.report.check.requirement import Requirement, parse_requirement
+from bfsim.report.check.requirement import MOST_FRAMES, Requirement, parse_requirement
 from bfsim.report.check.settings import leaves, text_of
 from bfsim.report.wrong_value import key_of, wrong_value
 from bfsim.trace import Identity
 
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+Whole = Annotated[int, Field(gt=-(1 << 63), lt=1 << 63)]
+"""Of cycles and times: what has more than 64 bits has no place among floats."""
 OLD_KEYS = {"core", "measured_by", "tolerance_percent"}
 """At the top of files that were written before there were several runs in one."""
 
@@ -104,9 +106,9 @@ class KeptLine(_Table):
     """A source line of a kernel; its fields are those of `diff.side.Line`, a stall is called REASON or REASON, BUFFER."""
 
     text: str
-    times: int
-    operations: dict[str, Annotated[list[int], Field(min_length=2, max_length=2)]] = {}
-    stalls: dict[str, int] = {}
+    times: Whole
+    operations: dict[str, Annotated[list[Whole], Field(min_length=2, max_length=2)]] = {}
+    stalls: dict[str, Whole] = {}
 
 
 class KeptOwner(_Table):
@@ -116,19 +118,19 @@ class KeptOwner(_Table):
     owner: str
     symbol: str = ""
     place: str = ""
-    cclk: int
+    cclk: Whole
     lines: list[KeptLine] = []
 
 
 class Costs(_Table):
     """What the run cost when its limits were measured: with it a failure is explained. Its fields are those of `diff.side.Side`."""
 
-    frames: Annotated[int, Field(ge=1)]
+    frames: Annotated[int, Field(ge=1, le=MOST_FRAMES)]
     frame_ms: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     cclk_hz: Annotated[float, Field(gt=0, allow_inf_nan=False)]
-    least_cclk: int
-    frame_cclk: dict[Annotated[str, Field(pattern=r"^\d{1,9}$")], int] = {}
-    waits: dict[str, int] = {}
+    least_cclk: Whole
+    frame_cclk: dict[Annotated[str, Field(pattern=r"^\d{1,9}$")], Whole] = {}
+    waits: dict[str, Whole] = {}
     memories: dict[str, list[str]] = {}
     of: list[KeptOwner] = []
 

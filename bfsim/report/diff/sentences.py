@@ -77,7 +77,7 @@ def work(difference: Difference) -> str:
 
 def reason(difference: Difference) -> str:
     """Say where the largest contribution is, from the stage down to the cause; nothing where there is no difference."""
-    parts = [*_largest(difference.stages)]
+    parts = [*largest(difference.stages)]
     places = [each for each in parts if each.kind is not Kind.CAUSE]
     if not places:
         return ""
@@ -94,10 +94,10 @@ def _named(contribution: Contribution) -> str:
     return f"{contribution.name} ({contribution.place})" if contribution.place else contribution.name
 
 
-def _largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
+def largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
     """Yield the largest contribution that follows from no other and has a name, and in it the largest again."""
     own = [each for each in parts if each.kind is not Kind.FOLLOWS and each.name != SMALL and each.cclk]
     if own:
-        largest = max(own, key=lambda each: abs(each.cclk))
-        yield largest
-        yield from _largest(largest.parts)
+        most = max(own, key=lambda each: abs(each.cclk))
+        yield most
+        yield from largest(most.parts)

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
-from bfsim.report.diff.sentences import verdict, why
+from bfsim.report.diff.sentences import largest, verdict, why
 from bfsim.report.diff.side import SEPARATOR
 from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import counted
@@ -116,11 +116,14 @@ def cells(contribution: Contribution) -> tuple[str, str, str]:
 def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
     """Return the `top` largest contributions that have no parts, and what they are parts of, with their depths.
 
-    Waits that follow from the rest are the last row.
+    Before all others comes the one that is told in words, for it is the largest part of the largest. Waits that follow from
+    the rest are the last row.
     """
     rows = list(walk(each for each in difference.stages if each.kind is not Kind.FOLLOWS))
     leaves = [each for _, each in rows if not each.parts and each.cclk]
-    wanted = {id(each) for each in sorted(leaves, key=lambda each: -abs(each.cclk))[:top]}
+    told = [id(each) for each in largest(difference.stages)]
+    leaves.sort(key=lambda each: (id(each) not in told, -abs(each.cclk)))
+    wanted = {id(each) for each in leaves[:top]}
     found = [(depth, each) for depth, each in rows if wanted & set(_ids(each))]
     return [*found, *((0, each) for each in difference.stages if each.kind is Kind.FOLLOWS)]
 
