@@ -28,3 +28,8 @@ def counted(number: int, *, sign: bool = False) -> str:
     """Return a count with thousands apart, from ten millions on in millions: 1,843,200 and 303.54 M; with its `sign` also if positive."""
     plus = "+" if sign else ""
     return f"{number / MILLION:{plus},.2f} M" if abs(number) >= 10 * MILLION else f"{number:{plus},}"
+
+
+def others_row(count: int) -> str:
+    """Return what the row of all that is not shown is called."""
+    return f"({count:,} {'other' if count == 1 else 'others'})"

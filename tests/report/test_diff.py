@@ -472,7 +472,11 @@ def test_markdown_has_what_the_screen_has() -> None:
     before, after = (
         result_of(
             replace(
-                each.run, frames=tuple(replace(one, results={"balls": balls}) for one in each.run.frames)
+                each.run,
+                frames=tuple(
+                    replace(one, results={"balls": balls, **dict.fromkeys("abcdefghij", balls)})
+                    for one in each.run.frames
+                ),
             ),
             {},
         )
@@ -481,6 +485,8 @@ def test_markdown_has_what_the_screen_has() -> None:
     text = diff_markdown(difference_of(before, after), top=5)
     assert "| 0 | 10 | 30 | +20 |" in text
     assert "| balls | 0 | 1 |" in text
+    assert "| (1 other) |  |  |" in text
+    assert "(1 other)" in printed(diff_report(difference_of(before, after), top=5))
     longer = replace(
         after.run, frames=(*before.run.frames, *run(kernel(line(12, 1, 30)), index=1).run.frames)
     )

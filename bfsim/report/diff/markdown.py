@@ -19,6 +19,7 @@ from bfsim.report.diff.tables import (
     shown,
 )
 from bfsim.report.markdown import escaped
+from bfsim.report.units import others_row
 
 INDENT = "&emsp;"
 TEXT, NUMBER = "---", "---:"
@@ -58,7 +59,7 @@ def _changes(title: str, changes: Sequence[Change], most: int | None = None) -> 
     if changes:
         rows = [(each.what, listed(each.before), listed(each.after)) for each in changes[:most]]
         others = len(changes) - len(rows)
-        more = [(f"({others} others)", "", "")] if others else []
+        more = [(others_row(others), "", "")] if others else []
         yield from _table((title, "before", "after"), TEXT, [*rows, *more])
 
 

@@ -13,7 +13,7 @@ from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
 from bfsim.report.diff.sentences import largest, verdict, why
 from bfsim.report.diff.side import SEPARATOR
 from bfsim.report.tables import new_table, stacked
-from bfsim.report.units import counted
+from bfsim.report.units import counted, others_row
 
 CHANGED_LISTED = 5
 """Frames that changed most which are listed."""
@@ -63,7 +63,7 @@ def _change_table(
         for each in changes[:most]:
             table.add_row(each.what, listed(each.before), listed(each.after))
         if most and len(changes) > most:
-            table.add_row(f"({len(changes) - most} others)")
+            table.add_row(others_row(len(changes) - most))
         yield table
 
 

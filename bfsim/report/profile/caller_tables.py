@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from rich.table import Table
 
 from bfsim.report.profile.callers import callers_of
-from bfsim.report.profile.view import NO_KERNEL, View, others_row
+from bfsim.report.profile.view import NO_KERNEL, View
 from bfsim.report.tables import new_table
+from bfsim.report.units import others_row
 
 
 def caller_tables(view: View) -> Iterator[Table]:

@@ -68,11 +68,6 @@ class View:
         return self.ms(cclk), percent(cost.stalled_cclk, cclk), self.share(cclk), self.bar(cost)
 
 
-def others_row(count: int) -> str:
-    """Return what the row of all that is not shown is called."""
-    return f"({count:,} {'other' if count == 1 else 'others'})"
-
-
 COST_HEADS = "ms", "stall%", "%"
 """Heads of `View.cost_cells`; the bar has none."""
 
