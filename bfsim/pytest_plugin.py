@@ -6,7 +6,7 @@ Nothing is imported until a test asks for the fixture.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -142,8 +142,13 @@ def _mistakes() -> Iterator[None]:
 
 def _sentences(mark: pytest.Mark) -> list[str]:
     """Return what a marker says as sentences of `bfsim check`; raise ConfigError for what it must not say."""
-    from bfsim.errors import ConfigError, cut
+    from bfsim.errors import ConfigError, cut, shown
 
+    for each in mark.args:
+        if not isinstance(each, str):
+            raise ConfigError(
+                f'@pytest.mark.{MARK}: a limit must be a sentence such as "latency <= 200 ms", not {shown(each)}'
+            )
     unknown = [each for each in mark.kwargs if each not in {"min_hz", "stages"}]
     if unknown:
         raise ConfigError(f"@pytest.mark.{MARK}: {cut(unknown[0])} must be min_hz or stages")
@@ -161,9 +166,10 @@ def _number(value: object, what: str) -> str:
     """Return a number as a sentence has it; raise ConfigError for anything else."""
     from bfsim.errors import ConfigError, shown
 
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ConfigError(f"@pytest.mark.{MARK}: {what} must be a number, not {shown(value)}")
-    return f"{value:f}"
+    with suppress(OverflowError):  # of an integer beyond all floats
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            return f"{value:f}"
+    raise ConfigError(f"@pytest.mark.{MARK}: {what} must be a number, not {shown(value)}")
 
 
 def _broken(result: Result, required: list[str]) -> str:

@@ -48,6 +48,14 @@ def test_another_stage(bfsim):
 def test_no_number(bfsim):
     bfsim(frames=1)
 
+@pytest.mark.frame_budget(min_hz=10**400)
+def test_no_such_number(bfsim):
+    bfsim(frames=1)
+
+@pytest.mark.frame_budget(15)
+def test_no_sentence(bfsim):
+    bfsim(frames=1)
+
 @pytest.mark.frame_budget(max_ms=3)
 def test_another_limit(bfsim):
     bfsim(frames=1)
@@ -107,7 +115,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "7 failed, 5 passed, 2 errors" in told
+    assert "7 failed, 5 passed, 4 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -123,6 +131,8 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert "the unit of latency must be cycles or s or ms or us, not 'parsecs'" in told
     assert '"Edge detektion" must be something that the run has; the nearest are "Edge detection"' in told
     assert "@pytest.mark.frame_budget: min_hz must be a number, not '15'" in told
+    assert "@pytest.mark.frame_budget: min_hz must be a number, not 1000" in told
+    assert '@pytest.mark.frame_budget: a limit must be a sentence such as "latency <= 200 ms", not 15' in told
     assert "@pytest.mark.frame_budget: max_ms must be min_hz or stages" in told
     assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
     assert "limits.toml must be a baseline file, but there is none" in told
