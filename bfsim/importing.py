@@ -58,6 +58,11 @@ class OwnModules(MetaPathFinder):
         self.modules: dict[str, ModuleType] = {}
         self.sources: dict[str, ImportedFile] = {}
 
+    def has(self, name: str) -> bool:
+        """Whether a module, wherever its name comes from, would be the firmware's own."""
+        top = name.partition(".")[0]
+        return top.isidentifier() and any(root.find(top) for root in self.roots)
+
     def load(self, name: str) -> ModuleType:
         """Import the module `name`, and what it imports."""
         importlib.invalidate_caches()

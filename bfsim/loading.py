@@ -216,21 +216,26 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
     if known and not known[1].changed:
         return known
     own = OwnModules((root, SHIPPED))
-    try:
-        imported = own.load(module)
-    except BfsimError:
-        raise
-    except (Exception, SystemExit) as error:
-        if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
-            raise FirmwareError(
-                f"the module {shown(module)} must be in {root.folder}, but there is none"
-            ) from None
-        raise _failed(module, error) from error
+    imported = import_more(module, own)
     for each in kernels_of(own):
         for path, sha256 in each.object_code.files.items() if each.object_code else ():
             own.sources[str(path)] = ImportedFile(path, path.name, sha256)
     _imported[module, root] = imported, own
     return imported, own
+
+
+def import_more(module: str, own: OwnModules) -> ModuleType:
+    """Import a module among those of a firmware. Raises FirmwareError when that fails."""
+    try:
+        return own.load(module)
+    except BfsimError:
+        raise
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
+            raise FirmwareError(
+                f"the module {shown(module)} must be in {own.roots[0].folder}, but there is none"
+            ) from None
+        raise _failed(module, error) from error
 
 
 def _failed(module: str, error: BaseException) -> FirmwareError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, replace
@@ -10,10 +9,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bfsim.errors import ConfigError, WorkError
+from bfsim.errors import ConfigError, WorkError, shown
 from bfsim.identifying import DigestedFrames
 from bfsim.kernel import Kernel
-from bfsim.loading import LoadedFirmware, kernels_of
+from bfsim.loading import LoadedFirmware, import_more, kernels_of
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
@@ -156,18 +155,17 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
     for field, what in SAME.items():
         if recorded.identity.get(field) != getattr(identity, field):
             raise WorkError(
-                f"{path} must be recorded with the same {what}, {getattr(identity, field)}, "
-                f"not with {recorded.identity.get(field)}: record it again"
+                f"{path} must be recorded with the same {what}, {shown(getattr(identity, field))}, "
+                f"not with {shown(recorded.identity.get(field))}: record it again"
             )
     if total != len(recorded.frame_digests):
         raise WorkError(
             f"{path} must be played for as many frames as it has, {len(recorded.frame_digests)}, not for {total}: see --frames"
         )
-    if [list(each) for each in recorded.buffers] != [list(each) for each in machine.owners_of_memory]:
+    if [*recorded.buffers] != [*map(tuple, machine.owners_of_memory)]:
         raise WorkError(f"{path} must be recorded with the same buffers: record it again")
-    if (recorded.is_bound or machine.is_bound_to_placement) and recorded.identity[
-        "ldf_digest"
-    ] != identity.ldf_digest:
+    is_bound = recorded.is_bound or machine.is_bound_to_placement
+    if is_bound and recorded.identity.get("ldf_digest") != identity.ldf_digest:
         raise WorkError(
             f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or a stack outside of L1: "
             "what they fetch depends on where everything lies; record it with this LDF"
@@ -189,10 +187,9 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
 
 def _kernels(reader: WorkReader, loaded: LoadedFirmware) -> dict[str, Kernel]:
     """Return the kernels of the firmware by symbol. Raises WorkError where its sources are not those that were recorded."""
-    with loaded.own.named():
-        for name in reader.recorded.modules:
-            if name not in loaded.own.modules:
-                importlib.import_module(name)
+    for name in reader.recorded.modules:
+        if name not in loaded.own.modules and loaded.own.has(name):  # it imports more while it runs
+            import_more(name, loaded.own)
     if loaded.digest != reader.recorded.firmware_digest:
         raise WorkError(
             f"{reader.path} must be recorded with the firmware as it is now, and its sources have changed: record it again"

@@ -57,10 +57,10 @@ class Recorded:
     `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
     """
 
-    identity: Mapping[str, Any]
-    buffers: Sequence[Sequence[Any]]
+    identity: Mapping[str, str]
+    buffers: Sequence[tuple[str, int]]
     is_bound: bool
-    routines_outside: Sequence[Sequence[str]]
+    routines_outside: Sequence[tuple[str, str]]
     frame_digests: Sequence[str]
     modules: Sequence[str]
     firmware_digest: str
@@ -111,17 +111,16 @@ class WorkReader:
     def __init__(self, path: Path, zipped: zipfile.ZipFile) -> None:
         self.path = path
         self._zip = zipped
+        from pydantic import TypeAdapter, ValidationError  # who records needs none
+
         run, end = self._json("run.json"), self._json("end.json")
         if run.get("format") != FORMAT or run.get("costs") != keys.compiler():
             raise WorkError(
                 f"{path} must be recorded by this bfsim: another one may cost kernels otherwise; record it again"
             )
         try:
-            self.recorded = Recorded(
-                **{each: run[each] for each in run if each not in ("format", "costs")}, **end
-            )
-            _check_names(self.recorded.routines_outside)
-        except (TypeError, ValueError) as error:
+            self.recorded = TypeAdapter(Recorded).validate_python({**run, **end})
+        except ValidationError as error:
             raise self._broken() from error
 
     def works(self, core: str) -> Iterator[FrameWork]:
@@ -137,11 +136,14 @@ class WorkReader:
                 raise self._broken() from error
             yield work
 
-    def _json(self, name: str) -> Any:
+    def _json(self, name: str) -> dict[str, Any]:
         try:
-            return json.loads(self._zip.read(name))
-        except (KeyError, ValueError, zipfile.BadZipFile, OSError) as error:
+            found = json.loads(self._zip.read(name))
+        except (KeyError, ValueError, RecursionError, zipfile.BadZipFile, OSError) as error:
             raise self._broken() from error
+        if not isinstance(found, dict):
+            raise self._broken()
+        return found
 
     def _broken(self) -> WorkError:
         return WorkError(
@@ -162,13 +164,6 @@ def opened(path: Path) -> Iterator[WorkReader]:
         ) from error
     with zipped:
         yield WorkReader(path, zipped)
-
-
-def _check_names(routines: Sequence[Sequence[str]]) -> None:
-    """Raise TypeError or ValueError unless each routine is the names of a core and its own."""
-    for core, routine in routines:
-        if not type(core) is type(routine) is str:
-            raise TypeError("a routine must be two names")
 
 
 def _decompressed(content: bytes) -> bytes:

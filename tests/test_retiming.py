@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import sys
 import zipfile
 from collections.abc import Callable
 from dataclasses import fields, replace
@@ -180,7 +181,7 @@ def test_an_interrupted_run_leaves_the_file_as_it_was(
     ("what", "said"),
     [
         ({"frames": 1}, r"must be played for as many frames as it has, 2, not for 1"),
-        ({"profile": "gcc-O2"}, r"must be recorded with the same compiler, gcc-O2, not with gcc-adi"),
+        ({"profile": "gcc-O2"}, r"must be recorded with the same compiler, 'gcc-O2', not with 'gcc-adi'"),
     ],
 )
 def test_another_run_is_refused(
@@ -293,12 +294,14 @@ def test_memory_and_counters_that_are_not_there_are_refused(work: Path, folder: 
             simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
 
 
-def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) -> Path:
+def rewritten(
+    work: Path, path: Path, change: Callable[[dict[str, Any]], None], part: str = "run.json"
+) -> Path:
     """Write a recorded run with other words on what was run."""
     with zipfile.ZipFile(work) as old, zipfile.ZipFile(path, "w") as new:
         for name in old.namelist():
             content = old.read(name)
-            if name == "run.json":
+            if name == part:
                 run = json.loads(content)
                 change(run)
                 content = json.dumps(run).encode()
@@ -319,6 +322,62 @@ def test_a_routine_that_is_none_is_refused(work: Path, folder: Path, routine: An
     other = rewritten(work, folder / "odd.work", lambda run: run["routines_outside"].append(routine))
     with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
         simulate(frames=FRAMES, work=other)
+
+
+@pytest.mark.parametrize(
+    ("part", "key", "value"),
+    [
+        ("run.json", "identity", 3),
+        ("run.json", "identity", {"recording": 3}),
+        ("run.json", "buffers", [1.5]),
+        ("run.json", "buffers", True),
+        ("end.json", "modules", 7),
+        ("end.json", "modules", [None]),
+        ("end.json", "frame_digests", "none"),
+        ("end.json", "obstacles", {}),
+    ],
+)
+def test_what_was_run_must_be_of_its_types(
+    work: Path, folder: Path, part: str, key: str, value: object
+) -> None:
+    """Numbers where names must be, and the other way round, ended in tracebacks."""
+    other = rewritten(work, folder / "odd.work", lambda run: run.update({key: value}), part)
+    with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
+        simulate(frames=FRAMES, work=other)
+
+
+def test_what_was_run_must_be_a_table(work: Path, folder: Path) -> None:
+    """And a whole one, however deep it is nested."""
+    for content in (b"3", b"[]", b"[" * 100_000):
+        with zipfile.ZipFile(work) as old, zipfile.ZipFile(folder / "odd.work", "w") as new:
+            for name in old.namelist():
+                new.writestr(name, content if name == "run.json" else old.read(name))
+        with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
+            simulate(frames=FRAMES, work=folder / "odd.work")
+
+
+def test_firmware_that_imports_while_it_runs_is_played(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A module of its own folder, and no other that the file names: it ended in a ModuleNotFoundError."""
+    kernel, main = FIRMWARE[: FIRMWARE.index("def main")], FIRMWARE[FIRMWARE.index("def main") :]
+    (tmp_path / "fw_kernels.py").write_text(kernel)
+    head, _, rest = main.partition("\n")
+    api = "from bfsim.api import *\n"
+    (tmp_path / "fw_late.py").write_text(f"{api}{head}\n    from fw_kernels import threshold\n{rest}")
+    record(tmp_path / "drive.mcap", 1)
+    what = {"recording": tmp_path / "drive.mcap", "firmware": f"{tmp_path}/fw_late.py"}
+    plain = simulate(**what, record_work=tmp_path / "run.work")
+    other = rewritten(
+        tmp_path / "run.work",
+        tmp_path / "odd.work",
+        lambda end: end["modules"].append("antigravity"),
+        "end.json",
+    )
+    monkeypatch.setitem(sys.modules, "antigravity", None)  # would be an ImportError
+    for path in (tmp_path / "run.work", other):
+        monkeypatch.setattr("bfsim.loading._imported", {})  # as in another process
+        assert simulate(**what, work=path).frames == plain.frames
 
 
 def test_a_frame_takes_less_than_200_kb(work: Path) -> None:
