@@ -10,7 +10,7 @@ from typing import Any
 from bfsim import shipped
 from bfsim.errors import BfsimError, ConfigError, cut, shown
 from bfsim.identifying import recording_digest
-from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
+from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on, update_command
 from bfsim.report.check.judge import require_stages
 from bfsim.run import Feed, Fidelity, cores_of, identified, rows_of
 
@@ -108,7 +108,7 @@ def _require_alike(
     if differences:
         raise ConfigError(
             f"{path}: run {shown(case.name)}: {'; '.join(differences)}: limits of one say nothing about the other; "
-            f'`bfsim check --baseline {path} --case "{case.name}" --update` measures it anew'
+            f"`{update_command(path, case.name)}` measures it anew"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -69,7 +70,8 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
     def show() -> None:
         print_report(placed_report(placed, top))
         if output and placed.ldf:
-            click.echo(f"Written: `bfsim run --ldf {output}` runs it, `bfsim ldf {output}` draws it.")
+            file = shlex.quote(str(output))
+            click.echo(f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it.")
         elif output:
             click.echo(f"{output} was not written: {placed.start} is as good.")
 

@@ -117,7 +117,7 @@ def test_faster_firmware_passes_and_update_tightens(repository: Path) -> None:
     Path("fw_eyes.py").write_text(FIRMWARE)
     result = call("--baseline", "limits.toml")
     assert result.exit_code == 0
-    command = 'bfsim check --baseline limits.toml --case "drive --firmware fw_eyes.py" --update'
+    command = "bfsim check --baseline limits.toml --case 'drive --firmware fw_eyes.py' --update"
     assert command in result.output
     assert call("--baseline", "limits.toml", "--update").exit_code == 0
     Path("fw_eyes.py").write_text(SLOWER)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from fractions import Fraction
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import ConfigError
-from bfsim.report.check.baseline import Case, read_baseline
+from bfsim.report.check.baseline import Case, read_baseline, update_command
 from bfsim.report.check.figures import Figure, Unit
 from bfsim.report.check.requirement import counts_text, limit_text, parse_requirement
 from bfsim.report.check.update import write_cases
@@ -132,6 +133,20 @@ def test_faulty_file_names_run_and_key(tmp_path: Path, text: str, message: str) 
     told = refusal(tmp_path, text)
     assert told.startswith(str(tmp_path / "bfsim.toml"))
     assert message in told
+
+
+def test_the_command_that_updates_is_one_that_a_shell_takes() -> None:
+    """With spaces, quotes and dollars in names of files and runs."""
+    words = shlex.split(update_command(Path("my limits.toml"), 'the "drive" to Joe\'s $5'))
+    assert words == [
+        "bfsim",
+        "check",
+        "--baseline",
+        "my limits.toml",
+        "--case",
+        'the "drive" to Joe\'s $5',
+        "--update",
+    ]
 
 
 def test_a_file_of_windows_is_read(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -216,6 +217,13 @@ def measured_on(identity: Identity, frames: int) -> MeasuredOn:
     )
 
 
+def update_command(path: Path, name: str = "") -> str:
+    """Return the command that makes what is measured the limits of a run, or of all, as a shell takes it."""
+    return shlex.join(
+        ["bfsim", "check", "--baseline", str(path), *(["--case", name] if name else []), "--update"]
+    )
+
+
 def parsed(path: Path) -> TOMLDocument:
     """Return a file as TOML. Raises ConfigError."""
     try:
@@ -233,8 +241,8 @@ def validated(document: TOMLDocument, path: Path) -> Baseline:
     cases = [each for each in runs if isinstance(each, dict)] if isinstance(runs, list) else []
     if set(plain) & OLD_KEYS or any("kernels" in each for each in cases):
         raise ConfigError(
-            f"{path} was written by an older bfsim, and must be made anew: move it away, run `bfsim check --baseline {path} "
-            "--update` with your options, and copy your comments"
+            f"{path} was written by an older bfsim, and must be made anew: move it away, run `{update_command(path)}` "
+            "with your options, and copy your comments"
         )
     try:
         baseline = Baseline.model_validate(plain)

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
+from bfsim.report.check.baseline import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
 from bfsim.report.check.requirement import dotted
-from bfsim.report.check.tables import amount, changes, percent, tighten_command, verdict_line
+from bfsim.report.check.tables import amount, changes, percent, verdict_line
 from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.markdown import contribution_rows
 from bfsim.report.diff.sentences import why
@@ -135,7 +136,7 @@ def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
         yield ""
     yield from _why(outcome) if outcome.broken else ()
     if outcome.better and outcome.passed:
-        yield f"\nTo keep what became better: `{tighten_command(outcome, path)}`"
+        yield f"\nTo keep what became better: `{update_command(path, outcome.case.name)}`"
     yield ""
 
 

@@ -9,6 +9,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.check.baseline import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import Unit
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
@@ -27,7 +28,7 @@ def check_report(outcome: Outcome, path: Path) -> RenderableType:
         parts += _why(outcome)
     if outcome.better:
         parts.append(_table("Better than", outcome.better, outcome))
-        parts += [Text(f"To keep it: {tighten_command(outcome, path)}")] if outcome.passed else []
+        parts += [Text(f"To keep it: {update_command(path, outcome.case.name)}")] if outcome.passed else []
     parts += [Text(each) for each in changes(outcome)]
     return stacked(*parts, *warning_table(outcome.run))
 
@@ -50,11 +51,6 @@ def _why(outcome: Outcome) -> Iterator[RenderableType]:
     counts = [*counts_that_differ(outcome), *seen_lines(difference)]
     yield from (Text("\n".join(each)) for each in (told, counts) if each)
     yield from contribution_table(difference, CAUSES)
-
-
-def tighten_command(outcome: Outcome, path: Path) -> str:
-    """Return the command that makes what was measured the limits of a run."""
-    return f'bfsim check --baseline {path} --case "{outcome.case.name}" --update'
 
 
 def changes(outcome: Outcome) -> Iterator[str]:
