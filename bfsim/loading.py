@@ -228,8 +228,11 @@ def import_more(module: str, own: OwnModules) -> ModuleType:
     """Import a module among those of a firmware. Raises FirmwareError when that fails."""
     try:
         return own.load(module)
-    except BfsimError:
-        raise
+    except BfsimError as error:
+        place = line_of(error)
+        if place.strip(" ()").rpartition(":")[0] in str(error):  # which it names itself
+            raise
+        raise type(error)(f"{error}{place}") from error
     except (Exception, SystemExit) as error:
         if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
             raise FirmwareError(

@@ -32,7 +32,7 @@ MAY_IMPORT = {
     "chip": {"errors", "clocks", "fields"},
     "machine_code": {"store"},
     "blackfin": {"errors", "fields", "machine_code", "store"},
-    "kernel": {"blackfin", "errors", "machine_code", "store"},
+    "kernel": {"blackfin", "errors", "file_content", "machine_code", "store"},
     "compiling": {"blackfin", "errors", "kernel", "store"},
     "linker": {"file_content", "errors", "chip", "store"},
     "machine": {

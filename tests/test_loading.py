@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator
 from importlib.machinery import SourceFileLoader
@@ -280,6 +281,18 @@ def test_an_error_in_a_module_of_the_firmware_names_that_module(write: Write) ->
     ) as caught:
         load_firmware("fw_deep:fw")
     assert str(stage) in str(caught.value)
+
+
+@pytest.mark.parametrize("marked", ["@kernel()\ndef f(x: i32): pass", "@kernel\nclass F: pass"])
+def test_a_refusal_without_a_place_gets_that_of_its_line(write: Write, marked: str) -> None:
+    """What is no function has no source to show, but stands in a line of a file; a refusal with a place has it once."""
+    path = write("fw_marked.py", f"from bfsim.api import *\n{marked}\n")
+    with pytest.raises(KernelError, match=rf"^@kernel must stand .* \({re.escape(str(path))}:\d\)$"):
+        load_firmware("fw_marked:it")
+    path.write_text("from bfsim.api import *\n@kernel\ndef f(x: i32):\n    y = [x]\n")
+    with pytest.raises(KernelError) as caught:
+        load_firmware("fw_marked:it")
+    assert str(caught.value).count(str(path)) == 1
 
 
 def test_a_refused_kernel_stays_a_kernel_error(write: Write) -> None:
