@@ -154,6 +154,8 @@ class WorkReader:
 @contextmanager
 def opened(path: Path) -> Iterator[WorkReader]:
     """Open a file. Raises WorkError for one that is cut or broken, is none, or was written by another version."""
+    if path.exists() and not path.is_file():
+        raise WorkError(f"{path} must be an ordinary file, not a folder or a device")
     try:
         zipped = zipfile.ZipFile(path)
     except OSError as error:

@@ -51,7 +51,7 @@ MAY_IMPORT = {
         "once",
     },
     "api": {"chip", "compiling", "errors", "kernel", "machine", "seen", "trace"},
-    "recording": {"errors", "drafts", "seen"},
+    "recording": {"errors", "drafts", "file_content", "seen"},
     "report": {
         "file_content",
         "errors",

@@ -207,6 +207,12 @@ def test_what_needs_more_than_cycles_is_refused(work: Path, folder: Path) -> Non
     assert not (folder / "none.work").exists()
 
 
+def test_a_device_is_no_file() -> None:
+    """It may never end: a process that read one took all memory there is."""
+    with pytest.raises(WorkError, match="/dev/null must be an ordinary file, not a folder or a device"):
+        simulate(frames=FRAMES, work=Path("/dev/null"))
+
+
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.999])
 def test_a_part_of_a_file_is_refused(work: Path, folder: Path, part: float) -> None:
     """It is told at opening, before anything runs."""

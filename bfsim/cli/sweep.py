@@ -127,7 +127,7 @@ def sweep(
     from bfsim.sweeping.sweep import Sweep
     from bfsim.sweeping.workers import Pool
 
-    points = Sweep(file, Store(folder or file.with_suffix(SUFFIX)))
+    points = Sweep(file, Store(folder or file.parent / f"{file.stem}{SUFFIX}"))
     with ExitStack() as stack:
         cluster = stack.enter_context(Cluster(address, code_digest())) if address else None
         here = stack.enter_context(Pool(processes or len(os.sched_getaffinity(0))))

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from bfsim.errors import RecordingError
+from bfsim.file_content import read_bounded
 from bfsim.recording.camera_info import Rig, rig_of
 from bfsim.recording.exchange import ExchangeCheck
 from bfsim.recording.frames import RectificationTables, StereoGeometry
@@ -26,6 +27,9 @@ from bfsim.recording.writer import RecordingWriter
 
 DEFAULT_FPS = Fraction(30)
 """Of sources that do not say: the VGA rate of the OmniVision sensors."""
+
+LARGEST_TABLE_MB = 256
+"""Of a rectification table: 16 bytes a pixel at most."""
 
 FPS_PARTS = 1_000_000
 """Frame rates are fractions with denominators up to this; it is the highest rate, too."""
@@ -204,7 +208,7 @@ def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[st
     tables = []
     for path in (left, right):
         try:
-            table = table_from_npy(Path(path).read_bytes())
+            table = table_from_npy(read_bounded(Path(path), most_mb=LARGEST_TABLE_MB))
         except OSError as error:
             raise RecordingError(
                 f"{path}: rectification table must be a readable file: {error.strerror}"

@@ -18,6 +18,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
+from bfsim.errors import ConfigError
 from tests.sweeping.rig import BASE, FILE, Here, home_in, swept
 from tests.test_run import FIRMWARE, record
 
@@ -189,6 +190,14 @@ def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
     reported = sum(bool(row["frame_rate Hz"]) for row in table(file))
     assert 2 <= kept == reported < 12
     assert len(swept(file)[1]) == 12 - kept
+
+
+@pytest.mark.parametrize("folder", ["", ".", "/"])
+def test_a_folder_is_no_sweep(folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor is one without a name, of which the folder of results had none."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ConfigError, match=r"^[./] must be a readable file: Is a directory$"):
+        CliRunner().invoke(main, ["sweep", folder], catch_exceptions=False, standalone_mode=False)
 
 
 def test_help_teaches_the_file() -> None:

@@ -220,7 +220,7 @@ def test_rectification_tables_from_npy(tmp_path: Path) -> None:
         np.testing.assert_array_equal(reader.rectification.right, table)
 
 
-def test_rectification_tables_of_other_kinds(tmp_path: Path) -> None:
+def test_rectification_tables_of_other_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing file, a table of floats, a flat one and one of 64-bit rows beyond the picture are refused."""
     np.save(tmp_path / "float.npy", np.zeros((2, 4, 8)))
     np.save(tmp_path / "flat.npy", np.zeros(32, int))
@@ -232,6 +232,10 @@ def test_rectification_tables_of_other_kinds(tmp_path: Path) -> None:
             RecordingError, match=rf"{name}\.npy: .* must hold integers of shape .*, not {found}"
         ):
             load_rectification(tmp_path / f"{name}.npy", tmp_path / f"{name}.npy")
+    monkeypatch.setattr("bfsim.recording.importer.LARGEST_TABLE_MB", 0)  # a device never ends
+    with pytest.raises(RecordingError, match=r"far\.npy: .* must be a readable file: it has more than 0 MB"):
+        load_rectification(tmp_path / "far.npy", tmp_path / "far.npy")
+    monkeypatch.undo()
     with pytest.raises(RecordingError, match="must point at rows 0 to 3 and columns 0 to 7"):
         load_rectification(tmp_path / "far.npy", tmp_path / "far.npy").check(8, 4)
 

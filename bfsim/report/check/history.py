@@ -28,7 +28,8 @@ def append_history(path: Path, outcomes: Sequence[Outcome], commit: str) -> None
     """Append a line for each run, all of them or none, also where two processes do so. Raises ConfigError where that cannot be."""
     with alone_in(path.parent):
         before = read_bounded(path) if path.exists() else b""
-        write_bytes(path, [before, _lines(outcomes, commit).encode()])
+        end = b"\n" if before and not before.endswith(b"\n") else b""  # an editor may have left it out
+        write_bytes(path, [before, end, _lines(outcomes, commit).encode()])
 
 
 def _lines(outcomes: Sequence[Outcome], commit: str) -> str:
@@ -55,9 +56,11 @@ def read_history(path: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     try:
-        lines = read_bounded(path).decode().split("\n")
-    except (OSError, UnicodeDecodeError) as error:
+        lines = read_bounded(path).decode("utf-8-sig").split("\n")
+    except UnicodeDecodeError as error:
         raise ConfigError(f"{path} must be a readable history of `bfsim check`: {error}") from error
+    except OSError as error:
+        raise ConfigError(f"{path} must be a readable history of `bfsim check`: {error.strerror}") from error
     return [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1) if line.strip()]
 
 
