@@ -52,9 +52,12 @@ class Store:
 
     def open(self) -> None:
         """Make the folder. Raises ConfigError where that cannot be."""
-        with writing(self.folder):
-            self.folder.mkdir(parents=True, exist_ok=True)
-            self._lock = os.open(self.folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        try:
+            with writing(self.folder):
+                self.folder.mkdir(parents=True, exist_ok=True)
+                self._lock = os.open(self.folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        except ConfigError as error:
+            raise ConfigError(f"{error}; --store DIR keeps results elsewhere") from error
 
     def claim(self, key: str) -> bool:
         """Take a point for this process alone; False if another process has it. A process that dies has none any more."""

@@ -108,5 +108,7 @@ def test_the_digest_of_a_recording_holds_while_the_file_is_the_same(store: Store
 def test_a_folder_that_cannot_be(tmp_path: Path) -> None:
     """Because a file is in its place."""
     (tmp_path / "store").touch()
-    with pytest.raises(ConfigError, match="must be writable"):
+    with pytest.raises(
+        ConfigError, match="must be writable: File exists; --store DIR keeps results elsewhere"
+    ):
         Store(tmp_path / "store").open()
