@@ -63,7 +63,10 @@ class Expressions(Names):
         result = self._as_number(node, self.expression(node))
         if wanted is None or isinstance(result.type, FloatType):
             return result
-        self.source.refuse(node, f"f32 is needed here, not {result.type}", "write f32(...) around it: a call")
+        instead = "write f32(...) around it: a call"
+        if isinstance(result, tree.Const):
+            instead = f"write {result.value}.0"
+        self.source.refuse(node, f"f32 is needed here, not {result.type}", instead)
 
     def _as_number(self, node: ast.expr, value: tree.Expr) -> tree.Expr:
         if isinstance(value.type, (IntType, FloatType)):

@@ -176,9 +176,9 @@ class _Reader:
     def _set_both(self, target: ast.Tuple, value: ast.expr) -> list[tree.Stmt]:
         """Assign the two results of an intrinsic, by way of a local that only the compiled code has."""
         scope, names = self.scope, [each for each in target.elts if isinstance(each, ast.Name)]
-        fits = isinstance(value, ast.Call) and len(names) == len(target.elts) == 2
-        pair = scope.expression(value) if fits else None
-        if pair is None or pair.type is not PAIR or names[0].id == names[1].id:
+        fits = len(names) == len(target.elts) == 2 and names[0].id != names[1].id
+        pair = None if isinstance(value, ast.Tuple) else scope.expression(value)
+        if not fits or pair is None or pair.type is not PAIR:
             scope.source.refuse(
                 target,
                 "only as many values, or an intrinsic with two results, are assigned to several names",
@@ -239,13 +239,15 @@ class _Reader:
 
     def _assigned(self, target: ast.Name, result: tree.Expr, value: ast.expr) -> list[tree.Stmt]:
         scope = self.scope
+        if result.type is None:
+            scope.source.refuse(value, "this kernel returns nothing", "call it on a line of its own")
         if result.type is PAIR or target.id in scope.arrays:
             scope.source.refuse(
                 value if result.type is PAIR else target,
                 "an intrinsic with two results is assigned to two names",
                 "write `upper, lower = ...`",
             )
-        scope.locals.setdefault(target.id, result.type or i32)
+        scope.locals.setdefault(target.id, result.type)
         if scope.locals[target.id] != result.type:
             scope.source.refuse(
                 value, f"{target.id} holds {scope.locals[target.id]}, not {result.type}", "use another name"
