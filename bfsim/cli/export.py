@@ -31,6 +31,7 @@ def export(firmware: str, folder: Path, line_directives: bool, force: bool) -> N
     from bfsim.exporting import export as written
 
     done = written(firmware, folder, line_directives=line_directives, force=force)
-    click.echo(f"{done.kernels} kernels, {done.lines:,} lines of C in {done.folder}")
+    kernels = f"{done.kernels} kernel{'s' if done.kernels != 1 else ''}"
+    click.echo(f"{kernels}, {done.lines:,} lines of C in {done.folder}")
     if done.left:
         click.echo(f"Left out, for they are not written in Python: {', '.join(done.left)}")

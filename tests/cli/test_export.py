@@ -44,7 +44,9 @@ def eyes(tmp_path: Path) -> str:
 def test_nothing_is_overwritten_unless_asked(eyes: str, tmp_path: Path) -> None:
     """A second export stops before it writes; --force writes."""
     folder = tmp_path / "c"
-    assert ran(eyes, folder)[0] == 0
+    code, output = ran(eyes, folder)
+    assert code == 0
+    assert output.startswith("1 kernel, ")
     (folder / "kernels.h").write_text("mine")
     code, output = ran(eyes, folder)
     assert code == 2

@@ -64,12 +64,13 @@ def table(file: Path) -> list[dict[str, str]]:
 
 
 @pytest.mark.usefixtures("file")
-def test_one_frame_is_one_frame() -> None:
+def test_one_frame_is_one_frame_and_one_point_one_point() -> None:
     """It was `1 frames`."""
     Path("one.toml").write_text(
         '[base]\nfirmware = "fw_eyes.py"\nrecording = "drive.mcap"\n[axes]\nframes = [1]\n'
     )
     assert re.search(r"1 of 1 points to run, 1 frame: about", call(Path("one.toml"), "--dry-run").output)
+    assert call(Path("one.toml")).output.startswith("1 point: 1 done.\n")
 
 
 def test_the_walk_of_a_student(file: Path) -> None:

@@ -55,7 +55,8 @@ def sweep_report(points: Sequence[Shown], files: Sequence[Path], kept: int, top:
     """Return what came out of a sweep, and in which files all of it is; so many points were `kept` from before."""
     done = [each for each in points if FRAME_RATE in each.row]
     errors = [(each.name, str(each.row["error"])) for each in points if each.row["error"]]
-    counts = [f"{len(points):,} points: {len(done):,} done" + (f" ({kept:,} of them before)" if kept else "")]
+    number = f"{len(points):,} point{'s' if len(points) != 1 else ''}"
+    counts = [f"{number}: {len(done):,} done" + (f" ({kept:,} of them before)" if kept else "")]
     counts += [f"{len(errors):,} failed"] if errors else []
     rest = len(points) - len(done) - len(errors)
     counts += [f"{rest:,} not yet"] if rest else []
