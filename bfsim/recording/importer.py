@@ -140,6 +140,11 @@ def import_recording(
                 even_ns if each.times_ns is None or fps is not None else each.times_ns[index]
                 for each in (opened[0], opened[-1])
             )
+            if bag is None and 2 * rate * abs(left_ns - right_ns) > 1_000_000_000:
+                raise RecordingError(
+                    f"{' and '.join(names)}: pictures {index} must be taken at once, not {abs(left_ns - right_ns) / 1e6:.0f} ms "
+                    "apart; `--fps` passes over their times"
+                )
             coded = left.to_uyvy(), right.to_uyvy()
             exchange.look_at(*coded)
             writer.add(*coded, left_ns, right_ns)
@@ -255,7 +260,8 @@ def _open_source(
 
 
 def _frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> Fraction:
-    rates = {source.fps for source in sources if source.fps is not None}
+    rates = {source.fps for source in sources if source.fps is not None and source.times_ns is None}
+    rates = rates or {sources[0].fps or DEFAULT_FPS}  # their times say whether pictures belong together
     if fps is None and len(rates) > 1:
         described = " and ".join(f"{float(rate):g}" for rate in sorted(rates))
         raise RecordingError(f"both cameras must have one frame rate, not {described}; `--fps` sets it")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -264,6 +264,35 @@ def test_video(tmp_path: Path) -> None:
     assert set(frames[0].left[:, 0::4].flat) == {128}
 
 
+def video(path: Path, times_ms: Sequence[int]) -> None:
+    """Write grey pictures with these times."""
+    av = pytest.importorskip("av", reason="needs the optional extra: video")
+    with av.open(path, "w") as container:
+        stream = container.add_stream("ffv1", rate=30)
+        stream.width, stream.height, stream.pix_fmt = 32, 16, "yuv420p"
+        stream.codec_context.time_base = Fraction(1, 1000)
+        for time_ms in times_ms:
+            frame = av.VideoFrame.from_ndarray(np.full((24, 32), 99, np.uint8), format="yuv420p")
+            frame.pts, frame.time_base = time_ms, Fraction(1, 1000)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+
+
+def test_uneven_videos_of_two_cameras_must_have_been_taken_at_once(tmp_path: Path) -> None:
+    """Where they were, each has its own times; where one has lost a picture, those of a number are no pair."""
+    left, right, late = (tmp_path / f"{name}.mkv" for name in ("left", "right", "late"))
+    video(left, [0, 33, 233, 266])
+    video(right, [0, 34, 236, 270])
+    video(late, [0, 233, 266, 299])
+    import_recording([left, right], tmp_path / "a.mcap")
+    assert [each.right_ns // 10**6 for each in frames_of(tmp_path / "a.mcap")] == [0, 34, 236, 270]
+    with pytest.raises(
+        RecordingError, match=r"left\.mkv and .*late\.mkv: pictures 1 must be taken at once, not 200 ms"
+    ):
+        import_recording([left, late], tmp_path / "b.mcap")
+    assert import_recording([left, late], tmp_path / "b.mcap", fps=30).frame_count == 4
+
+
 @pytest.mark.parametrize(
     ("times_ms", "recorded_ms", "note"),
     [
@@ -280,16 +309,7 @@ def test_pictures_of_a_video_come_when_they_came(
     tmp_path: Path, times_ms: list[int], recorded_ms: list[float], note: str
 ) -> None:
     """Phones take a picture when there is light enough: of a rate that the video does not keep it was recorded, without a word."""
-    av = pytest.importorskip("av", reason="needs the optional extra: video")
-    with av.open(tmp_path / "a.mkv", "w") as container:
-        stream = container.add_stream("ffv1", rate=30)
-        stream.width, stream.height, stream.pix_fmt = 32, 16, "yuv420p"
-        stream.codec_context.time_base = Fraction(1, 1000)
-        for time_ms in times_ms:
-            frame = av.VideoFrame.from_ndarray(np.full((24, 32), 99, np.uint8), format="yuv420p")
-            frame.pts, frame.time_base = time_ms, Fraction(1, 1000)
-            container.mux(stream.encode(frame))
-        container.mux(stream.encode())
+    video(tmp_path / "a.mkv", times_ms)
     notes = import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True).notes
     assert [note in each for each in notes] == ([True] if note else [])
     assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "a.mcap")] == pytest.approx(recorded_ms)
