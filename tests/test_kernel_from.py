@@ -21,6 +21,7 @@ from bfsim.errors import ConfigError, KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2
 from bfsim.kernel.objects import compiled
+from bfsim.kernel.objects.sources import file_lines
 from bfsim.loading import load_kernel
 from bfsim.machine.memories import Memories
 
@@ -514,3 +515,14 @@ def test_what_object_code_costs_is_worked_out_once(tmp_path: Path, monkeypatch: 
         assert lines_of_costs(tmp_path) == before
     (tmp_path / "sums.c").unlink()  # now its instructions are its lines
     assert lines_of_costs(tmp_path) != before
+
+
+def test_lines_of_a_source_are_counted_as_a_compiler_counts_them(tmp_path: Path) -> None:
+    """Sources of GNU have form feeds between their parts, which end no line for a compiler."""
+    (tmp_path / "parts.c").write_bytes(b"int a;\n\f\nint b; /* \x85 \v */\r\nint c;\n")
+    assert file_lines(tmp_path / "parts.c") == [
+        "int a;",
+        "\f",
+        "int b; /* \N{REPLACEMENT CHARACTER} \v */",
+        "int c;",
+    ]
