@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -27,8 +28,10 @@ from bfsim.trace import Identity
 if sys.platform != "win32":  # elsewhere two sweeps may do the same work twice
     import fcntl
 
-SCHEMA = "bfsim.point/1"
+SCHEMA = "bfsim.point/2"
 """Name and version of the layout of a file."""
+CHECK = "sha256"
+"""The key of a file's digest: disks forget, and people edit."""
 
 LOCK = "lock"
 CLAIM_DIGITS = 15
@@ -101,30 +104,35 @@ class Store:
     def _file(folder: Path, key: str) -> Path:
         return folder / key[:2] / f"{key}.json"
 
-    def _write(self, folder: Path, key: str, plain: object) -> None:
+    def _write(self, folder: Path, key: str, plain: Mapping[str, Any]) -> None:
         path = self._file(folder, key)
         with writing(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             with draft_folder(path.parent) as drafts:
                 draft = drafts / path.name
                 with draft.open("w", encoding="utf-8") as stream:
-                    json.dump(plain, stream, ensure_ascii=False, indent=1)
+                    json.dump({**plain, CHECK: _digest(plain)}, stream, ensure_ascii=False, indent=1)
                     stream.flush()
                     os.fsync(stream.fileno())
                 draft.replace(path)
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """Return a file of this store; nothing if it is not there or is none."""
+    """Return a file of this store; nothing if it is not there, is none, or is not what was written."""
     try:
         plain = json.loads(path.read_text(encoding="utf-8"))
+        is_whole = isinstance(plain, dict) and plain.pop(CHECK, None) == _digest(plain)
     except FileNotFoundError:
         return {}
     except (ValueError, RecursionError):
         return {}
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
-    return plain if isinstance(plain, dict) else {}
+    return plain if is_whole else {}
+
+
+def _digest(plain: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
 
 
 def _file_key(path: Path, frames: int) -> str:

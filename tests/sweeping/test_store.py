@@ -60,16 +60,17 @@ def test_a_damaged_file_is_as_if_it_were_not_there(store: Store, damaged: str) -
 
 
 def test_a_file_under_another_name_is_not_believed(store: Store) -> None:
-    """Nor one whose figures are none."""
+    """Nor one whose figures are none, or others."""
     store.keep(KEY, OUTCOME)
     (file,) = (store.folder / "points").rglob("*.json")
     other = file.with_name("ab" * 32 + ".json")
     other.parent.with_name("ab").mkdir()
     other = file.rename(other.parent.with_name("ab") / other.name)
     assert store.outcome("ab" * 32) is None
-    store.keep(KEY, OUTCOME)
-    file.write_text(file.read_text().replace("15.25", '"fast"'))
-    assert store.outcome(KEY) is None
+    for changed in ('"fast"', "15.75"):
+        store.keep(KEY, OUTCOME)
+        file.write_text(file.read_text().replace("15.25", changed))
+        assert store.outcome(KEY) is None
 
 
 def test_keys_differ_where_anything_does() -> None:
