@@ -294,17 +294,12 @@ class _Reader:
                     node.target, "an array gives one value at a time", "write for i, v in enumerate(a)"
                 )
             return self._for_each(node, self._hidden(), node.target, call)
-        is_call = isinstance(call, ast.Call) and not call.keywords
-        if (
-            is_call
-            and self._is_call_of(call, enumerate)
-            and len(call.args) == 1
-            and self._is_array(call.args[0])
-        ):
+        enumerated = call.args if self._is_call_of(call, enumerate) and not call.keywords else []
+        if len(enumerated) == 1 and self._is_array(enumerated[0]):
             names = node.target.elts if isinstance(node.target, ast.Tuple) else []
             if len(names) != 2 or not isinstance(names[0], ast.Name):
                 source.refuse(node.target, "enumerate gives two values", "write for i, v in enumerate(a)")
-            return self._for_each(node, names[0].id, names[1], call.args[0])
+            return self._for_each(node, names[0].id, names[1], enumerated[0])
         if not self._is_call_of(call, range):
             source.refuse(
                 call,

@@ -14,7 +14,8 @@ from bfsim.kernel.constants import constant_of, members_of
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import BOOL, ArrayType, Value, f32, i32, u32
 
-LARGEST_F32 = 3.4028234663852886e38
+BEYOND_F32 = 3.4028235677973366e38
+"""What is as large is infinite in single precision; what is smaller is rounded to the largest at most."""
 
 
 @dataclass(slots=True)
@@ -62,11 +63,9 @@ class Names:
         return tree.Const(value, i32 if value <= i32.bounds[1] else u32, node.lineno)
 
     def _real(self, node: ast.expr, value: float, written: str = "") -> tree.Const:
-        if math.isfinite(value) and abs(value) > LARGEST_F32:
+        if math.isfinite(value) and abs(value) >= BEYOND_F32:
             self.source.refuse(
-                node,
-                f"{value} does not fit in an f32",
-                f"use a value in -{LARGEST_F32:.4g}..{LARGEST_F32:.4g}",
+                node, f"{value} does not fit in an f32", "use a value in -3.4028e38..3.4028e38"
             )
         return tree.Const(f32(value), f32, node.lineno, written)
 
