@@ -134,7 +134,7 @@ def test_a_profile_without_a_library_refuses_floats() -> None:
         ("y = ~x", "~ is not for f32"),
         ("if x: y = 1", "an f32 is no truth value; write `x != 0.0`"),
         ("y = a[x]", "an integer is needed here, not an f32; write i32(...) around it"),
-        ("a[0] = 1", "f32 is needed here, not i32; write f32(...) around it"),
+        ("a[0] = 1", "f32 is needed here, not i32; write 1.0"),
     ],
 )
 def test_floats_and_integers_do_not_mix_by_themselves(line: str, what: str, tmp_path: Path) -> None:
