@@ -3,7 +3,7 @@
 Processes with re-timing play what they can from a recorded run, as `bfsim sweep` does; without, and on the cluster, all runs.
 
     python benchmarks/sweeps.py                  10 and 30 frames, and from these 1000: seven minutes of processor time
-    python benchmarks/sweeps.py --frames 1000    all of them: some hours
+    python benchmarks/sweeps.py --frames 1000    all of them: half an hour to some hours
     python benchmarks/sweeps.py --json
 
 The frames are those of the built-in recording over and over; the configurations two placements times two clocks times two
