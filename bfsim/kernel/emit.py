@@ -26,6 +26,7 @@ from bfsim.kernel.emit_values import (
 )
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
+from bfsim.kernel.ir_text import OF_VARIABLE
 from bfsim.kernel.subloops import makes_subloop
 from bfsim.kernel.types import ArrayType
 
@@ -190,7 +191,8 @@ class _Statements:
         value = self.values.value(node.value)
         address = self.values.address(node.array, node.element, node.index)
         if node.element.bits < WORD_BITS:
-            value = self.builder.trunc(value, ir.IntType(node.element.bits))
+            name = OF_VARIABLE if isinstance(node.value, tree.Local) else ""
+            value = self.builder.trunc(value, ir.IntType(node.element.bits), name=name)
         with self.values.site(node):
             self.builder.store(value, address)
 

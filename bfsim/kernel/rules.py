@@ -20,18 +20,14 @@ class Rule(StrEnum):
     )
     RELOAD_REGISTER = "where values do not fit in registers, one register serves the reloads"
     POINTER_COPIES = "a loop with two exits that are not counted keeps a pointer before and after its step"
-    COPIED_END = "the end of a loop is copied behind each exit of the loop inside it"
     SUNK_MASK = "masks of 8 or 16 bits that end both sides of a test are done once behind them"
     NARROW_SUMS = "a sum that is stored as narrow and used as wide is computed twice"
-    RAW_BYTE = "the low byte of a half-word is extended from the half-word as it was loaded"
     FACTORS = "a byte that is a factor of a 16-bit product and used in another way is extended for each"
     COMPARED = "a constant that is compared with is loaded where it is, not before the loop"
     GUARDS = "a condition that does not change in a loop is kept in a register, and moved to CC and back"
     FACTORED_SUMS = "a sum with a constant is added up before it is multiplied"
-    ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
-    CLEARED_BIT = "half of a number that is the index of half-words is the number with its last bit cleared"
     KNOWN_SIGN = "a value known to be positive is divided by a constant with the signed routine"
     DIVIDED_COUNTS = "a loop whose number of iterations takes a division to find is not counted"
     INCLUSIVE_LOOPS = "a loop up to and with its bound is not counted if it has another exit"
@@ -108,6 +104,12 @@ class Rule(StrEnum):
     STRENGTH_REDUCTION = (
         "a product beside one of a number that is a few less is that one and a few of its factors"
     )
+    SHIFTED_PRODUCTS = "a product that is shifted left is one product and a shift"
+    OWN_OPERATIONS = "what each side of a test computes is computed there, not once behind them, of a choice"
+    ARGUMENT_LOADS = (
+        "an argument on the stack that is used once, outside of loops, is loaded where it is used"
+    )
+    NARROW_BITS = "narrow values are masked and joined bit by bit before they are extended"
     SUMMED_INDICES = "an index that is a sum is added up before it becomes an address, unless elements are bytes and one access uses it"
 
 
@@ -144,7 +146,6 @@ GCC: dict[Rule, str] = {
     Rule.STATE_MACHINES: "tree-ssa-threadbackward.cc",
     Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
-    Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
     Rule.DIVIDED_COUNTS: '"Costs of niter computation too high" in loop-doloop.cc',
     Rule.INCLUSIVE_LOOPS: '"possible infinite iteration case" in loop-doloop.cc',
@@ -154,8 +155,10 @@ GCC: dict[Rule, str] = {
     Rule.ELIMINATED_COUNTERS: "may_eliminate_iv in tree-ssa-loop-ivopts.cc",
     Rule.SINKING: "tree-ssa-sink.cc",
     Rule.NEIGHBOURS: "fold_range_test in fold-const.cc",
+    Rule.ARGUMENT_LOADS: "combine_and_move_insns in ira.cc",
+    Rule.NARROW_BITS: '"(bitop (convert @0) (convert? @1))" in match.pd',
+    Rule.OWN_OPERATIONS: "factor_out_conditional_conversion in tree-ssa-phiopt.cc, which takes nothing else",
     Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
-    Rule.CLEARED_BIT: "andsi3 in bfin.md",
 }
 """Where GCC 12 does so; the others are fitted to its code."""
 
@@ -164,18 +167,14 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.LATE_EXTENSION: ("gauss3_row",),
     Rule.RELOAD_REGISTER: ("match_lines",),
     Rule.POINTER_COPIES: ("insertion_sort_u16", "shell_sort"),
-    Rule.COPIED_END: ("shell_sort",),
     Rule.SUNK_MASK: ("crc16_bits",),
     Rule.NARROW_SUMS: ("counting_sort", "fill_xy", "flood_fill"),
-    Rule.RAW_BYTE: ("bilinear_row",),
     Rule.FACTORS: ("alpha_blend", "variance_blocks"),
     Rule.COMPARED: ("match_lines", "alpha_blend", "conv3x3"),
     Rule.GUARDS: ("circle_vote", "cordic_atan"),
     Rule.FACTORED_SUMS: ("split_uyvy", "yuv_to_rgb"),
-    Rule.ACCUMULATORS: ("moments",),
     Rule.DIFFERENCE: ("sad_search",),
     Rule.COMMON_LOADS: ("cordic_atan",),
-    Rule.CLEARED_BIT: ("lower_bound", "table_search", "quick_sort"),
     Rule.KNOWN_SIGN: ("digits",),
     Rule.DIVIDED_COUNTS: ("base64_encode",),
     Rule.INCLUSIVE_LOOPS: ("find_words",),
@@ -225,6 +224,10 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.COPIES_IN_FRONT: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_pictures.py
     Rule.STRENGTH_REDUCTION: (),
     Rule.SUMMED_INDICES: (),
+    Rule.SHIFTED_PRODUCTS: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_numbers.py
+    Rule.OWN_OPERATIONS: (),
+    Rule.ARGUMENT_LOADS: (),
+    Rule.NARROW_BITS: (),
     Rule.BIT_TESTS: (),
     Rule.CONSTANT_TABLES: (),
     Rule.STATE_MACHINES: (),

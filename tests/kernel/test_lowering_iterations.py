@@ -134,16 +134,6 @@ def test_what_a_loop_sets_up_does_not_run_in_the_loop_before(tmp_path: Path) -> 
         assert found.innermost(found.entering(loop)) is found.around(loop)
 
 
-def test_half_of_a_number_as_the_index_of_half_words_is_a_cleared_bit(tmp_path: Path) -> None:
-    """Its last bit goes, in a data register; only a half that is wanted itself is shifted for."""
-    text = "def f(a: {}[:], lo: i32, hi: i32) -> i32:\n    return a[(lo + hi) >> {}]\n"
-    halves, quarters = lowered(text.format("u16", 1), tmp_path), lowered(text.format("u16", 2), tmp_path)
-    assert (halves[Op.SHIFT], halves[Op.ADD_SHIFT]) == (0, 0)
-    assert (quarters[Op.SHIFT], quarters[Op.ADD_SHIFT]) == (1, 1)
-    assert lowered(text.format("i32", 1), tmp_path)[Op.ADD_SHIFT] == 1
-    assert halves[Op.ALU] == quarters[Op.ALU] + 2
-
-
 def test_a_result_that_is_wanted_behind_the_next_call_moves_out_of_its_way(tmp_path: Path) -> None:
     """R0 is overwritten by the second call; what the second one returns stays there."""
     text = "def g(x: i32) -> i32:\n    s = 0\n    for i in range(x):\n        s = (s * 5) ^ i\n    return s\n\n\n@kernel\ndef f(x: i32) -> i32:\n    first = g(x)\n    return g({}) - {}\n"

@@ -99,31 +99,8 @@ class Accesses(Calls):
         if not index.startswith("%"):
             return
         nbytes = pointee_nbytes(each)
-        if (halved := self.halved(each)) is not None:
-            self._at_even_distance(each, halved)
-            return
         op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
         self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
-
-    def halved(self, each: Instruction) -> str | None:
-        """What the index of an address is half of, if the elements have two bytes."""
-        fitted = self.context.profile.applies(Rule.CLEARED_BIT)
-        if not fitted or each.opcode != "getelementptr" or pointee_nbytes(each) != 2:
-            return None
-        shift = self.flow.instruction(each.operands[-1])
-        if shift is None or shift.opcode not in ("ashr", "lshr") or shift.operands[1] != "1":
-            return None
-        return shift.operands[0]
-
-    def _at_even_distance(self, each: Instruction, halved: str) -> None:
-        """Half of a number, times two bytes, is the number with its last bit cleared [andsi3 in bfin.md: BITCLR].
-
-        Only data registers can do it, so that the base goes there and the address back.
-        """
-        base, even = f"{each.result}.base", f"{each.result}.even"
-        self.append(Op.ALU, each, even, DATA, (halved, DATA), overwrites=(halved,))
-        self.append(Op.MOVE, each, base, DATA, (self.context.base(each.operands[0]), POINTER))
-        self.append(Op.ALU, each, each.result, DATA, (base, DATA), (even, DATA))
 
     def counters(self, label: str) -> None:
         """Compute the counters that a pointer stands for; it has been stepped by then, so each iteration keeps what it was."""

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
-from bfsim.kernel.ir_text import Instruction, is_number
+from bfsim.kernel.ir_text import OF_VARIABLE, Instruction, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
@@ -22,9 +22,10 @@ from bfsim.kernel.lowering.narrow_trees import is_cut_tree
 from bfsim.kernel.lowering.narrow_uses import Use, is_distance
 from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.predictive_commoning import ALONG
+from bfsim.kernel.lowering.range_arithmetic import ANY, Range, is_positive
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
-from bfsim.kernel.lowering.value_ranges import never_negative
+from bfsim.kernel.lowering.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.lowering.widths import BYTE
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -268,7 +269,11 @@ class DemandedValues(Folding):
         if SIGNED in name or FLOOR in name or each.opcode[0] == "s":
             return not (constant and narrow)
         known = constant and not narrow and self.profile.applies(Rule.KNOWN_SIGN)
-        return known and never_negative(self.flow, each.operands[0])
+        return known and is_positive(self._ranges.get(each.operands[0], ANY))
+
+    @cached_property
+    def _ranges(self) -> Mapping[str, Range]:
+        return UnsignedRanges(self.flow).found
 
     def _name_of(self, each: Instruction) -> str:
         """Return the name of a division. Where LLVM has made it one of bytes, what extends it to an i32 has it."""
@@ -313,7 +318,7 @@ class DemandedValues(Folding):
         }
 
     def _use(self, load: Instruction, user: Instruction) -> Use:
-        if self._is_raw(user):
+        if self._is_raw(load, user):
             return Use.RAW
         if (
             user.opcode == "mul"
@@ -332,22 +337,43 @@ class DemandedValues(Folding):
             found += self.users(user.result or "") if user.opcode in ("zext", "sext") else [user]
         return found
 
-    def _is_raw(self, user: Instruction) -> bool:
+    def _is_raw(self, load: Instruction, user: Instruction) -> bool:
         """Whether a use takes the narrow value as it is: a store, its low byte, or arithmetic that is stored as narrow."""
-        low_byte = user.opcode == "and" and user.operands[1] == "255" and self.profile.applies(Rule.RAW_BYTE)
         chosen = user.opcode == "phi" and user.bits in NARROW and self.profile.applies(Rule.NARROW_CHOICES)
         stored = chosen and all(each.opcode == "store" for each in self.users(user.result or ""))
         along = user.opcode == "phi" and ALONG in (user.result or "")
-        narrow = self.profile.applies(Rule.NARROW_TREES) and is_cut_tree(self.users, user)
-        return user.opcode == "store" or low_byte or stored or along or narrow or self.narrowed(user)
+        narrow = (self.in_narrow_tree(user) and user.opcode != "shl") or self.narrowed(user)
+        return user.opcode == "store" or stored or along or narrow or self._masks(load, user)
+
+    def _masks(self, load: Instruction, user: Instruction) -> bool:
+        """Whether a mask takes some bits of what was loaded, and so none that an extension makes."""
+        mask = user.operands[1] if user.opcode == "and" else ""
+        is_within = mask.isdigit() and int(mask) < 1 << load.bits
+        return is_within and self.profile.applies(Rule.NARROW_BITS)
+
+    def in_narrow_tree(self, each: Instruction) -> bool:
+        """Whether only the low bits of a result are wanted, for a narrow value that is stored."""
+        return self.profile.applies(Rule.NARROW_TREES) and is_cut_tree(self.users, each)
 
     def narrowed(self, each: Instruction) -> bool:
-        """Whether a sum is stored as a narrow value and used as a wide one: C compilers compute it twice."""
+        """Whether a sum is stored as a narrow value and used as a wide one: C compilers compute it twice.
+
+        That of a variable they do where both operands are narrow ["narrowing conversion of an arithmetic operation" in match.pd of GCC 12].
+        """
         users = self.users(each.result or "")
-        cut = [user for user in users if user.opcode == "trunc"]
+        is_of_narrow = all(map(self._was_narrow, each.operands[:2]))
+        cut = [
+            user
+            for user in users
+            if user.opcode == "trunc" and (is_of_narrow or OF_VARIABLE not in (user.result or ""))
+        ]
         stored = [user for user in cut if all(one.opcode == "store" for one in self.users(user.result or ""))]
         both = bool(stored) and len(stored) < len(users)
         return each.opcode in ("add", "sub") and both and self.profile.applies(Rule.NARROW_SUMS)
+
+    def _was_narrow(self, value: str) -> bool:
+        each = self.flow.instruction(value)
+        return is_number(value) or (each is not None and each.opcode in ("zext", "sext"))
 
     def extended_late(self, load: Instruction) -> bool:
         """Whether the load with the post-increment is extended on its own: others through its pointer come before its use."""

@@ -7,6 +7,7 @@ from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode
 from bfsim.kernel.lowering.registers import Allocation
+from bfsim.kernel.lowering.traces import COPY_BYTES
 from bfsim.kernel.rules import Rule
 
 
@@ -21,21 +22,30 @@ class HardwareLoops:
         """Whether it is a counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
-        if self.flow.is_split(loop) or self.flow.ending(loop) != loop.latch:
+        if self.flow.is_split(loop):
+            return False
+        end = self.flow.ending(loop)
+        if end != loop.latch and not self._begins_behind_end(loop):
             return False
         in_front = self.context.profile.applies(Rule.COPIES_IN_FRONT) and not self._is_one_block(loop)
         if self.begins_with_copies(loop) and not in_front:
             return False  # the copies stay behind the end of a loop of one block, which jumps back from there
         before = [
             each
-            for each in self.flow.predecessors[loop.latch]
+            for each in self.flow.predecessors[end]
             if not self.flow.is_overflow_guard(self.flow.blocks[each])
             and each not in self.context.if_conversion.gone
         ]
-        copied = any(self._ends_apart(inner, before) for inner in loop.inner)
-        if copied and self.context.profile.applies(Rule.COPIED_END):
-            return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
-        return bool(self.code.of[loop.latch]) or len(before) == 1
+        return bool(self.code.of[end]) or len(before) == 1
+
+    def _begins_behind_end(self, loop: Loop) -> bool:
+        """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it.
+
+        A small first block would be copied to where it is entered [copy_bb_p in bb-reorder.cc], and is not moved behind.
+        """
+        size = sum(each.code_bytes for each in self.code.of[loop.header])
+        is_next = loop.latch in self.flow.blocks[self.flow.ending(loop)].successors
+        return is_next and size > COPY_BYTES and not self._is_one_block(loop)
 
     def begins_with_copies(self, loop: Loop) -> bool:
         """Whether values are copied from iteration to iteration in a block of its own.
@@ -47,7 +57,7 @@ class HardwareLoops:
     def _is_one_block(self, loop: Loop) -> bool:
         """Whether nothing in a loop branches but its end."""
         converted, label = self.context.if_conversion.by_label, loop.header
-        while label != loop.latch:
+        while label != self.flow.ending(loop):
             if label in converted:
                 label, _ = self.flow.defined[converted[label].phi.result or ""]
             elif len(ways := set(self.flow.blocks[label].successors)) == 1:
@@ -64,13 +74,6 @@ class HardwareLoops:
             and before != loop.latch
             and len(set(self.flow.blocks[before].successors)) > 1
             and before not in self.context.if_conversion.by_label
-        )
-
-    def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
-        """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
-        ends = inner.blocks & set(before)
-        return len(ends) > 1 and any(
-            label in ends and way not in inner.blocks for label, way in self.allocation.on_edges
         )
 
     def _counted_depth(self, loop: Loop) -> int:

@@ -13,7 +13,7 @@ from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.conditional_moves import is_conditional_move
 from bfsim.kernel.lowering.narrow_choices import is_narrowed, stored_bits
-from bfsim.kernel.lowering.widths import BYTE, WORD
+from bfsim.kernel.lowering.widths import BYTE, WORD, widest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -36,6 +36,7 @@ class ConversionKind(Enum):
     """The same as 0 or a power of two, or as 0 or -1."""
 
 
+STATEMENTS = ("then", "else")
 FLAGS = (ConversionKind.FLAG, ConversionKind.SHIFTED_FLAG)
 
 
@@ -152,12 +153,15 @@ class IfConversion:
     ) -> ConvertedIf | None:
         work = [each for arm in arms for each in self._work(arm)]
         test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
+        is_flag = not work and {yes, no} == {"1", "0"}
+        if test is not None and is_flag and (test.opcode == "icmp" or (test.opcode, test.bits) == ("xor", 1)):
+            return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
         if test is None or test.opcode != "icmp":
+            return None
+        if any(self._converts(arm, phi) for arm in arms):
             return None
         if work:
             return self._negation(label, arms, phi, work, test)
-        if {yes, no} == {"1", "0"}:
-            return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
         if "0" in (yes, no) and _is_bit(no if yes == "0" else yes):
             return ConvertedIf(ConversionKind.SHIFTED_FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in self._bounds(test)}
@@ -175,6 +179,18 @@ class IfConversion:
             or is_conditional_move(self.flow, phi, (yes, no), frozenset(bounds))
         )
         return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms) if moves else None
+
+    def _converts(self, arm: str, phi: Instruction) -> bool:
+        """Whether a side that stores a word as narrow has to extend what is left of it: GCC promotes the choice to a word [PROMOTE_MODE in bfin.h].
+
+        A word that does not change in a loop was extended before it.
+        """
+        loop = self.flow.innermost(arm)
+        for each in self.flow.blocks[arm].instructions if arm.startswith(STATEMENTS) else ():
+            is_chosen = each.opcode == "trunc" and each.result in phi.operands
+            if is_chosen and widest(self.flow, each.operands[0]) > phi.bits:
+                return loop is None or not self.flow.is_invariant(each.operands[0], loop)
+        return False
 
     def _is_narrow_load(self, value: str) -> bool:
         each = self.flow.instruction(value)

@@ -231,7 +231,9 @@ class _OptimisedLowering:
                     cost.charges += [charge(Op.ALU, line)] * 3
                 if loop.header in self.hardware.all:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
-                    if self.hardware.begins_with_copies(loop) and self.layout.falls(block.label, loop.header):
+                    if self.flow.ending(loop) != loop.latch or (
+                        self.hardware.begins_with_copies(loop) and self.layout.falls(block.label, loop.header)
+                    ):
                         cost.charges.append(charge(Op.JUMP, line))
 
     def _iteration_count(self, loop: Loop) -> Iterator[Op]:

@@ -51,9 +51,9 @@ class Likelihood:
         for block in self.flow.routine.blocks:
             ways = block.successors
             if block.label in self.second_parts:
-                found.update(
-                    {(block.label, way): float(way == self.second_parts[block.label]) for way in ways}
-                )
+                inside = self.second_parts[block.label]
+                is_either = inside in self.flow.blocks[self.flow.predecessors[block.label][0]].successors
+                found.update({(block.label, way): float((way == inside) != is_either) for way in ways})
             elif len(set(ways)) < 2:
                 found.update({(block.label, way): 1.0 for way in ways})
             elif block.terminator.opcode == "br":

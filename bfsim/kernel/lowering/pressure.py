@@ -124,27 +124,7 @@ class Pressure:
                 total += self.frequency[label] * (web in names)
         return total
 
-    def _accumulates(self, web: str, loop: Loop) -> bool:
-        """Whether a loop only adds to a value: it may live where there is no other arithmetic (P, I registers)."""
-        touching = [
-            instruction
-            for label in self.flow.inside(loop)
-            for instruction in self.code.of[label]
-            if self.find(instruction.result or "") == web
-            or any(self.find(name) == web for name, _ in instruction.uses)
-        ]
-        fitted = self.webs.context.profile.applies(Rule.ACCUMULATORS)
-        return (
-            fitted
-            and len(touching) == 1
-            and touching[0].op is Op.ALU
-            and self.find(touching[0].result or "") == web
-        )
-
     def _reload(self, web: str, loop: Loop) -> None:
-        if self._accumulates(web, loop):
-            self._move_in(web, loop)
-            return
         for label in self.flow.inside(loop):
             block: list[MachineInstruction] = []
             for instruction in self.code.of[label]:
@@ -172,16 +152,6 @@ class Pressure:
         return MachineInstruction(
             Op.MOVE if constant else Op.LOAD32, instruction.line, None, RegisterBank.ANY
         )
-
-    def _move_in(self, web: str, loop: Loop) -> None:
-        """What is added to a value in another bank has to be moved there."""
-        for label in self.flow.inside(loop):
-            block: list[MachineInstruction] = []
-            for instruction in self.code.of[label]:
-                if instruction.result and self.find(instruction.result) == web:
-                    block.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
-                block.append(instruction)
-            self.code.of[label] = block
 
 
 def _is_copy_for(before: MachineInstruction, instruction: MachineInstruction) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.argument_loads import load_where_used
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
@@ -39,6 +40,8 @@ class Allocation:
 
 def allocate(context: Context, code: MachineCode) -> Allocation:
     """Insert moves, constants and reloads into `code`; return what belongs to edges and to the function's ends."""
+    loads_late = context.profile.applies(Rule.ARGUMENT_LOADS)
+    loaded = load_where_used(context, code) if loads_late else frozenset()
     webs = Webs(context, code)
     if context.profile.applies(Rule.SUM_CLASSES):
         RegisterClasses(webs).place()
@@ -52,15 +55,16 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
         on_edges=moves.on_edges,
         calls=any(instruction.op is Op.CALL for block in code.of.values() for instruction in block),
     )
-    _Ends(webs, pressure, result).save()
+    _Ends(webs, pressure, result, loaded).save()
     return result
 
 
 class _Ends:
     """What a function saves when it is entered, and where its arguments go."""
 
-    def __init__(self, webs: Webs, pressure: Pressure, result: Allocation) -> None:
-        self.webs, self.pressure, self.result = webs, pressure, result
+    def __init__(self, webs: Webs, pressure: Pressure, result: Allocation, loaded: frozenset[str]) -> None:
+        """`loaded`: arguments that are loaded where they are used."""
+        self.webs, self.pressure, self.result, self.loaded = webs, pressure, result, loaded
         self.flow, self.code, self.bank = webs.flow, webs.code, webs.bank
 
     def save(self) -> None:
@@ -132,7 +136,7 @@ class _Ends:
         used |= {value for arms in self.webs.phis.values() for value, _ in arms}
         line = self.flow.routine.blocks[0].instructions[0].line
         for number, name in enumerate(self.webs.context.parameters()):
-            if name not in used:
+            if name not in used or name in self.loaded:
                 continue
             bank = self.bank.get(self.webs.find(name), RegisterBank.DATA)
             if number >= isa.REGISTER_ARGUMENTS:

@@ -27,11 +27,14 @@ from bfsim.kernel.lowering.partial_redundancies import without_partial_redundanc
 from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
+from bfsim.kernel.lowering.remainders import with_remainders
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
 from bfsim.kernel.lowering.restored_values import with_restored_values
 from bfsim.kernel.lowering.saturations import without_saturations
+from bfsim.kernel.lowering.shifted_products import with_shifted_products
 from bfsim.kernel.lowering.short_circuits import split_tests
 from bfsim.kernel.lowering.sides_apart import with_sides_apart
+from bfsim.kernel.lowering.sides_of_tests import with_operations_on_sides
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
 from bfsim.kernel.lowering.strength_reduction import with_reduced_strength
@@ -44,6 +47,8 @@ from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_restored_values,
+    with_operations_on_sides,
+    with_shifted_products,
     with_sides_apart,
     with_reduced_strength,
     with_summed_indices,
@@ -84,6 +89,8 @@ SWITCHES = {
     with_predictive_commoning: Rule.PREDICTIVE_COMMONING,
     with_reduced_strength: Rule.STRENGTH_REDUCTION,
     with_summed_indices: Rule.SUMMED_INDICES,
+    with_shifted_products: Rule.SHIFTED_PRODUCTS,
+    with_operations_on_sides: Rule.OWN_OPERATIONS,
     with_bit_tests: Rule.BIT_TESTS,
     with_chosen_ranges: Rule.BIT_TESTS,
     with_narrow_sums: Rule.EXTREMES,
@@ -102,6 +109,8 @@ def rewritten_early(text: str, profile: CompilerProfile) -> str:
 
 def _rewritten_early(routine: Routine, profile: CompilerProfile) -> Routine:
     routine = without_repeated_loads(routine)
+    if profile.applies(Rule.REMAINDERS):
+        routine = with_remainders(routine)
     if profile.applies(Rule.NARROW_CHOICES):
         routine = with_narrow_tests(routine)
     if profile.applies(Rule.SUNK_STORES):

@@ -113,9 +113,6 @@ class _Selector(Accesses):
     def shift(self, each: Instruction) -> None:
         if self.context.is_alias(each):
             return
-        users = self.flow.users.get(each.result or "", [])
-        if users and all(self.halved(user) is not None for user in users):
-            return
         if self.context.demanded.in_shift_add(each) or self._is_half_extension(each):
             return
         if (word := self.context.demanded.counted_bits(each)) is not None:
@@ -146,7 +143,7 @@ class _Selector(Accesses):
         left, right = each.operands[:2]
         demanded = self.context.demanded
         if each.bits == 1:
-            self._joined(each)
+            (self._differ if each.opcode == "xor" else self._joined)(each)
             return
         if demanded.in_bit_test(each) or demanded.is_shift_mask(each) or demanded.in_sunk_mask(each):
             return
@@ -172,7 +169,7 @@ class _Selector(Accesses):
         if (
             right.lstrip("-").isdigit()
             and (plan := multiple(int(right))) is not None
-            and not self._short(each)
+            and (self.context.demanded.in_narrow_tree(each) or not self._short(each))
         ):
             value = left
             for number, op in enumerate(plan):
@@ -183,7 +180,7 @@ class _Selector(Accesses):
                 bank = POINTER if op is Op.ADD_SHIFT and not is_sum else ANY
                 self.append(op, each, result, bank, (value, bank), (left, bank))
                 value = result or ""
-        elif self._short(each):
+        elif self._short(each) or self.context.demanded.in_narrow_tree(each):
             for factor in dict.fromkeys((left, right)):
                 if self.context.demanded.extended_for_product(factor):
                     self.append(Op.EXTEND, each, None, DATA, (factor, DATA))
@@ -268,6 +265,17 @@ class _Selector(Accesses):
         else:
             self.append(Op.CC_MOVE, each, each.result, DATA)
             self.append(Op.ALU, each, each.result, DATA)
+
+    def _differ(self, each: Instruction) -> None:
+        """Whether two conditions differ: both are moved to registers, which are compared, or one of them is inverted."""
+        if each.operands[1] == "true":
+            return
+        flags = [f"{each.result}.{number}" for number in range(2)]
+        for flag in flags:
+            self.append(Op.CC_MOVE, each, flag, DATA)
+        decides = all(user.opcode == "br" for user in self.flow.users.get(each.result or "", []))
+        uses = ((flag, DATA) for flag in flags)
+        self.append(Op.COMPARE if decides else Op.ALU, each, None if decides else each.result, DATA, *uses)
 
     def _converted(self, each: Instruction) -> None:
         """An `if` without a branch: its operation stands in the block that tests."""

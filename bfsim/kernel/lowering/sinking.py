@@ -6,14 +6,18 @@ What one side of a test does not use waits for the other side, if that is the ra
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import permutations
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.edges import bypass, put_between
 from bfsim.kernel.lowering.predict import Likelihood
 
 MOVABLE = (
     "load", "getelementptr", "add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "zext", "sext", "trunc",
 )  # fmt: skip
+CASTS = ("zext", "sext", "trunc")  # in C, what is tested is extended already
+LEFT = "else"
 RARER, RARER_LOAD = (
     0.75,
     0.82,
@@ -22,8 +26,45 @@ RARER, RARER_LOAD = (
 
 def sink(routine: Routine) -> Routine:
     """Return `routine` with each value in the block where it is first needed."""
-    sinking = _Sinking(routine)
-    return replace(routine, blocks=tuple(sinking.block(each) for each in routine.blocks))
+    places = _places(ControlFlow(routine))
+    blocks = {each.label: each for each in routine.blocks}
+    for label, way in places:
+        put_between(blocks, label, way, _place(label, way))
+    sinking = _Sinking(replace(routine, blocks=tuple(blocks.values())))
+    blocks = {label: sinking.block(each) for label, each in blocks.items()}
+    for label, way in places:
+        if len(blocks[_place(label, way)].instructions) == 1:
+            bypass(blocks, [label], _place(label, way), way)
+    return replace(routine, blocks=tuple(blocks.values()))
+
+
+def _places(flow: ControlFlow) -> list[tuple[str, str]]:
+    """Return ways to a choice of a value that nothing else needs, on which the source has a block.
+
+    Of `if a > b: s = v` LLVM has the other side's empty block left.
+    """
+    found = []
+    for label in flow.order:
+        for way, other in permutations(dict.fromkeys(flow.blocks[label].successors), 2):
+            is_left = other.startswith(LEFT) and len(flow.blocks[other].instructions) == 1
+            if is_left and way in flow.blocks[other].successors and _is_chosen(flow, label, way):
+                found.append((label, way))
+    return found
+
+
+def _place(label: str, way: str) -> str:
+    return f"{label}.to.{way}"
+
+
+def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
+    """Whether a choice in block `way` alone needs a value that is computed in a block before it, and on this way alone."""
+    for choice in flow.blocks[way].instructions:
+        value = arms_of(choice).get(label, "") if choice.opcode == "phi" else ""
+        home, each = flow.defined.get(value, ("", choice))
+        is_alone = len(flow.users.get(value, ())) == 1 and choice.operands.count(value) == 1
+        if home == label and is_alone and each.opcode in MOVABLE and each.opcode not in CASTS:
+            return True
+    return False
 
 
 class _Sinking:

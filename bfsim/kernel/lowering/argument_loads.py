@@ -1,0 +1,39 @@
+"""An argument on the stack that is used once, outside of loops, is loaded where it is used [combine_and_move_insns in ira.cc of GCC 12].
+
+So a function that returns early has not loaded it, and no register holds it until then.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel import isa
+from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction
+
+
+def load_where_used(context: Context, code: MachineCode) -> frozenset[str]:
+    """Insert the loads of such arguments into `code`, and return their names."""
+    on_stack = context.parameters()[isa.REGISTER_ARGUMENTS :]
+    copied = {
+        operand
+        for block in context.routine.blocks
+        for each in block.instructions
+        if each.opcode == "phi"
+        for operand in each.operands
+    }
+    found = set[str]()
+    for name in on_stack:
+        uses = [
+            (label, instruction)
+            for label, rows in code.of.items()
+            for instruction in rows
+            if any(used == name for used, _ in instruction.uses)
+        ]
+        if len(uses) == 1 and name not in copied and context.flow.innermost(uses[0][0]) is None:
+            (label, instruction), rows = uses[0], code.of[uses[0][0]]
+            bank = next(bank for used, bank in instruction.uses if used == name)
+            load = MachineInstruction(Op.LOAD32, instruction.line, name, bank)
+            number = next(number for number, each in enumerate(rows) if each is instruction)
+            code.of[label] = [*rows[:number], load, *rows[number:]]
+            found.add(name)
+    return frozenset(found)
