@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from bfsim.kernel.ir_text import INVERTED, Instruction, arms_of, is_number, predicate
+from bfsim.kernel.ir_text import INVERTED, Instruction, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
 
 LEAST, LARGEST = -(1 << 31), (1 << 31) - 1
@@ -26,7 +26,7 @@ def value_range(flow: ControlFlow, value: str) -> Range:
     if "@llvm.abs." in each.text:
         return 0, LARGEST
     if each.opcode in ("zext", "sext"):
-        bits = int(each.text.split()[1].removeprefix("i"))
+        bits = each.bits
         return (0, (1 << bits) - 1) if each.opcode == "zext" else (-(1 << bits - 1), (1 << bits - 1) - 1)
     if each.opcode == "sub" and each.operands[0] == "0":
         return negated(value_range(flow, each.operands[1]))
@@ -37,55 +37,6 @@ def negated(of: Range) -> Range:
     """Return the range of a value times -1, which does not overflow."""
     low, high = of
     return -high, min(-low, LARGEST)
-
-
-def never_negative(flow: ControlFlow, value: str, seen: frozenset[str] = frozenset()) -> bool:
-    """Whether a value is never negative: by what computes it or, where ways meet, by a test on each.
-
-    A test on the way to where it is used does not count: when GCC makes instructions it knows one range of a value, for all its uses.
-    """
-    if is_number(value) or value in seen:
-        return value in seen or 0 <= int(value) <= LARGEST
-    each = flow.instruction(value)
-    if each is None:
-        return False
-    if each.opcode == "phi":
-        return all(
-            never_negative(flow, operand, seen | {value}) or range_behind(flow, label, operand)[0] >= 0
-            for label, operand in arms_of(each).items()
-        )
-    if each.opcode == "add" and " nsw " in each.text:
-        return all(never_negative(flow, operand, seen | {value}) for operand in each.operands[:2])
-    bound = each.operands[-1] if each.operands else ""
-    if each.opcode in ("lshr", "udiv", "urem", "and") and bound.isdigit():
-        return int(bound) > (1 if each.opcode == "udiv" else 0)
-    return value_range(flow, value)[0] >= 0
-
-
-def range_behind(flow: ControlFlow, label: str, value: str) -> Range:
-    """Return the range of a value behind the block `label`: what computes it, within the tests on the only way there."""
-    each = flow.instruction(value)
-    if each is not None and each.opcode == "sub" and each.operands[0] == "0":
-        return negated(range_behind(flow, label, each.operands[1]))
-    low, high = value_range(flow, value)
-    names = (value, each.operands[0]) if each is not None and each.opcode == "sext" else (value,)
-    while len(before := flow.predecessors[label]) == 1:
-        said = _said_on_way(flow, before[0], label)
-        for name in names:
-            least, most = said.get(name, (LEAST, LARGEST))
-            low, high = max(low, least), min(high, most)
-        label = before[0]
-    return low, high
-
-
-def _said_on_way(flow: ControlFlow, label: str, behind: str) -> Mapping[str, Range]:
-    """Ranges of the two values that are compared at the end of a block, on the way from it to the one `behind`."""
-    end = flow.blocks[label].terminator
-    test = flow.instruction(end.operands[0]) if end.opcode == "br" and end.operands else None
-    if test is None or test.opcode != "icmp" or predicate(test) not in LESS:
-        return {}
-    holds = flow.blocks[label].successors[0] == behind
-    return _bounded(flow, test, predicate(test) if holds else INVERTED[predicate(test)])
 
 
 def answer(flow: ControlFlow, known: Instruction, test: Instruction, *, holds: bool) -> bool | None:
