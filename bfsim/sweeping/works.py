@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 WORKS = "works"
 """Folder of the store: in it each sweep that runs has one of its own."""
 
-LEAST_LEFT = 2
+LEAST_LEFT = 3
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 134 ms to run, 162 ms to record and 39 ms to play (20 and 60 frames, processor
-time, medians of three): n points that are left gain from n = (162 - 39) / (134 - 39), 1.3, on.
+With all that kernels work on in L1 a frame more takes 34 ms to run, 71 ms to record and 12 ms to play (20 and 200 frames, whole commands,
+means of three): n points that are left gain from n = (71 - 12) / (34 - 12), 2.7, on.
 """
 
 MOST_WAITS = 0.02
 """Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
 
-At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames) a frame more takes 1.6
-times as long to record, and 0.6 times as long to play, as to run: that gains little, from three points that are left on. What lies between
+At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames, when runs were slower) a frame more took 1.6
+times as long to record, and 0.6 times as long to play, as to run: that gains little, if anything. What lies between
 is not measured [assumed]: where it is wrong a sweep takes longer. Its figures are the same.
 """
 
