@@ -49,7 +49,7 @@ STEPS = "bfsim.steps"
 STEPPING = re.compile(
     rf"^  (?:tail )?call void @{re.escape(STEPS)}\(i32 ([^,]+), i32 ([^,]+), i32 ([^,)]+)\)"
 )
-OF_VARIABLE = "variable"
+OF_VARIABLE = "cut.variable"
 """Names what is cut of a variable to be stored, and what LLVM makes of it: before that, in C, it is a word."""
 HIDES = "bfsim.hides"
 """A call that returns its number, of which LLVM is to know nothing."""

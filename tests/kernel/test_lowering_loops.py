@@ -11,8 +11,9 @@ from bfsim.kernel import GCC_O2, VDSP_O2, keys
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
-from bfsim.kernel.loops import COPIED
+from bfsim.kernel.loops import COPIED, ControlFlow
 from bfsim.kernel.lowering.moves import _is_circular
+from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.rules import Rule
 from tests.kernel.modules import import_text
 from tests.kernel.test_lowering import context, lowered
@@ -314,3 +315,28 @@ def test_a_loop_behind_a_test_is_guessed_to_be_rare(tmp_path: Path) -> None:
         if inner.header in found.flow.post_dominators[each] or each not in found.flow.dominators[outer.latch]
     )
     assert found.likelihood.taken[outer.header, leads] == pytest.approx(0.27, abs=0.01)
+
+
+TWO_TESTS = """
+define i32 @f(i32 %c) {{
+first:
+  %one = icmp {0} i32 %c, 8
+  br i1 %one, label %{1}, label %{2}
+second:
+  %other = icmp {3} i32 %c, 9
+  br i1 %other, label %inside, label %outside
+inside:
+  ret i32 1
+outside:
+  ret i32 0
+}}
+"""
+
+
+@pytest.mark.parametrize("tests", [("eq", "inside", "second", "eq"), ("sge", "second", "outside", "sle")])
+def test_two_tests_that_are_made_as_one_are_guessed_as_one(tests: tuple[str, ...]) -> None:
+    """Evenly, whether either of them or both shall hold: nothing is said of a number within a range."""
+    (routine,) = read_module(TWO_TESTS.format(*tests))
+    taken = Likelihood(ControlFlow(routine), {"second": "inside"}).taken
+    ways = taken.get(("first", "inside"), 0), taken["first", "second"] * taken["second", "inside"]
+    assert sum(ways) == pytest.approx(0.5)

@@ -338,7 +338,7 @@ class DemandedValues(Folding):
         return found
 
     def _is_raw(self, load: Instruction, user: Instruction) -> bool:
-        """Whether a use takes the narrow value as it is: a store, its low byte, or arithmetic that is stored as narrow."""
+        """Whether a use takes the narrow value as it is: a store, a mask of it, or arithmetic that is stored as narrow."""
         chosen = user.opcode == "phi" and user.bits in NARROW and self.profile.applies(Rule.NARROW_CHOICES)
         stored = chosen and all(each.opcode == "store" for each in self.users(user.result or ""))
         along = user.opcode == "phi" and ALONG in (user.result or "")

@@ -7,6 +7,7 @@ from functools import cached_property
 from bfsim.kernel.ir_text import Instruction, predicate
 from bfsim.kernel.isa import ADDRESS_SHIFTS
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.remainders import quotient_of_rest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -168,14 +169,8 @@ class Folding:
         return left, right
 
     def remainder(self, each: Instruction) -> Instruction | None:
-        """The division whose remainder x - x / y * y is [match.pd of GCC 12]: where that is a call, it is another one."""
-        product = self.flow.instruction(each.operands[1]) if each.opcode == "sub" else None
-        if product is None or product.opcode != "mul" or not self.profile.applies(Rule.REMAINDERS):
-            return None
-        division = self.flow.instruction(product.operands[0])
-        if division is None or division.opcode not in ("sdiv", "udiv"):
-            return None
-        return division if division.operands[:2] == (each.operands[0], product.operands[1]) else None
+        """The division whose remainder a difference is: where that is a call, it is another one."""
+        return quotient_of_rest(self.flow, each) if self.profile.applies(Rule.REMAINDERS) else None
 
     def added_flag(self, each: Instruction) -> str | None:
         """The other operand of a sum with 0 or another constant, by the way: only the ways that do not bring 0 add.

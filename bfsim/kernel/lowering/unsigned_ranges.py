@@ -21,6 +21,7 @@ from bfsim.kernel.lowering.range_arithmetic import (
     widened,
     within,
 )
+from bfsim.kernel.lowering.remainders import quotient_of_rest
 
 MOST_ROUNDS = 12
 """[ours] So often a range may grow before it is widened."""
@@ -74,7 +75,7 @@ class UnsignedRanges:
         ranges = [one for one in (self._at(value, label) for value in operands) if one is not None]
         if len(ranges) < len(operands):
             return None
-        if (division := self._quotient_of_rest(each)) is not None:
+        if (division := quotient_of_rest(self.flow, each)) is not None:
             divisor = self._at(division.operands[1], label) or ANY
             return (rest if division.opcode == "udiv" else rest_of_signed)(ranges[0], divisor)
         return computed(each, ranges)
@@ -105,15 +106,6 @@ class UnsignedRanges:
             beside = (int(other) % WORDS,) * 2 if is_number(other) else self.found.get(other, ANY)
             found = within(found, relation, beside) if found is not None else None
         return found
-
-    def _quotient_of_rest(self, each: Instruction) -> Instruction | None:
-        """Return x / y of a difference x - x / y * y, of which GCC makes a remainder [match.pd]."""
-        product = self.flow.instruction(each.operands[1]) if each.opcode == "sub" else None
-        division = self.flow.instruction(product.operands[0]) if product and product.opcode == "mul" else None
-        if product is None or division is None or division.opcode not in ("udiv", "sdiv"):
-            return None
-        is_rest = division.operands[:2] == (each.operands[0], product.operands[1])
-        return division if is_rest else None
 
 
 def _said_between(flow: ControlFlow, label: str, behind: str) -> Iterator[tuple[str, str, str]]:
