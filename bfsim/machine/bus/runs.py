@@ -47,11 +47,10 @@ def cores_quiet_until(state: State, number: int, until: int) -> int:
 
 
 @native
-def preferred_until(state: State, number: int, until: int) -> int:
-    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap."""
-    limit = alone_until(state, until)
-    if limit > state[w.BEGAN]:
-        return limit  # nobody waits, which is most often so
+def preferred_until(state: State, number: int, until: int, alone: int) -> int:
+    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap; `alone`: until when to itself."""
+    if alone > state[w.BEGAN]:
+        return alone  # nobody waits, which is most often so
     limit = min(until, state[w.NEXT_REFRESH])
     rank = state[w.MASTERS_AT + number + w.RANK]
     for other in range(w.MASTERS):
@@ -75,19 +74,19 @@ def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, 
     if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
         return 0
     ahead = min(ahead, min(state[transfer + w.FROM_X_LEFT], state[transfer + w.TO_X_LEFT]) - 1)
-    reads = state[transfer + w.MODE] == w.READ and state[master + w.GAP_NUMERATOR] > 0
-    if not reads:
-        room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
-        return max(0, min(ahead, (room + ticks - 1) // ticks))
-    parts = state[master + w.GAP_DENOMINATOR]
-    room = alone_until(state, until) - state[w.COMMAND_FREE]
-    longest = ticks * parts + state[w.BURST_WORDS] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
-    alone = max(0, min(ahead, (room - state[w.BURST_WORDS] * state[w.SCLK]) * parts // longest))
-    if alone:
-        return alone
-    room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
-    to_gap = (parts - 1 - state[master + w.GAP]) // state[master + w.GAP_NUMERATOR] - 1
-    return max(0, min(ahead, to_gap, (room + ticks - 1) // ticks))
+    free, alone = state[w.COMMAND_FREE], alone_until(state, until)
+    room = preferred_until(state, number, until, alone) - free
+    if ahead <= 0 or room <= 0:
+        return 0
+    numerator, parts = state[master + w.GAP_NUMERATOR], state[master + w.GAP_DENOMINATOR]
+    if state[transfer + w.MODE] == w.READ and numerator > 0:
+        pause = state[w.BURST_WORDS] * state[w.SCLK]
+        longest = ticks * parts + pause * numerator
+        with_pauses = (alone - free - pause) * parts
+        if with_pauses >= longest:
+            return min(ahead, with_pauses // longest)
+        ahead = min(ahead, (parts - 1 - state[master + w.GAP]) // numerator - 1)
+    return max(0, min(ahead, (room + ticks - 1) // ticks))
 
 
 @native
@@ -97,6 +96,8 @@ def pause(state: State, master: int, elements: int) -> int:
     It pauses for as long as another stream moves a FIFO of words ([assumed]; the sum of the pauses is data of the chip).
     """
     state[master + w.GAP] += elements * state[master + w.GAP_NUMERATOR]
+    if state[master + w.GAP] < state[master + w.GAP_DENOMINATOR]:
+        return 0  # most often; a division takes the host longer
     bursts = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
     state[master + w.GAP] -= bursts * state[master + w.GAP_DENOMINATOR]
     return bursts * state[w.BURST_WORDS] * state[w.SCLK]

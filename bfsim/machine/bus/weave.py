@@ -20,6 +20,7 @@ from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
 from bfsim.machine.bus.l2_requests import access_ahead
+from bfsim.machine.bus.l2_turns import load_in_turns
 from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.runs import l2_left_until
 from bfsim.machine.bus.sdram import hold_up
@@ -130,32 +131,31 @@ def first_copy(state: State) -> int:
 def first_with_cameras(state: State, until: int) -> tuple[int, int]:
     """Return which of the PPIs and the memory DMAs has the SDRAM bus next, and when; NONE if not before tick `until`.
 
-    They are numbered in the order of their ranks. One that needs no bus comes first, and is left to `grant`.
+    They are numbered in the order of their ranks; of the others none asks before `until`. One that needs no bus is left to `grant`.
     """
-    left, right, free = w.MASTERS_AT + w.PPI0, w.MASTERS_AT + w.PPI1, state[w.COMMAND_FREE]
-    first, at = w.PPI0, max(free, state[left + w.READY])
-    right_at = max(free, state[right + w.READY])
-    if right_at < at or (
-        right_at == at < until and is_urgent(state, right, at) and not is_urgent(state, left, at)
-    ):
-        first, at = w.PPI1, right_at
-    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
-        copy_at = max(free, state[w.MASTERS_AT + number + w.READY])
-        if copy_at < at:
-            first, at = number, copy_at
-    if at >= min(until, needs_nothing_at(state)):
-        return w.NONE, at
-    return first, at
+    first, at, free, needs_nothing_at = w.NONE, until, state[w.COMMAND_FREE], until
+    for number in range(w.PPI0, w.MDMA2_1 + 1):
+        master = w.MASTERS_AT + number
+        ready = state[master + w.READY]
+        if ready < until:
+            asks_at = max(free, ready)
+            if state[master + w.USES] != w.SDRAM:
+                needs_nothing_at = min(needs_nothing_at, ready)
+            elif asks_at < at or (asks_at == at and is_more_urgent(state, number, first, at)):
+                first, at = number, asks_at
+    return (first if at < needs_nothing_at else w.NONE), at
 
 
 @native
-def needs_nothing_at(state: State) -> int:
-    """Return when the first of the PPIs and the memory DMAs goes on that needs no bus, NEVER if none does."""
-    first = w.NEVER
-    for master in range(w.MASTERS_AT, w.MASTERS_AT + w.MDMA2_1 + 1):
-        if state[master + w.USES] != w.SDRAM:
-            first = min(first, state[master + w.READY])
-    return first
+def is_more_urgent(state: State, number: int, other: int, at: int) -> bool:
+    """Whether a PPI must have the bus at tick `at` before another one, which has the better rank."""
+    ppi, before = w.MASTERS_AT + number, w.MASTERS_AT + other
+    return (
+        number == w.PPI1
+        and other == w.PPI0
+        and is_urgent(state, ppi, at)
+        and not is_urgent(state, before, at)
+    )
 
 
 @native
@@ -185,7 +185,9 @@ def serve_cores(state: State, until: int) -> int:
 @native
 def go_ahead(state: State, core: int, at: int, until: int) -> bool:
     """Do at once what a core does from tick `at` on, if that is of a kind; return whether it is. No DMA wants L2 before tick `until`."""
-    return fetch_ahead(state, core, at, until) or access_ahead(state, core, until)
+    return (
+        fetch_ahead(state, core, at, until) or load_in_turns(state, until) or access_ahead(state, core, until)
+    )
 
 
 @native
