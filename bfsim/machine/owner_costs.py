@@ -18,9 +18,6 @@ COLUMNS = FIRST_STALL + len(REASONS)
 """What a row has of one owner in one stage: calls, issue and idle cycles, and stalls in the order of `StallReason`."""
 COLUMN_OF = {reason: FIRST_STALL + number for number, reason in enumerate(REASONS)}
 
-NUMBER = np.dtype([("owner", np.uint32), ("column", np.uint8), ("cclk", np.int64)])
-"""A number that is not 0: of which owner, in which column."""
-
 
 class Owner(NamedTuple):
     """An owner of cycles in a stage, named as in `trace.OwnerCost`."""
@@ -39,25 +36,27 @@ def _shared(owners: tuple[Owner, ...]) -> tuple[Owner, ...]:
 class OwnerCosts(Sequence[OwnerCost]):
     """The costs of owners, made from a table with a row of COLUMNS for each; rows of zeros are left out."""
 
-    __slots__ = ("_numbers", "_owners")
+    __slots__ = ("_amounts", "_owners", "_places")
 
     def __init__(self, owners: Sequence[Owner], table: NDArray[np.int64]) -> None:
-        rows, columns = np.nonzero(table)
-        is_first = np.ones(len(rows), np.bool_)  # of its row: they come in order
-        is_first[1:] = rows[1:] != rows[:-1]
-        self._owners = _shared(tuple(owners[each] for each in rows[is_first].tolist()))
-        numbers = np.empty(len(rows), NUMBER)
-        numbers["owner"] = np.cumsum(is_first) - 1
-        numbers["column"], numbers["cclk"] = columns, table[rows, columns]
-        self._numbers = numbers.tobytes()
+        numbers = table.reshape(-1)
+        places = np.flatnonzero(numbers)
+        self._owners = _shared(tuple(owners))
+        self._places, self._amounts = places.astype(np.uint32).tobytes(), numbers[places].tobytes()
 
     def __len__(self) -> int:
-        return len(self._owners)
+        return len(np.unique(self._rows_and_columns()[0]))
 
     def __iter__(self) -> Iterator[OwnerCost]:
-        numbers = np.frombuffer(self._numbers, NUMBER).tolist()
+        rows, columns = (each.tolist() for each in self._rows_and_columns())
+        numbers = zip(rows, columns, np.frombuffer(self._amounts, np.int64).tolist(), strict=True)
         for row, group in groupby(numbers, key=lambda each: each[0]):
             yield _cost(self._owners[row], {column: number for _, column, number in group})
+
+    def _rows_and_columns(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """Return where in the table each number is that is not 0: they come in order."""
+        rows, columns = np.divmod(np.frombuffer(self._places, np.uint32), np.uint32(COLUMNS))
+        return rows, columns
 
     @overload
     def __getitem__(self, index: int) -> OwnerCost: ...
