@@ -18,8 +18,8 @@ from bfsim.machine_code.left import Result
 from bfsim.machine_code.native_code import native_code
 
 LEFT, NOTE, BLOCK, NUMBER = range(4)
-"""Of what was asked for: the `id` of what it has left, 0 once that was yielded; the address of `int note(state, core, numbers)`, 0 if that
-is not to note it, or has returned 0 for it did not; that of the words of the call; and its number. The last three are those of a call
+"""Of what was asked for: the `id` of what it has left, 0 once that was yielded; the address of `int note(state, core, numbers, call)`, 0 if
+that is not to note it, or has returned 0 for it did not; that of the words of the call; and its number. The last three are those of a call
 that is found."""
 ASKED = 4
 
@@ -124,6 +124,7 @@ ended:
   ret ptr %over
 yielded:
 {field("left", LEFT, "i64", "asked")}{field("note", NOTE, "i64", "asked")}{field("words", BLOCK, "i64", "asked")}\
+{field("number", NUMBER, "i64", "asked")}\
   %item.word = ptrtoint ptr %item to i64
   %is.asked = icmp eq i64 %item.word, %left
   %can.be.noted = icmp ne i64 %note, 0
@@ -133,7 +134,7 @@ ours:
   %call = inttoptr i64 %words to ptr
 {field("cost", COST, "i64", "call")}{field("result", RESULT, "i64", "call")}{field("name", NAME, "ptr", "call")}\
   %noting = inttoptr i64 %note to ptr
-  %noted = call i64 %noting(ptr %state, i64 %core, i64 %cost)
+  %noted = call i64 %noting(ptr %state, i64 %core, i64 %cost, i64 %number)
   %was.noted = icmp ne i64 %noted, 0
   br i1 %was.noted, label %look, label %was_not
 was_not:

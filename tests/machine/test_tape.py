@@ -11,7 +11,7 @@ from bfsim.machine.bus.tape import MOST_OPERATIONS, Tape
 from bfsim.machine.bus.tape_lines import COPY_WORDS, NotedLines
 from tests.machine.rig import Bench
 
-CORE = 1
+CORE, CALL = 1, 11
 MEET = w.CATCH_UP, 0, 0, 0, 0
 PROGRAM = w.SET_UP, 60, 5, 7, 3
 NO_PLAN = (w.NONE,) * COPY_WORDS
@@ -31,8 +31,8 @@ def tape(bench: Bench) -> Tape:
 
 
 def noted(tape: Tape) -> list[tuple[int, ...]]:
-    """Return what a tape has noted."""
-    return [tuple(each) for each in tape.operations(0, tape.noted).tolist()]
+    """Return what a tape has noted, without the calls that it was noted of."""
+    return [tuple(each[: w.OF_CALL]) for each in tape.operations(0, tape.noted).tolist()]
 
 
 def ring(tape: Tape, *copies: tuple[int, ...]) -> NotedLines:
@@ -43,7 +43,7 @@ def ring(tape: Tape, *copies: tuple[int, ...]) -> NotedLines:
 def run(tape: Tape, issue_cclk: int, stall_cclk: int = 0) -> int:
     """Note a call that has met nobody."""
     work = Work(issue_cclk, stall_cclk)
-    return tape.note_run(work.at)
+    return tape.note_run(work.at, CALL)
 
 
 def test_the_first_calls_of_all_are_not_noted(tape: Tape) -> None:
@@ -76,10 +76,11 @@ def test_a_mark_is_gone_with_what_was_before_it(tape: Tape) -> None:
 
 
 def test_accesses_of_calls_stand_behind_each_other(tape: Tape) -> None:
-    """Each call has those that it logged."""
-    for accesses in (3, 0, 4):
+    """Each call has those that it logged, and its number."""
+    for number, accesses in enumerate((3, 0, 4)):
         work = Work(10, 1, accesses=accesses)
-        tape.note_access(work.at)
+        tape.note_access(work.at, CALL + number)
+    assert tape.operations(0, tape.noted)[:, w.OF_CALL].tolist() == [CALL, CALL + 1, CALL + 2]
     assert noted(tape) == [(w.ACCESS, 10, 1, 0, 3), (w.ACCESS, 10, 1, 3, 3), (w.ACCESS, 10, 1, 3, 7)]
 
 

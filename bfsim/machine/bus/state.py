@@ -168,7 +168,7 @@ ACCOUNT_WORDS = 4
 MAX_ACCOUNTS = 256
 PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
 
-# An operation: what it is, and up to four numbers.
+# An operation: what it is, up to four numbers, and OF_CALL.
 (
     RUN,            # a call that stays in L1: issue cycles, interlocks
     ACCESS,         # a call that does not: the same, the first of its accesses in the log, and the one behind its last
@@ -177,7 +177,8 @@ PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
     COPY,           # post a copy: its plan, and where it begins to read and to write
     AWAIT,          # wait for a copy: how many were posted since, why that is a stall, account
 ) = range(6)  # fmt: skip
-OPERATION_WORDS = 5
+OF_CALL = 5  # which call an ACCESS is, of those that were prepared
+OPERATION_WORDS = 6
 MAX_OPERATIONS = 1 << 17
 
 # ---- A tape: how much of its operations a core that runs ahead has noted (`tape`).

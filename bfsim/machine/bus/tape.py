@@ -27,10 +27,13 @@ def end_of(state: State, core: int) -> int:
 
 
 @native
-def write(state: State, core: int, kind: int, one: int, two: int, three: int, four: int) -> int:
-    """Write an operation; return how many there are."""
+def write(
+    state: State, core: int, kind: int, one: int, two: int, three: int, four: int, call: int = w.NONE
+) -> int:
+    """Write an operation, of a call that was prepared or of none; return how many there are."""
     at, tape = end_of(state, core), w.TAPES_AT + core * w.TAPE_WORDS
     state[at], state[at + 1], state[at + 2], state[at + 3], state[at + 4] = kind, one, two, three, four
+    state[at + w.OF_CALL] = call
     state[tape + w.NOTED] += 1
     kept = state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.KEPT]
     if state[tape + w.NOTED] > state[tape + w.MOST] or kept > MOST_ACCESSES:
@@ -44,8 +47,8 @@ def note(state_at: Any, core: int, kind: int, one: int, two: int, three: int, fo
     return write(words_at(state_at), core, kind, one, two, three, four)
 
 
-@native_entry("int64", "int64*", "int64", "int64*")
-def note_run(state_at: Any, core: int, work_at: Any) -> int:
+@native_entry("int64", "int64*", "int64", "int64*", "int64")
+def note_run(state_at: Any, core: int, work_at: Any, _call: int) -> int:
     """Note a call, by the numbers of its `Work`, that has met nobody, as one with those just before it; return how many operations were noted before: if none, it is not noted."""
     state: State = words_at(state_at)
     work: State = words_at(work_at)
@@ -59,16 +62,16 @@ def note_run(state_at: Any, core: int, work_at: Any) -> int:
     return noted
 
 
-@native_entry("int64", "int64*", "int64", "int64*")
-def note_access(state_at: Any, core: int, work_at: Any) -> int:
-    """Note a call, by its numbers, and keep its accesses, which it has just logged; return how many operations there are."""
+@native_entry("int64", "int64*", "int64", "int64*", "int64")
+def note_access(state_at: Any, core: int, work_at: Any, call: int) -> int:
+    """Note a call, by the numbers of its `Work` and its own, and keep its accesses, which it has just logged; return how many operations there are."""
     state: State = words_at(state_at)
     work: State = words_at(work_at)
     trace = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS
     first = state[trace + log.KEPT]
     last = first + work[numbers.ACCESSES]
     state[trace + log.ENTRIES] = state[trace + log.KEPT] = last
-    return write(state, core, w.ACCESS, work[numbers.ISSUE_CCLK], work[numbers.STALL_CCLK], first, last)
+    return write(state, core, w.ACCESS, work[numbers.ISSUE_CCLK], work[numbers.STALL_CCLK], first, last, call)
 
 
 class Tape:
@@ -91,9 +94,9 @@ class Tape:
         self._first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
         self.note = built_in(note.address(), 5, state.ctypes.data, core)
         """Notes an operation, of a kind and four numbers."""
-        self.note_run = built_in(note_run.address(), 1, state.ctypes.data, core)
-        self.note_access = built_in(note_access.address(), 1, state.ctypes.data, core)
-        """Of a `Work`, by the address of its numbers."""
+        self.note_run = built_in(note_run.address(), 2, state.ctypes.data, core)
+        self.note_access = built_in(note_access.address(), 2, state.ctypes.data, core)
+        """Of a `Work`, by the address of its numbers, and the number of its call."""
 
     @property
     def noted(self) -> int:

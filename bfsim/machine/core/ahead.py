@@ -120,13 +120,13 @@ class Ahead:
 
     # ---- kernels
 
-    def note_call(self, work: Work, call: KnownCall) -> None:  # noqa: ARG002
+    def note_call(self, work: Work, call: KnownCall) -> None:
         """Note it."""
-        self.tape.note_access(work.at)
+        self.tape.note_access(work.at, call.number)
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it behind what is noted, or charge it at once."""
-        if not self.tape.note_run(work.at):
+        if not self.tape.note_run(work.at, call.number):
             self._in_step.charge_call(work, call)
 
     def play_call(self, work: Work, call: KnownCall) -> Wait:

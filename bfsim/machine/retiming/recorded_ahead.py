@@ -14,7 +14,7 @@ from bfsim.machine.core.ahead import Ahead
 from bfsim.machine.core.progress import Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
-from bfsim.machine.retiming.work import CALL, Table
+from bfsim.machine.retiming.work import CALL, OPERATION_COLUMNS, Table
 from bfsim.machine.retiming.work_notes import WorkNotes
 
 LATEST = 1 << 14
@@ -26,7 +26,6 @@ class RecordedAhead(Ahead):
 
     def __init__(self, *parts: Any) -> None:
         super().__init__(*parts)
-        self.tape.takes_calls = False
         self.notes = WorkNotes(self._name, self._bus.owners)
         self.is_paused = False
         self.is_too_late = False
@@ -34,8 +33,7 @@ class RecordedAhead(Ahead):
 
     def _begin(self) -> None:
         super()._begin()
-        self._calls: list[int] = []  # which of those that were prepared each call with accesses is,
-        self._marks: list[int] = []  # and behind how many operations the calls of firmware are
+        self._marks: list[int] = []  # behind how many operations the calls of firmware are
 
     def mark(self) -> None:
         """Note the place of a call of firmware."""
@@ -43,11 +41,6 @@ class RecordedAhead(Ahead):
             self._marks.append(noted)
         else:
             self.notes.add(CALL)
-
-    def note_call(self, work: Work, call: KnownCall) -> None:
-        """Note which call it is."""
-        super().note_call(work, call)
-        self._calls.append(call.number)
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it though nothing is noted before it."""
@@ -71,12 +64,13 @@ class RecordedAhead(Ahead):
 
     def _play(self, noted: int) -> Wait:
         if not self.is_paused:
-            self._note_stretch(self.tape.operations(0, noted).copy())
+            self._note_stretch(self.tape.operations(0, noted))
         return super()._play(noted)
 
-    def _note_stretch(self, operations: Table) -> None:
-        """Note operations in the words of `FrameWork`."""
-        kinds, notes = operations[:, 0], self.notes
+    def _note_stretch(self, on_tape: Table) -> None:
+        """Note operations, as they are on the tape, in the words of `FrameWork`."""
+        operations, notes = on_tape[:, :OPERATION_COLUMNS].copy(), self.notes
+        kinds = operations[:, 0]
         accounts = np.array([notes.account(each) for each in self._owners], np.int64)
         calls, set_ups, copies, awaits = (
             np.flatnonzero(kinds == each) for each in (w.ACCESS, w.SET_UP, w.COPY, w.AWAIT)
@@ -84,7 +78,7 @@ class RecordedAhead(Ahead):
         if len(calls):
             notes.add_accesses(*self._bus.logs.first(self._number, int(operations[calls[-1], 4])))
             operations[calls, 3] = operations[calls, 4] - operations[calls, 3]
-            operations[calls, 4] = self._calls
+            operations[calls, 4] = on_tape[calls, w.OF_CALL]
         _, _, account, writes, reads = operations[set_ups].T
         operations[set_ups, 1:] = np.column_stack([writes, reads, accounts[account], 0 * reads])
         operations[copies, 1], operations[copies, 2:] = operations[copies, 4], 0

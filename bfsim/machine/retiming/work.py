@@ -25,7 +25,7 @@ FETCHES have their number in place of the cycle, and no memory: the board that p
 STREAM, SOURCE, SOURCE_BYTE, DESTINATION, DESTINATION_BYTE, NBYTES = range(6)
 """Columns of a copy: the stream of the core, owner of the memory and byte there of each side, and how many bytes."""
 
-OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = w.OPERATION_WORDS, 5, 3, 6
+OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = 5, 5, 3, 6
 
 Table = NDArray[np.int64]
 Accesses = NDArray[np.uint32]

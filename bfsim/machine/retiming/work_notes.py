@@ -12,7 +12,14 @@ from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.memories import Row
-from bfsim.machine.retiming.work import ACCESS_COLUMNS, COPY_COLUMNS, FrameWork, Place, Table
+from bfsim.machine.retiming.work import (
+    ACCESS_COLUMNS,
+    COPY_COLUMNS,
+    OPERATION_COLUMNS,
+    FrameWork,
+    Place,
+    Table,
+)
 
 Entries = NDArray[np.int64]
 
@@ -99,7 +106,7 @@ class WorkNotes:
         self._end_single()
         work = FrameWork(
             core=self._core,
-            operations=_joined(_together(self._operations, w.OPERATION_WORDS)),
+            operations=_joined(_together(self._operations, OPERATION_COLUMNS)),
             accesses=self._by_owner(),
             events=_together(self._counted, 3),
             copies=_together(self._new_copies, COPY_COLUMNS),
