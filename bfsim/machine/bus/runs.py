@@ -85,7 +85,7 @@ def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, 
         with_pauses = (alone - free - pause) * parts
         if with_pauses >= longest:
             return min(ahead, with_pauses // longest)
-        ahead = min(ahead, (parts - 1 - state[master + w.GAP]) // numerator - 1)
+        ahead = min(ahead, (parts - 1 - state[master + w.GAP]) // numerator)
     return max(0, min(ahead, (room + ticks - 1) // ticks))
 
 
