@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.pacing import next_paced
+from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.sdram import hits_ahead
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import traffic_at
@@ -47,51 +47,97 @@ def hits_of(state: State, number: int) -> int:
 
 
 @native
-def take_hit(state: State, memory: Memory, number: int, at: int) -> None:
-    """Write the next word of a PPI at tick `at` into the page that is open for it."""
-    master = w.MASTERS_AT + number
-    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
-    source, target = state[transfer + w.FROM], state[transfer + w.TO]
-    memory[target >> WORD_BITS] = memory[source >> WORD_BITS]
-    state[transfer + w.FROM], state[transfer + w.TO] = source + WORD_BYTES, target + WORD_BYTES
-    state[transfer + w.FROM_X_LEFT] -= 1
-    state[transfer + w.TO_X_LEFT] -= 1
-    state[transfer + w.MOVED] += 1
-    state[transfer + w.LEFT] -= 1
-    state[transfer + w.PLACE] += 1
-    next_paced(state, master, transfer)
-    through = at + state[w.SCLK]
-    state[w.WRITTEN + (target >> state[w.BANK_BITS])] = through
-    state[w.BEGAN], state[w.COMMAND_FREE], state[w.DATA_FREE] = at, through, through
-    state[w.REFRESH_WAIT], state[w.PAGE_CLASS] = 0, 0
-    traffic = traffic_at(state[transfer + w.TO_OWNER], number)
-    state[traffic + w.WRITTEN_BYTES] += WORD_BYTES
-    state[traffic + w.HITS] += 1
-    state[traffic + w.BUSY] += state[w.SCLK]
+def take_hits(state: State, memory: Memory, limit: int) -> None:
+    """Take the words of both PPIs that come before tick `limit`, up to which nobody else wants the bus and no refresh is due.
+
+    All at once: words of a camera are so far apart that each has the bus as soon as it is there, or, where the left one comes
+    at the same time, right behind that, which has the better rank.
+    """
+    left_ready, right_ready = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
+    free, sclk, first = state[w.COMMAND_FREE], state[w.SCLK], min(left_ready, right_ready)
+    if first >= limit or first < free or first == state[w.REFRESH_ENDS]:
+        return
+    if not state[w.LAST_WRITE] or state[w.DATA_FREE] > free:
+        return
+    left_hits, right_hits = hits_of(state, w.PPI0), hits_of(state, w.PPI1)
+    left_end = word_at(state, w.PPI0, left_hits) if left_hits > 0 else left_ready
+    right_end = word_at(state, w.PPI1, right_hits) if right_hits > 0 else right_ready
+    end = min(limit, left_end, right_end)
+    left = words_before(state, w.PPI0, end) if left_hits > 0 else 0
+    right = words_before(state, w.PPI1, end) if right_hits > 0 else 0
+    if right and granted_at(state, right - 1, left) >= limit:
+        right -= 1
+    left_free = word_at(state, w.PPI0, left - 1) + sclk if left else free
+    right_free = granted_at(state, right - 1, left) + sclk if right else free
+    take_words(state, memory, w.PPI0, left, left_free)
+    take_words(state, memory, w.PPI1, right, right_free)
 
 
 @native
-def take_hits(state: State, memory: Memory, limit: int) -> None:
-    """Take the words of both PPIs that come before tick `limit`, up to which nobody else wants the bus and no refresh is due."""
-    if not state[w.LAST_WRITE] or state[w.DATA_FREE] > state[w.COMMAND_FREE]:
+def parts_until(state: State, transfer: int, ahead: int) -> int:
+    """Return when the word `ahead` of the next one of a transfer is there, in parts of a tick from its start."""
+    place = state[transfer + w.PLACE] + 1 + ahead
+    return state[transfer + w.LINE_BEGAN] + place * state[transfer + w.ELEMENT]
+
+
+@native
+def transfer_of(state: State, number: int) -> int:
+    """Return where the transfer of a master stands."""
+    return w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
+
+
+@native
+def word_at(state: State, number: int, ahead: int) -> int:
+    """Return when a PPI asks for the bus with the word `ahead` of its next one, both of one line."""
+    transfer = transfer_of(state, number)
+    ticks = (
+        aligned(parts_until(state, transfer, ahead), state[transfer + w.PARTS]) // state[transfer + w.PARTS]
+    )
+    return aligned(state[transfer + w.START] + ticks, state[w.SCLK])
+
+
+@native
+def words_before(state: State, number: int, tick: int) -> int:
+    """With how many words a PPI asks for the bus before a tick, all of one line."""
+    transfer, sclk = transfer_of(state, number), state[w.SCLK]
+    last_edge = (tick - 1) // sclk * sclk
+    parts = (last_edge - state[transfer + w.START]) * state[transfer + w.PARTS] - parts_until(
+        state, transfer, 0
+    )
+    return parts // state[transfer + w.ELEMENT] + 1 if parts >= 0 else 0
+
+
+@native
+def granted_at(state: State, ahead: int, left: int) -> int:
+    """Return when the right PPI has the bus for the word `ahead` of its next one, the left one having it for so many words."""
+    at, sclk = word_at(state, w.PPI1, ahead), state[w.SCLK]
+    if left == 0:
+        return at
+    before = words_before(state, w.PPI0, at + sclk)
+    return at + sclk if 0 < before <= left and word_at(state, w.PPI0, before - 1) == at else at
+
+
+@native
+def take_words(state: State, memory: Memory, number: int, count: int, free: int) -> None:
+    """Write so many words of a PPI into the page that is open for it; the bus is free behind them at a tick."""
+    if count == 0:
         return
-    if min(state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]) >= limit:
-        return
-    left, right = hits_of(state, w.PPI0), hits_of(state, w.PPI1)
-    while True:
-        left_ready, right_ready = (
-            state[w.MASTERS_AT + w.PPI0 + w.READY],
-            state[w.MASTERS_AT + w.PPI1 + w.READY],
-        )
-        free = state[w.COMMAND_FREE]
-        left_at, right_at = max(left_ready, free), max(right_ready, free)
-        at = min(left_at, right_at)
-        if at >= limit or at == state[w.REFRESH_ENDS] or at - min(left_ready, right_ready) > state[w.SCLK]:
-            return
-        if left_at <= right_at:  # of two at a time the left one has the better rank
-            number, left, hits = w.PPI0, left - 1, left
-        else:
-            number, right, hits = w.PPI1, right - 1, right
-        if hits <= 0:
-            return
-        take_hit(state, memory, number, at)
+    master, transfer, sclk = w.MASTERS_AT + number, transfer_of(state, number), state[w.SCLK]
+    source, target = state[transfer + w.FROM] >> WORD_BITS, state[transfer + w.TO] >> WORD_BITS
+    for word in range(count):
+        memory[target + word] = memory[source + word]
+    state[w.WRITTEN + (state[transfer + w.TO] >> state[w.BANK_BITS])] = free
+    state[master + w.READY] = word_at(state, number, count)
+    for side in (transfer + w.FROM, transfer + w.TO):
+        state[side + w.POSITION] += count * WORD_BYTES
+        state[side + w.X_LEFT] -= count
+    state[transfer + w.MOVED] += count
+    state[transfer + w.LEFT] -= count
+    state[transfer + w.PLACE] += count
+    state[w.COMMAND_FREE] = max(free, state[w.COMMAND_FREE])
+    state[w.DATA_FREE], state[w.BEGAN] = state[w.COMMAND_FREE], state[w.COMMAND_FREE] - sclk
+    state[w.REFRESH_WAIT], state[w.PAGE_CLASS] = 0, 0
+    traffic = traffic_at(state[transfer + w.TO_OWNER], number)
+    state[traffic + w.WRITTEN_BYTES] += count * WORD_BYTES
+    state[traffic + w.HITS] += count
+    state[traffic + w.BUSY] += count * sclk
