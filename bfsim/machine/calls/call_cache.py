@@ -159,7 +159,8 @@ class CallCache:
     def enter(self, stage: str) -> None:
         """Count the calls from now on under `stage`."""
         self.stage = stage
-        self._in_stage.setdefault(stage, StageGroups())
+        if stage not in self._in_stage:
+            self._in_stage[stage] = StageGroups()
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel, ready to run."""
         self.ready.enter(stage)
