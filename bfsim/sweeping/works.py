@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 WORKS = "works"
 """Folder of the store: in it each sweep that runs has one of its own."""
 
-LEAST_LEFT = 3
+LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 34 ms to run, 71 ms to record and 12 ms to play (20 and 200 frames, whole commands,
-means of three): n points that are left gain from n = (71 - 12) / (34 - 12), 2.7, on.
+With all that kernels work on in L1 a frame more takes 30 ms to run, 40 ms to record and 8 ms to play (20 and 200 frames, whole commands,
+means of three): n points that are left gain from n = (40 - 8) / (30 - 8), 1.5, on.
 """
 
 MOST_WAITS = 0.02
