@@ -16,7 +16,7 @@ from typing import Any
 
 from bfsim.chip.boards import board_named
 from bfsim.kernel.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
-from bfsim.machine.bus import core_requests, dma_requests, runs
+from bfsim.machine.bus import core_requests, dma_requests, runs, store_buffer
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import Weave, compiled_weave, plain_weave
@@ -186,7 +186,7 @@ def record_grants() -> list[tuple[int, int]]:
         grants.append((before, int(state[w.COMMAND_FREE])))
         return through
 
-    for module in (runs, dma_requests, core_requests):
+    for module in (runs, dma_requests, core_requests, store_buffer):
         module.access, module.stream = watched, watched_stream
     return grants
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_jobs import charge, cycles_until, next_entry
 from bfsim.machine.bus.core_logs import site_at
-from bfsim.machine.bus.core_requests import charge, cycles_until, hold_l2, next_entry
+from bfsim.machine.bus.l2_port import hold_l2
 from bfsim.machine.bus.memory_owners import piece_for
 from bfsim.machine.bus.runs import cores_quiet_until
 from bfsim.machine.bus.state import State

@@ -9,20 +9,13 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_jobs import charge_site, cycles_until, next_fetch
 from bfsim.machine.bus.core_logs import kind_of
-from bfsim.machine.bus.core_requests import (
-    charge_site,
-    cycles_until,
-    hold_l2,
-    is_in_buffer,
-    next_fetch,
-    put,
-    take_out,
-    try_lock,
-)
 from bfsim.machine.bus.fetch_requests import stall_of_word
+from bfsim.machine.bus.l2_port import hold_l2, try_lock
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.state import State
+from bfsim.machine.bus.store_buffer import is_in_buffer, put, take_out
 from bfsim.machine.bus.traffic import count_traffic
 
 NOBODY, ACCESS, DRAIN, TRY = range(4)

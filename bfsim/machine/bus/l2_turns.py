@@ -9,8 +9,8 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_jobs import next_fetch
 from bfsim.machine.bus.core_logs import kind_of
-from bfsim.machine.bus.core_requests import next_fetch
 from bfsim.machine.bus.l2_requests import has_turn, is_eligible, is_followed, load
 from bfsim.machine.bus.state import State
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_requests import start_job
+from bfsim.machine.bus.core_jobs import start_job
 from bfsim.machine.bus.state import State
 
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.camera_words import take_hits
-from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
+from bfsim.machine.bus.core_jobs import start_jobs
+from bfsim.machine.bus.core_requests import serve_core
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
 from bfsim.machine.bus.l2_requests import access_ahead
@@ -25,6 +26,7 @@ from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.runs import l2_left_until
 from bfsim.machine.bus.sdram import hold_up
 from bfsim.machine.bus.state import Memory, State
+from bfsim.machine.bus.store_buffer import serve_stores
 from bfsim.machine.bus.stretches import act, resume, who_acts
 from bfsim.machine.bus.transfers import accept
 

@@ -119,7 +119,7 @@ class LineFills:
 class SingleFetches:
     """Fetches of code that no cache holds: one for every 64 bits that were executed, from the routines' code in turn.
 
-    The bus makes them (`bus.core_requests.find_present`); the trace has their number only.
+    The bus makes them (`bus.core_jobs.find_present`); the trace has their number only.
     """
 
     def __init__(self, group: CallGroup, first_site: int, access_trace: AccessTrace) -> None:

@@ -1,0 +1,172 @@
+"""What a core accesses outside of L1 in a kernel call, compiled: one access after the other, and what each stalls."""
+
+from __future__ import annotations
+
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import kind_of, site_at
+from bfsim.machine.bus.pacing import aligned
+from bfsim.machine.bus.state import State
+
+
+@native
+def bytes_of(state: State, kind: int) -> int:
+    """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
+    if kind in (log.LOAD, log.STORE, log.TEST_AND_SET):
+        return w.CORE_WORD_BYTES
+    return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
+
+
+@native
+def site_of(state: State, core: int) -> int:
+    """Return the site of the core's present access."""
+    return state[w.JOBS_AT + core * w.JOB_WORDS + w.SITE]
+
+
+@native
+def charge(state: State, core: int, reason: int, cycles: int) -> None:
+    """Charge what the core's present access stalls."""
+    charge_site(state, core, site_of(state, core), reason, cycles)
+
+
+@native
+def charge_site(state: State, core: int, site: int, reason: int, cycles: int) -> None:
+    """Charge what an access of a core's site stalls."""
+    state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason] += cycles
+    state[site_at(core, site) + reason] += cycles
+
+
+@native
+def cycles_until(state: State, issued: int, done: int) -> int:
+    """Return for how many cycles an access that was `issued` at a tick stalls a core if it is `done` at another: all but its own one."""
+    ticks, cclk = done - issued, state[w.CCLK]
+    cycles = (
+        ticks if cclk == 1 else (ticks + cclk - 1) // cclk
+    )  # a division takes the host longer than all else here
+    return max(0, cycles - 1)
+
+
+@native
+def wait(state: State, core: int, done: int) -> int:
+    """Stall the core from its present access until `done`; return the cycles, to be charged."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    cycles = cycles_until(state, state[job + w.ISSUED_AT], done)
+    state[job + w.STALLED] += cycles * state[w.CCLK]
+    return cycles
+
+
+@native
+def stall(state: State, core: int, done: int, reason: int) -> None:
+    """Stall the core for `reason` from its present access until `done`."""
+    cycles = wait(state, core, done)
+    if cycles:
+        charge(state, core, reason, cycles)
+
+
+@native
+def next_fetch(state: State, job: int) -> int:
+    """Return the stamp of the next fetch of a core's code, behind that of all accesses if there is none."""
+    if state[job + w.FETCHED] == state[job + w.FETCHES]:
+        return w.NEVER
+    return state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
+
+
+@native
+def find_present(state: State, core: int) -> bool:
+    """Find what the core accesses next, in its log or in code that it fetches; return whether there is anything.
+
+    Fetches are spread evenly over the call; of a fetch and accesses of its cycle these come first.
+    """
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    at = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
+    is_logged = state[job + w.ENTRY] < state[job + w.END]
+    stamp = next_fetch(state, job)
+    if stamp != w.NEVER and (not is_logged or stamp < state[at] >> log.STAMP_BIT):
+        site = state[job + w.SITE] = state[job + w.ROUTINE]
+        code = state[site_at(core, site) + w.CODE]
+        place = code + state[job + w.WORD] * w.FETCH_BYTES
+        state[job + w.PRESENT] = stamp << log.STAMP_BIT | log.FETCH << log.KIND_BIT | place
+        state[job + w.IN_TURN] = 1
+        return True
+    state[job + w.IN_TURN] = 0
+    if is_logged:
+        state[job + w.PRESENT], state[job + w.SITE] = state[at], state[at + w.LOG_ENTRIES]
+    return is_logged
+
+
+@native
+def go_past(state: State, core: int) -> None:
+    """Leave the present access behind: of the code, in turn, or of the log."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    if not state[job + w.IN_TURN]:
+        state[job + w.ENTRY] += 1
+        return
+    row = site_at(core, state[job + w.SITE])
+    state[job + w.FETCHED] += 1
+    state[job + w.WORD] += 1
+    if state[job + w.WORD] == state[row + w.CODE_WORDS]:
+        state[job + w.WORD], state[job + w.ROUTINE] = 0, state[row + w.NEXT_ROUTINE]
+
+
+@native
+def next_entry(state: State, core: int, not_before: int) -> int:
+    """Set the core's next access up; after the last one end the job and return its number, NONE - 1 - core."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    master = w.MASTERS_AT + w.CORE_A + core
+    cclk = state[w.CCLK]
+    if not find_present(state, core):
+        state[job + w.STATE] = w.IDLE
+        state[master + w.READY] = w.NEVER
+        state[w.DONE_AT] = state[job + w.BEGIN] + state[job + w.TOTAL] * cclk + state[job + w.STALLED]
+        return w.NONE - 1 - core
+    entry = state[job + w.PRESENT]
+    issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
+    kind = kind_of(entry)
+    waits = kind not in (log.STORE, log.WRITE_BACK)
+    if waits and state[job + w.LINE_DONE] > issued:  # a core reads one line at a time
+        cycles = (state[job + w.LINE_DONE] - issued + cclk - 1) // cclk
+        charge(state, core, w.CODE_FETCH if kind == log.FETCH_LINE else w.CACHE_FILL, cycles)
+        state[job + w.STALLED] += cycles * cclk
+        issued += cycles * cclk
+    state[job + w.ISSUED_AT] = issued
+    if waits:
+        ask(state, master, entry & log.OFFSET_MASK, issued)
+    else:  # the store buffer asks, when it has it
+        state[master + w.USES], state[master + w.READY] = w.NOTHING, issued
+    return w.NONE
+
+
+@native
+def ask(state: State, master: int, offset: int, at: int) -> None:
+    """Let a core ask from tick `at` on for the SDRAM bus or for the port of L2, whichever `offset` needs."""
+    in_sdram = offset < state[w.SDRAM_END]
+    state[master + w.USES] = w.SDRAM if in_sdram else w.L2
+    state[master + w.READY] = aligned(at, state[w.SCLK]) if in_sdram else at
+
+
+@native
+def start_jobs(state: State) -> None:
+    """Let the cores begin with what was handed to them."""
+    for core in range(w.CORES):
+        job = w.JOBS_AT + core * w.JOB_WORDS
+        if state[job + w.STATE] == w.STARTING:
+            start_job(state, core, state[job + w.BEGIN], state[job + w.TOTAL], 0, state[job + w.END])
+
+
+@native
+def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: int) -> None:
+    """Let a core begin with the accesses from `first` to before `end` of its log, of a call of `cclk` cycles from tick `begin`."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    state[job + w.STATE] = w.RUNNING
+    state[job + w.BEGIN], state[job + w.TOTAL], state[job + w.STALLED] = begin, cclk, 0
+    state[job + w.ENTRY], state[job + w.END] = first, end
+    state[job + w.FETCHES], state[job + w.FETCHED] = 0, 0
+    last = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + end - 1
+    if first < end and kind_of(state[last]) == log.FETCHES:
+        state[job + w.END] -= 1
+        state[job + w.FETCHES] = state[last] >> log.STAMP_BIT
+        state[job + w.ROUTINE], state[job + w.WORD] = state[last + w.LOG_ENTRIES], 0
+    for reason in range(w.STALLS):
+        state[job + w.STALL + reason] = 0
+    next_entry(state, core, begin)

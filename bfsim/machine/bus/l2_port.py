@@ -1,0 +1,69 @@
+"""The port of L2 as the cores use it, compiled: loads, lines and code that are read, and bytes that are tested and set."""
+
+from __future__ import annotations
+
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_jobs import bytes_of, site_of, stall
+from bfsim.machine.bus.memory_owners import owner_for
+from bfsim.machine.bus.state import State
+from bfsim.machine.bus.traffic import count_traffic
+
+
+@native
+def hold_l2(state: State, core: int, at: int, nbytes: int) -> int:
+    """Let a core have the port of L2 from tick `at` on for `nbytes`; return when it is free again."""
+    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
+    state[w.L2_FREE] = at + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+    return state[w.L2_FREE]
+
+
+@native
+def wait_for_l2(state: State, core: int, at: int) -> None:
+    """Stall a core from its present access until it has the port of L2, at tick `at`."""
+    stall(state, core, at + state[w.CCLK], w.L2_PORT)
+    state[w.JOBS_AT + core * w.JOB_WORDS + w.ISSUED_AT] = at
+
+
+@native
+def read_l2(state: State, core: int, at: int, kind: int, offset: int) -> int:
+    """Read from L2 through the port that both cores share; return when the first data are there."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    nbytes = bytes_of(state, kind)
+    hold_l2(state, core, at, nbytes)
+    count_traffic(state, w.CORE_A + core, owner_for(state, core, offset, site_of(state, core)), False, nbytes)
+    wait_for_l2(state, core, at)
+    done = at + state[w.L2_READ]
+    state[job + w.LINE_DONE] = done + (nbytes - 1 >> state[w.L2_PORT_BITS]) * state[w.L2_NEXT]
+    reason = w.L2_LATENCY if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH
+    stall(state, core, done, reason)
+    return done
+
+
+@native
+def test_and_set(state: State, core: int, at: int) -> int:
+    """Read and write a byte of L2 with the port locked; return when that is done."""
+    locked = state[w.L2_READ] + state[w.L2_NEXT]
+    wait_for_l2(state, core, at)
+    stall(state, core, at + locked + state[w.CCLK], w.L2_LATENCY)
+    lock_l2(state, core, at + locked, 1)
+    return at + locked
+
+
+@native
+def try_lock(state: State, core: int, at: int, until: int) -> None:
+    """Let a core that spins try its lock from tick `at` on, as often as nobody else wants the port until a tick."""
+    locked = state[w.L2_READ] + state[w.L2_NEXT]
+    turn, room = locked + state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN], until - at - 1
+    tries = 1 + (room // turn if room >= turn else 0)  # a division takes the host longer than all else here
+    lock_l2(state, core, at + (tries - 1) * turn + locked, tries)
+    state[w.MASTERS_AT + w.CORE_A + core + w.READY] = at + tries * turn
+
+
+@native
+def lock_l2(state: State, core: int, free: int, times: int) -> None:
+    """Let a core have the port of L2 until it is free again at a tick, and count what it has read and written so many times."""
+    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2], state[w.L2_FREE] = core, 0, free
+    for write in (False, True):
+        count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, times * w.CORE_WORD_BYTES)
