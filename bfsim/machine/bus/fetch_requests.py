@@ -1,4 +1,4 @@
-"""Code that a core fetches from L2, compiled: the words that come while nobody else can want the port.
+"""Code that a core fetches from L2, compiled: the words that come while nobody else can want the port but a core that spins on a lock.
 
 What they do is what `core_requests` would do with each. Alone at the port every word stalls the core for as long as the others.
 """
@@ -8,9 +8,9 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import charge, cycles_until, next_entry
+from bfsim.machine.bus.core_jobs import charge, cycles_until, go_past, next_entry
 from bfsim.machine.bus.core_logs import site_at
-from bfsim.machine.bus.l2_port import hold_l2
+from bfsim.machine.bus.l2_port import has_turn, hold_l2, read_l2, try_lock
 from bfsim.machine.bus.memory_owners import piece_for
 from bfsim.machine.bus.runs import cores_quiet_until
 from bfsim.machine.bus.state import State
@@ -22,10 +22,43 @@ def fetch_ahead(state: State, core: int, at: int, until: int) -> bool:
     """Fetch what a core fetches from tick `at` on; return whether there is anything. Until tick `until` no DMA can want the port."""
     if not state[w.JOBS_AT + core * w.JOB_WORDS + w.IN_TURN]:
         return False
+    other = w.CORES - 1 - core
+    if state[w.JOBS_AT + other * w.JOB_WORDS + w.SPIN]:
+        return fetch_among_tries(state, core, other, until)
     words = words_alone(state, core, at, cores_quiet_until(state, w.CORE_A + core, until))
     if words > 0:
         fetch_words(state, core, words)
     return words > 0
+
+
+@native
+def fetch_among_tries(state: State, core: int, other: int, until: int) -> bool:
+    """Fetch a core's code and let the `other` one try its lock, each in its turn, before tick `until`; return whether either had one.
+
+    The last access of a call is left.
+    """
+    me, its, job = (
+        w.MASTERS_AT + w.CORE_A + core,
+        w.MASTERS_AT + w.CORE_A + other,
+        w.JOBS_AT + core * w.JOB_WORDS,
+    )
+    limit = min(until, state[w.MASTERS_AT + w.STORES_A + w.READY], state[w.MASTERS_AT + w.STORES_B + w.READY])
+    had_one = False
+    while state[job + w.IN_TURN] and state[job + w.PRESENT] & log.OFFSET_MASK >= state[w.SDRAM_END]:
+        ready, free = state[me + w.READY], state[w.L2_FREE]
+        at, tries_at = max(ready, free), max(state[its + w.READY], free)
+        if min(at, tries_at) >= limit or state[job + w.STORES]:
+            break
+        if tries_at < at or (tries_at == at and has_turn(state, other)):
+            try_lock(state, other, tries_at, min(limit, ready))
+        elif state[job + w.FETCHED] + 1 < state[job + w.FETCHES]:
+            done = read_l2(state, core, at, log.FETCH, state[job + w.PRESENT] & log.OFFSET_MASK)
+            go_past(state, core)
+            next_entry(state, core, done)
+        else:
+            break
+        had_one = True
+    return had_one
 
 
 @native

@@ -67,3 +67,10 @@ def lock_l2(state: State, core: int, free: int, times: int) -> None:
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2], state[w.L2_FREE] = core, 0, free
     for write in (False, True):
         count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, times * w.CORE_WORD_BYTES)
+
+
+@native
+def has_turn(state: State, core: int) -> bool:
+    """Whether a core comes before the other one at the port."""
+    last = state[w.LAST_CORE_AT_L2]
+    return last == w.CORES - 1 - core or (last == w.NONE and core == 0)

@@ -12,7 +12,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import charge_site, cycles_until, next_fetch
 from bfsim.machine.bus.core_logs import kind_of
 from bfsim.machine.bus.fetch_requests import stall_of_word
-from bfsim.machine.bus.l2_port import hold_l2, try_lock
+from bfsim.machine.bus.l2_port import has_turn, hold_l2, try_lock
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.store_buffer import is_in_buffer, put, take_out
@@ -126,13 +126,6 @@ def first_of(at: int, drains: int, tries: int, limit: int, is_store: bool, its_t
     if tries < first or (tries == first and (drains < at or (its_turn and not is_store))):
         return TRY
     return DRAIN if drains < at else ACCESS
-
-
-@native
-def has_turn(state: State, core: int) -> bool:
-    """Whether a core comes before the other one at the port."""
-    last = state[w.LAST_CORE_AT_L2]
-    return last == w.CORES - 1 - core or (last == w.NONE and core == 0)
 
 
 @native

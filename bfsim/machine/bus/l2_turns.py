@@ -11,7 +11,8 @@ from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import next_fetch
 from bfsim.machine.bus.core_logs import kind_of
-from bfsim.machine.bus.l2_requests import has_turn, is_eligible, is_followed, load
+from bfsim.machine.bus.l2_port import has_turn
+from bfsim.machine.bus.l2_requests import is_eligible, is_followed, load
 from bfsim.machine.bus.state import State
 
 A, B = range(w.CORES)
