@@ -20,8 +20,8 @@ from bfsim.machine.bus.core_jobs import start_jobs
 from bfsim.machine.bus.core_requests import serve_core
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
+from bfsim.machine.bus.l2_loads import load_ahead
 from bfsim.machine.bus.l2_requests import access_ahead
-from bfsim.machine.bus.l2_turns import load_in_turns
 from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.runs import l2_left_until
 from bfsim.machine.bus.sdram import hold_up
@@ -187,9 +187,7 @@ def serve_cores(state: State, until: int) -> int:
 @native
 def go_ahead(state: State, core: int, at: int, until: int) -> bool:
     """Do at once what a core does from tick `at` on, if that is of a kind; return whether it is. No DMA wants L2 before tick `until`."""
-    return (
-        fetch_ahead(state, core, at, until) or load_in_turns(state, until) or access_ahead(state, core, until)
-    )
+    return fetch_ahead(state, core, at, until) or load_ahead(state, until) or access_ahead(state, core, until)
 
 
 @native
