@@ -20,7 +20,7 @@ from bfsim.machine.bus.traffic import count_traffic
 
 A, B = range(w.CORES)
 
-Core = tuple[int, int, int, int, int, int, int]
+LoadState = tuple[int, int, int, int, int, int, int]
 """How far a core is: what follows."""
 NUMBER, ASKS_AT, STALLED, WAITS, DONE_AT, FETCHES_AT, LOADS = range(7)
 """Its next access in the log, when that asks for the port, the ticks that its call was stalled, the cycles of these for the port, when its last
@@ -58,7 +58,7 @@ def load_ahead(state: State, until: int) -> bool:
 
 
 @native
-def progress_of(state: State, core: int) -> Core:
+def progress_of(state: State, core: int) -> LoadState:
     """Return how far a core is."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     number, fetches_at = state[job + w.ENTRY], next_fetch(state, job)
@@ -73,7 +73,7 @@ def progress_of(state: State, core: int) -> Core:
 
 
 @native
-def after_load(state: State, core: int, before: Core, at: int, latency: int) -> Core:
+def after_load(state: State, core: int, before: LoadState, at: int, latency: int) -> LoadState:
     """Make the next load of a core at tick `at`, and return how far it is then."""
     job, cclk, number = w.JOBS_AT + core * w.JOB_WORDS, state[w.CCLK], before[NUMBER]
     entry = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + number
@@ -99,7 +99,7 @@ def after_load(state: State, core: int, before: Core, at: int, latency: int) -> 
 
 
 @native
-def keep(state: State, core: int, progress: Core, latency: int) -> None:
+def keep(state: State, core: int, progress: LoadState, latency: int) -> None:
     """Keep in the state how far a core is, if it has loaded anything."""
     job, number = w.JOBS_AT + core * w.JOB_WORDS, progress[NUMBER]
     if number == state[job + w.ENTRY]:
