@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 
-from bfsim.garbage import collect_rarely
+from bfsim.garbage import collect_no_more, collect_rarely
 from bfsim.signals import BY_SIGNAL, hear_signals
 
 
@@ -31,6 +31,8 @@ def main() -> None:
         command(prog_name="bfsim")
     except Exception:  # noqa: BLE001 - whatever comes as far as this
         sys.exit(fault())
+    finally:
+        collect_no_more()
 
 
 def _leave(number: int, _frame: object) -> None:
