@@ -1,14 +1,17 @@
 """The loop of libgcc's unsigned division: all of its turns but the last are one division of the host.
 
 Nearly every division of object code is this loop (`__udivsi3`, which `__divsi3`, `__modsi3` and `__umodsi3` call), of 32 turns with a
-bit of the quotient each. The last turn is made as it is written, so that every register and flag is left as by the loop.
+bit of the quotient each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 
+from bfsim.blackfin.at_once import HardwareLoop, Registers
 from bfsim.blackfin.blocks import Block
+from bfsim.blackfin.edge_counts import Event
+from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.text import text
 from bfsim.blackfin.value import Value
 
@@ -20,7 +23,7 @@ LOOP = (
     "IF !CC R3 = R2",
 )
 """[GCC] Bits of R0 go up into the remainder, R3; those of the quotient, each inverted, come in at the other end, through CC."""
-DIVIDING = ("R0", "R1", "R3", "CC", "LC0", "LB0", "LT0")
+DIVIDING = ("R0", "R1", "R3", "CC")
 """The registers that say what it does."""
 TURNS = 32
 AHEAD = TURNS - 1
@@ -29,27 +32,49 @@ LARGEST_DIVISOR = 1 << 30
 """With a larger one a difference may overflow, which the flag VS remembers."""
 
 
-def divides(block: Block) -> bool:
-    """Whether a block is what the loop repeats."""
-    return len(block.instructions) == len(LOOP) and tuple(map(text, block.instructions)) == LOOP
+def division(block: Block) -> Division | None:
+    """Return the division that a block is all turns of, if it is one."""
+    if len(block.instructions) != len(LOOP) or tuple(map(text, block.instructions)) != LOOP:
+        return None
+    return Division(HardwareLoop(block.start, block.instructions[-1].address, 0))
 
 
-def can_be_made(dividing: Mapping[str, Value]) -> Value:
-    """Return whether registers are as at the loop's beginning, with a divisor that is neither 0 nor too large."""
-    is_first = dividing["LC0"].equals(TURNS) & dividing["R3"].equals(0)
-    return is_first & (dividing["R1"] - 1).below(LARGEST_DIVISOR)
+@dataclass(frozen=True, slots=True)
+class Division:
+    """The loop of a division (`AtOnce`)."""
 
+    loop: HardwareLoop
 
-def before_last_turn(dividing: Mapping[str, Value]) -> dict[str, Value]:
-    """Return registers as they are before the loop's last turn, made of those at its beginning."""
-    divisor = dividing["R1"]
-    upper = dividing["R0"].shift_right(1)  # the lowest bit comes down in the last turn
-    quotient = Value(upper.builder, upper.builder.udiv(upper.ir, divisor.ir))
-    inverted = ~quotient
-    first_in = dividing["CC"].zero_extended().shift_left(AHEAD - 1)
-    return {
-        "R0": dividing["R0"].shift_left(AHEAD) | first_in | inverted.shift_right(1) & (1 << AHEAD - 1) - 1,
-        "R3": upper - quotient * divisor,
-        "CC": inverted.low(1),
-        "LC0": divisor.constant(1),
-    }
+    @property
+    def registers(self) -> tuple[str, ...]:
+        """What must be given."""
+        return *DIVIDING, *self.loop.registers
+
+    def can_be_made(self, registers: Registers) -> Value:
+        """Return whether registers are as at the loop's beginning, with a divisor that is neither 0 nor too large."""
+        is_first = self.loop.has_turns(registers, TURNS) & registers["R3"].equals(0)
+        return is_first & (registers["R1"] - 1).below(LARGEST_DIVISOR)
+
+    def before_last_turn(self, registers: Registers) -> dict[str, Value]:
+        """Return registers as they are before the loop's last turn, made of those at its beginning."""
+        divisor = registers["R1"]
+        upper = registers["R0"].shift_right(1)  # the lowest bit comes down in the last turn
+        quotient = Value(upper.builder, upper.builder.udiv(upper.ir, divisor.ir))
+        inverted = ~quotient
+        first_in = registers["CC"].zero_extended().shift_left(AHEAD - 1)
+        return {
+            "R0": registers["R0"].shift_left(AHEAD)
+            | first_in
+            | inverted.shift_right(1) & (1 << AHEAD - 1) - 1,
+            "R3": upper - quotient * divisor,
+            "CC": inverted.low(1),
+            self.loop.count: divisor.constant(1),
+        }
+
+    def times(self, registers: Registers) -> dict[Event, Value]:
+        """Return how often control went each way."""
+        head, ahead = self.loop.head, registers["R0"].constant(AHEAD, 64)
+        return {
+            Event(head): ahead,
+            Event(head, along=Edge(head, head, Way.REPEATS)): ahead,
+        }

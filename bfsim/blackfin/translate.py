@@ -14,16 +14,18 @@ from functools import partial
 
 from llvmlite import ir
 
+from bfsim.blackfin.at_once import AtOnce
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.counts import POINTER, add, sum_of, work_out
 from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.divisions import AHEAD, DIVIDING, before_last_turn, can_be_made, divides
+from bfsim.blackfin.divisions import division
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.implied import implied
 from bfsim.blackfin.registers import SLOTS, width
+from bfsim.blackfin.roots import root
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.value import Value
@@ -162,28 +164,29 @@ class _Translation:
         """Do what comes before the instructions of a block."""
         if self.fuel:
             self._burn(builder, block.start)
-        elif divides(block):
-            self._divide(builder, block)
+        elif loop := division(block) or root(self.code, block):
+            self._make_at_once(builder, loop)
 
-    def _divide(self, builder: ir.IRBuilder, block: Block) -> None:
-        """Make all turns of a division but the last at once, where its loop begins."""
-        own = Edge(block.start, block.start, Way.REPEATS)
-        number, again = self.numbers[block.start, False, None], self.numbers.get((block.start, False, own))
-        each = self.counted[number].cclk + self.counted[number].stall_cclk
-        registers = {name: Value(builder, self._read(builder, name)) for name in DIVIDING}
-        loops = registers["LB0"].equals(block.instructions[-1].address) & registers["LT0"].equals(block.start)
+    def _make_at_once(self, builder: ir.IRBuilder, loop: AtOnce) -> None:
+        """Make all turns of a loop but the last at once, where it begins."""
+        registers = {name: Value(builder, self._read(builder, name)) for name in loop.registers}
         at_once, turns = self._new("at_once"), self._new("turns")
-        builder.cbranch((loops & can_be_made(registers)).ir, at_once, turns)
+        builder.cbranch(loop.can_be_made(registers).ir, at_once, turns)
         builder.position_at_end(at_once)
-        for name, value in before_last_turn(registers).items():
+        for name, value in loop.before_last_turn(registers).items():
             builder.store(value.ir, self.slot(name))
-        self._add(builder, number, I64(AHEAD))
-        if again is not None:
-            self._add(builder, again, I64(AHEAD))
-            each += self.counted[again].stall_cclk
-        self._pass(builder, I64(AHEAD * each))
+        for event, times in loop.times(registers).items():
+            if (number := self.numbers.get(event)) is not None:
+                self._count(builder, number, times.ir)
         builder.branch(turns)
         builder.position_at_end(turns)
+
+    def _count(self, builder: ir.IRBuilder, number: int, times: ir.Value) -> None:
+        """Count what has passed so many times, unless that follows from other counts."""
+        counter = self.counted[number]
+        if counter.taken or counter.along or counter.block.start not in self.implied:
+            self._add(builder, number, times)
+        self._pass(builder, builder.mul(times, I64(counter.cclk + counter.stall_cclk)))
 
     def _value(self, builder: ir.IRBuilder, register: str) -> ir.Value:
         """Return what a register is behind the instructions of the block so far."""

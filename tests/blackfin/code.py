@@ -9,6 +9,8 @@ from bfsim.blackfin.processor import Processor
 from bfsim.blackfin.timing import GNU, Timing
 
 CODE, DATA, NBYTES = 0x1000, 0x8000, 0x1000
+ISQRT = "0960 1830 f14f 0060 8268 b2e00820 8850 9309 084e 031c d352 0850 114e 1000"
+"""[GCC] The root of R0, a bit a turn: `R3 = R3 - R2; R0 = R0 + R1;` are jumped over where the bit is 0."""
 
 
 def processor(code: str, timing: Timing = GNU, *, fuel: int | None = 10_000, **registers: int) -> Processor:

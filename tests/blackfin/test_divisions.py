@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from bfsim.blackfin.divisions import LARGEST_DIVISOR, divides
+from bfsim.blackfin.divisions import LARGEST_DIVISOR, division
 from bfsim.blackfin.processor import Processor
 from bfsim.blackfin.registers import SLOTS
 from bfsim.blackfin.timing import ADI, GNU, Timing
@@ -48,7 +48,7 @@ def test_registers_flags_and_counts_are_those_of_the_loop(timing: Timing) -> Non
         assert ended(at_once, dividend, divisor) == ended(by_turns, dividend, divisor), (dividend, divisor)
         if divisor:
             assert at_once.state["R0"] == dividend // divisor
-    assert any(map(divides, at_once.prepared().code.blocks.values()))
+    assert any(map(division, at_once.prepared().code.blocks.values()))
 
 
 def test_a_loop_of_fewer_turns_is_made_turn_by_turn() -> None:

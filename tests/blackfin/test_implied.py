@@ -11,10 +11,8 @@ from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.implied import implied
 from bfsim.blackfin.processor import Processor
 from bfsim.blackfin.timing import GNU
-from tests.blackfin.code import CODE, processor
+from tests.blackfin.code import CODE, ISQRT, processor
 
-ISQRT = "0960 1830 f14f 0060 8268 b2e00820 8850 9309 084e 031c d352 0850 114e 1000"
-"""[GCC] The root of R0, a bit a turn: `R3 = R3 - R2; R0 = R0 + R1;` are jumped over where the bit is 0."""
 CLOCKED = ISQRT.replace("1000", "be31 1000")
 """The same, and R7 = CYCLES before it returns."""
 
