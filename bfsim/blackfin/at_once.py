@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from bfsim.blackfin.blocks import Block
 from bfsim.blackfin.edge_counts import Event
 from bfsim.blackfin.value import Value
 
@@ -41,6 +42,10 @@ class HardwareLoop:
 
 class AtOnce(Protocol):
     """A loop that can be made at once. All methods are given registers as they are at its head."""
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """All its blocks, first the one at its head."""
 
     @property
     def registers(self) -> tuple[str, ...]:

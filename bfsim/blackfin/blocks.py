@@ -69,6 +69,14 @@ class Block:
         return writes[-1:] == [("load", "FP", SAVED_RETS)]
 
     @property
+    def calls(self) -> tuple[int, ...]:
+        """Where the function begins that it ends with a call of, if the call names it."""
+        last = self.instructions[-1] if self.instructions else None
+        if last is None or does(last) not in CALLS & DIRECT:
+            return ()
+        return (int(last.operations[0].operands["t"]),)
+
+    @property
     def branches(self) -> bool:
         """Whether it ends with a conditional branch."""
         return bool(self.instructions) and does(self.instructions[-1]) in BRANCHES

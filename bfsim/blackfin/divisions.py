@@ -36,7 +36,7 @@ def division(block: Block) -> Division | None:
     """Return the division that a block is all turns of, if it is one."""
     if len(block.instructions) != len(LOOP) or tuple(map(text, block.instructions)) != LOOP:
         return None
-    return Division(HardwareLoop(block.start, block.instructions[-1].address, 0))
+    return Division(HardwareLoop(block.start, block.instructions[-1].address, 0), (block,))
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,7 @@ class Division:
     """The loop of a division (`AtOnce`)."""
 
     loop: HardwareLoop
+    blocks: tuple[Block, ...]
 
     @property
     def registers(self) -> tuple[str, ...]:

@@ -77,6 +77,21 @@ def _edges(code: Code, block: Block, targets: Sequence[int]) -> Iterator[Edge]:
         yield Edge(start, block.end, Way.FALLS)
 
 
+def returns(code: Code) -> Mapping[int, frozenset[int]]:
+    """Return of each block that ends a function by a return where it goes: behind the calls of the function that are seen."""
+    onward = _onward(edges(code))
+    behind: dict[int, set[int]] = {}
+    for block in code.blocks.values():
+        for target in block.calls:
+            behind.setdefault(target, set()).add(block.end)
+    found: dict[int, frozenset[int]] = {}
+    for function, sites in behind.items():
+        for each in _reached(onward, function):
+            if code.blocks[each].returns:
+                found[each] = found.get(each, frozenset()) | sites
+    return found
+
+
 def loops(found: Sequence[Edge], entry: int) -> list[Loop]:
     """Return the natural loops of a routine that is entered at `entry`, outer ones before those in them."""
     before = dominators(found, entry)
@@ -98,7 +113,7 @@ def dominators(found: Sequence[Edge], entry: int) -> Mapping[int, frozenset[int]
     sources: dict[int, set[int]] = {}
     for each in found:
         sources.setdefault(each.target, set()).add(each.source)
-    reached = _reached(found, entry)
+    reached = _reached(_onward(found), entry)
     known = {each: frozenset({each}) if each == entry else frozenset(reached) for each in reached}
     changed = True
     while changed:
@@ -110,13 +125,18 @@ def dominators(found: Sequence[Edge], entry: int) -> Mapping[int, frozenset[int]
     return known
 
 
-def _reached(found: Sequence[Edge], entry: int) -> set[int]:
-    targets: dict[int, list[int]] = {}
+def _onward(found: Iterable[Edge]) -> dict[int, list[int]]:
+    """Where control goes from each block."""
+    onward: dict[int, list[int]] = {}
     for each in found:
-        targets.setdefault(each.source, []).append(each.target)
+        onward.setdefault(each.source, []).append(each.target)
+    return onward
+
+
+def _reached(onward: Mapping[int, Iterable[int]], entry: int) -> set[int]:
     reached, waiting = {entry}, [entry]
     while waiting:
-        for block in targets.get(waiting.pop(), ()):
+        for block in onward.get(waiting.pop(), ()):
             if block not in reached:
                 reached.add(block)
                 waiting.append(block)

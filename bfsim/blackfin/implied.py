@@ -1,4 +1,4 @@
-"""Counts that need not be made: a block to which only one way leads is executed as often as control goes that way.
+"""Counts that need not be made: a block is executed as often as control goes all the ways that lead to it.
 
 They are worked out when the code is left, which takes less than to store one more count each time, and a short block without a store
 can become instructions without a branch around them.
@@ -6,52 +6,55 @@ can become instructions without a branch around them.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does, is_clocked
+from bfsim.blackfin.blocks import DIRECT, Code, does, is_clocked
 from bfsim.blackfin.flow import Edge, Way, edges
+
+
+class Into(NamedTuple):
+    """A way into a block, gone as often as the block `before` is executed; with `taken`, as the branch there is taken, or is not."""
+
+    before: int
+    taken: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Implied:
-    """The block at `block` is executed as often as the one at `before`; with `taken`, as often as the branch there is taken, or is not."""
+    """The block at `block` is executed as often as control goes all of these ways."""
 
     block: int
-    before: int
-    taken: bool | None
+    ways: tuple[Into, ...]
+
+    @property
+    def needs(self) -> set[int]:
+        """The blocks whose own counts are needed. That of a branch that is taken is one of its own."""
+        return {each.before for each in self.ways if each.taken is not True}
 
 
 def implied(code: Code) -> list[Implied]:
-    """Return the blocks whose counts follow from those of the block before, which comes first if it is one of them.
+    """Return the blocks whose counts follow from others, behind all of them whose counts they need.
 
     There are none where code goes on behind an event or asks for its cycles: counts must be right in between there.
     """
     instructions = (each for block in code.blocks.values() for each in block.instructions)
     if code.resumes or any(map(is_clocked, instructions)):
         return []
-    ways: dict[int, list[Edge]] = {}
+    ways: dict[int, list[Into]] = {}
+    known = code.blocks.keys() - set(code.targets)
     for each in edges(code):
-        ways.setdefault(each.target, []).append(each)
-    entered = {*code.targets, *_called(code)}
-    found = {
-        target: _implied(code, into[0])
-        for target, into in ways.items()
-        if len(into) == 1 and target not in entered and _is_alone(code, into[0])
-    }
-    ordered: dict[int, Implied] = {}
-    for start in found:
-        chain, at = list[Implied](), start
-        while at in found and at not in ordered:
-            chain.append(found[at])
-            at = found[at].before
-        ordered |= {each.block: each for each in reversed(chain)}
-    return list(ordered.values())
-
-
-def _called(code: Code) -> set[int]:
-    """Return where functions begin that are called; no way in `edges` leads there."""
-    ends = (each.instructions[-1] for each in code.blocks.values() if each.instructions)
-    return {int(each.operands["t"]) for end in ends for each in end.operations if does(end) in CALLS & DIRECT}
+        if _is_alone(code, each):
+            ways.setdefault(each.target, []).append(_into(code, each))
+        else:
+            known.discard(each.target)
+    for block in code.blocks.values():
+        for target in block.calls:
+            if code.is_loop_end(block.instructions[-1].address):
+                known.discard(target)
+            ways.setdefault(target, []).append(Into(block.start))
+    return _ordered({each: Implied(each, tuple(ways[each])) for each in sorted(known & ways.keys())})
 
 
 def _is_alone(code: Code, edge: Edge) -> bool:
@@ -62,6 +65,23 @@ def _is_alone(code: Code, edge: Edge) -> bool:
     )
 
 
-def _implied(code: Code, edge: Edge) -> Implied:
-    branches = code.blocks[edge.source].branches
-    return Implied(edge.target, edge.source, (edge.way is Way.JUMPS) if branches else None)
+def _into(code: Code, edge: Edge) -> Into:
+    return Into(edge.source, edge.way is Way.JUMPS if code.blocks[edge.source].branches else None)
+
+
+def _ordered(found: Mapping[int, Implied]) -> list[Implied]:
+    """Put each behind those that it needs. Where they need each other in a circle, one of it is left out: it is counted."""
+    done: dict[int, Implied | None] = {}
+    for start in found:
+        path = {start: None}
+        while path:
+            at = next(reversed(path))
+            open_ = [each for each in found[at].needs if each in found and each not in done]
+            if at in done or not open_:
+                done.setdefault(at, found[at])
+                path.popitem()
+            elif (need := min(open_)) in path:
+                done[need] = None
+            else:
+                path[need] = None
+    return [each for each in done.values() if each]

@@ -10,6 +10,7 @@ by the registers LC, LT and LB, so that code may also leave, save and restore th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 
 from llvmlite import ir
@@ -17,12 +18,12 @@ from llvmlite import ir
 from bfsim.blackfin.at_once import AtOnce
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.counters import Counted
-from bfsim.blackfin.counts import POINTER, add, sum_of, work_out
+from bfsim.blackfin.counts import POINTER, add, make_writable, sum_of, work_out
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.divisions import division
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
-from bfsim.blackfin.flow import Edge, Way
+from bfsim.blackfin.flow import Edge, Way, returns
 from bfsim.blackfin.implied import implied
 from bfsim.blackfin.registers import SLOTS, width
 from bfsim.blackfin.roots import root
@@ -82,9 +83,11 @@ class _Translation:
         self.memory, self.state, self.counts = self.function.args
         for each in self.function.args:
             each.add_attribute("noalias")
+        make_writable(self.counts, len(counted))
         self.entry = self._new("entry")
         self.dispatch, self.leave = self._new("dispatch"), self._new("leave")
         self.at = {start: self._new(f"at_{start:08x}") for start in of.code.blocks}
+        self.last_turns: list[dict[int, ir.Block]] = []
         self.is_large = is_large(of.code)
         self.slots: dict[str, ir.Instruction] = {}
         self.values: dict[str, ir.Value] = {}
@@ -93,6 +96,7 @@ class _Translation:
         self.numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(counted)
         }
+        self.returns = {} if self.is_large else returns(of.code)
         self.implied = {} if fuel else {each.block: each for each in implied(of.code)}
 
     def module(self) -> ir.Module:
@@ -101,6 +105,12 @@ class _Translation:
         entry.store(I64(0), self.stamp)
         for block in self.code.blocks.values():
             self._block(block)
+        first = self.at
+        for copied in self.last_turns:
+            self.at = first | copied
+            for start in copied:
+                self._block(self.code.blocks[start])
+        self.at = first
         self._dispatch()
         self._leave()
         self._enter()
@@ -128,7 +138,8 @@ class _Translation:
         self.values.clear()
         self.misaligned = None
         written: dict[str, None] = {}
-        self._begin(builder, block)
+        if self.fuel:
+            self._burn(builder, block.start)
         flow: Flow | None = None
         cclk = 0
         number = self.numbers[block.start, False, None]
@@ -160,15 +171,8 @@ class _Translation:
             self._loops(builder, block)
             self._fall(builder, block)
 
-    def _begin(self, builder: ir.IRBuilder, block: Block) -> None:
-        """Do what comes before the instructions of a block."""
-        if self.fuel:
-            self._burn(builder, block.start)
-        elif loop := division(block) or root(self.code, block):
-            self._make_at_once(builder, loop)
-
     def _make_at_once(self, builder: ir.IRBuilder, loop: AtOnce) -> None:
-        """Make all turns of a loop but the last at once, where it begins."""
+        """Make all turns of a loop but the last at once, where it begins; the last one is made by a copy of its blocks."""
         registers = {name: Value(builder, self._read(builder, name)) for name in loop.registers}
         at_once, turns = self._new("at_once"), self._new("turns")
         builder.cbranch(loop.can_be_made(registers).ir, at_once, turns)
@@ -178,7 +182,9 @@ class _Translation:
         for event, times in loop.times(registers).items():
             if (number := self.numbers.get(event)) is not None:
                 self._count(builder, number, times.ir)
-        builder.branch(turns)
+        last_turn = {each.start: self._new(f"last_{each.start:08x}") for each in loop.blocks}
+        self.last_turns.append(last_turn)
+        builder.branch(last_turn[loop.blocks[0].start])
         builder.position_at_end(turns)
 
     def _count(self, builder: ir.IRBuilder, number: int, times: ir.Value) -> None:
@@ -260,20 +266,29 @@ class _Translation:
         if flow.event is not None:
             self._event(builder, flow.event, target)
         elif isinstance(flow.target, Value):
-            builder.store(target, self.slot("PC"))
-            builder.branch(self.dispatch)
+            self._jump(builder, target, {each: self.at[each] for each in self.returns.get(block.start, ())})
         else:
             builder.branch(self.at[flow.target])
+
+    def _jump(self, builder: ir.IRBuilder, target: ir.Value, likely: Mapping[int, ir.Block]) -> None:
+        """Go to a computed address, which is most likely one of a few."""
+        builder.store(target, self.slot("PC"))
+        choice = builder.switch(target, self.dispatch)
+        for address in sorted(likely):
+            choice.add_case(I32(address), likely[address])
 
     def _fall(self, builder: ir.IRBuilder, block: Block) -> None:
         """Go on behind a block."""
         self._go_along(builder, Edge(block.start, block.end, Way.FALLS))
 
     def _go_along(self, builder: ir.IRBuilder, edge: Edge) -> None:
-        """Go from one block to another, and count the waits that this makes there."""
+        """Go from one block to another, and count the waits that this makes there; into a loop that can be made at once, behind that."""
         if (number := self.numbers.get((edge.target, False, edge))) is not None:
             self._add(builder, number, I64(1))
             self._pass(builder, I64(self.counted[number].stall_cclk))
+        target = self.code.blocks[edge.target]
+        if edge.way is Way.FALLS and not self.fuel and (loop := division(target) or root(self.code, target)):
+            self._make_at_once(builder, loop)
         builder.branch(self.at[edge.target])
 
     def _loops(self, builder: ir.IRBuilder, block: Block, *, jumps: bool = True) -> None:
@@ -305,11 +320,9 @@ class _Translation:
 
     def _repeat(self, builder: ir.IRBuilder, target: ir.Value, source: int, likely: set[int]) -> None:
         """Go to a computed address, which is most likely the start of one of a few loops that end with the block at `source`."""
-        builder.store(target, self.slot("PC"))
-        choice = builder.switch(target, self.dispatch)
-        for each in sorted(likely):
-            way = self._new("repeats")
-            choice.add_case(I32(each), way)
+        ways = {each: self._new("repeats") for each in sorted(likely)}
+        self._jump(builder, target, ways)
+        for each, way in ways.items():
             self._go_along(ir.IRBuilder(way), Edge(source, each, Way.REPEATS))
 
     def _following(self, builder: ir.IRBuilder, instruction: Instruction) -> Value:
