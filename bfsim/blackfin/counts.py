@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from llvmlite import ir
 
 from bfsim.blackfin.effects import I8, I64
 from bfsim.blackfin.flow import Edge
-from bfsim.blackfin.implied import Implied, Into
+from bfsim.blackfin.implied import Implied
 
 POINTER = ir.PointerType()
 COUNT_BYTES = 8
@@ -34,20 +34,40 @@ def add(builder: ir.IRBuilder, counts: ir.Value, number: int, amount: ir.Value) 
 
 def work_out(builder: ir.IRBuilder, counts: ir.Value, implied: Iterable[Implied], numbers: Numbers) -> None:
     """Store the counts that follow from others."""
+    known: dict[int, ir.Value] = {}
+
+    def count(number: int) -> ir.Value:
+        if number not in known:
+            known[number] = _at(builder, _place(builder, counts, number))
+        return known[number]
+
     for each in implied:
-        value = I64(0)
-        for into in each.ways:
-            value = builder.add(value, _times(builder, counts, into, numbers))
-        builder.store(value, _place(builder, counts, numbers[each.block, False, None]), align=COUNT_BYTES)
+        own = numbers[each.block, False, None]
+        for number, times in terms(each, numbers):
+            if own not in known:
+                known[own] = count(number)  # the first term is always added
+            else:
+                known[own] = (builder.add if times > 0 else builder.sub)(known[own], count(number))
+        builder.store(known[own], _place(builder, counts, own), align=COUNT_BYTES)
 
 
-def _times(builder: ir.IRBuilder, counts: ir.Value, into: Into, numbers: Numbers) -> ir.Value:
-    """Return how often control went a way."""
-    value = _at(builder, _place(builder, counts, numbers[into.before, into.taken is True, None]))
-    if into.taken is False:
-        taken = _at(builder, _place(builder, counts, numbers[into.before, True, None]))
-        value = builder.sub(value, taken)
-    return value
+def terms(implied: Implied, numbers: Numbers) -> Iterator[tuple[int, int]]:
+    """Yield of which counts a count is the sum, by their numbers, and times what: 1 or -1."""
+    for each in implied.ways:
+        yield numbers[each.before, each.taken is True, None], 1
+        if each.taken is False:
+            yield numbers[each.before, True, None], -1
+
+
+def without(implied: Iterable[Implied], numbers: Numbers, factors: Iterable[int]) -> list[int]:
+    """Return factors of counts, for the same sum without those that follow from others, which need not be there yet."""
+    found = list(factors)
+    for each in reversed(list(implied)):
+        own = numbers[each.block, False, None]
+        for number, times in terms(each, numbers):
+            found[number] += times * found[own]
+        found[own] = 0
+    return found
 
 
 def sum_of(module: ir.Module, name: str, factors: Iterable[int]) -> ir.Function:

@@ -1,7 +1,8 @@
 """Accesses of object code to memory are reported, one by one: to whom, and what is said of each.
 
 A report goes through a block of words of 64 bits (`block_of`), whose address is in TRACE of the state: it says which addresses are
-memory that is followed, and what stands for them outside. A report of an access elsewhere, such as to the stack, is dropped.
+memory that is followed, and what stands for them outside. An access elsewhere, such as to the stack, is not reported: code asks first
+whether it is between the lowest and the highest address of what is followed (`reports`).
 """
 
 from __future__ import annotations
@@ -18,14 +19,6 @@ from bfsim.machine_code.native_code import native_code
 TRACER = "bfsim_trace_object"
 IR = f"""
 define void @{TRACER}(ptr %block, i64 %address, i64 %access, i64 %stamp, i64 %site) {{
-  %lowest.at = getelementptr i64, ptr %block, i64 1
-  %lowest = load i64, ptr %lowest.at
-  %span.at = getelementptr i64, ptr %block, i64 2
-  %span = load i64, ptr %span.at
-  %above = sub i64 %address, %lowest
-  %may.be = icmp ult i64 %above, %span
-  br i1 %may.be, label %begin, label %done
-begin:
   %state.at = getelementptr i64, ptr %block, i64 3
   %state = load ptr, ptr %state.at
   %count.at = getelementptr i64, ptr %block, i64 4
@@ -33,7 +26,7 @@ begin:
   %ranges = getelementptr i64, ptr %block, i64 5
   br label %head
 head:
-  %number = phi i64 [ 0, %begin ], [ %number.next, %next ]
+  %number = phi i64 [ 0, %0 ], [ %number.next, %next ]
   %more = icmp ult i64 %number, %count
   br i1 %more, label %look, label %done
 look:
@@ -86,9 +79,7 @@ class Followed(NamedTuple):
 
 def block_of(state: int, followed: Sequence[Followed]) -> Any:
     """Return the block for reports to `state`, an address whose first word is that of `function(state, place, access, stamp, site)`."""
-    lowest = min(
-        (each.address for each in followed), default=0
-    )  # most accesses are elsewhere, and that is soon seen
+    lowest = min((each.address for each in followed), default=0)
     span = max((each.address + each.nbytes - lowest for each in followed), default=0)
     words = [_tracer(), lowest, span, state, len(followed), *(word for each in followed for word in each)]
     return (ctypes.c_int64 * len(words))(*words)

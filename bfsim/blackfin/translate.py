@@ -10,7 +10,7 @@ by the registers LC, LT and LB, so that code may also leave, save and restore th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 from llvmlite import ir
@@ -18,20 +18,19 @@ from llvmlite import ir
 from bfsim.blackfin.at_once import AtOnce
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.counters import Counted
-from bfsim.blackfin.counts import POINTER, add, make_writable, sum_of, work_out
+from bfsim.blackfin.counts import POINTER, add, make_writable, sum_of, without, work_out
 from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.divisions import division
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way, returns
 from bfsim.blackfin.implied import implied
+from bfsim.blackfin.loops_at_once import loops_at_once
 from bfsim.blackfin.registers import SLOTS, width
-from bfsim.blackfin.roots import root
+from bfsim.blackfin.reports import reports_of
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.value import Value
 
-REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
@@ -91,18 +90,21 @@ class _Translation:
         self.is_large = is_large(of.code)
         self.slots: dict[str, ir.Instruction] = {}
         self.values: dict[str, ir.Value] = {}
-        self.clock = sum_of(self.made, "clock", [each.cclk + each.stall_cclk for each in counted])
-        self.waited = sum_of(self.made, "waited", [each.stall_cclk for each in counted])
         self.numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(counted)
         }
+        self.at_once = {} if fuel else loops_at_once(of.code)
         self.returns = {} if self.is_large else returns(of.code)
         self.implied = {} if fuel else {each.block: each for each in implied(of.code)}
+        self.clock = self._sum("clock", [each.cclk + each.stall_cclk for each in counted])
+        self.waited = self._sum("waited", [each.stall_cclk for each in counted])
 
     def module(self) -> ir.Module:
         entry = ir.IRBuilder(self.entry)
         self.event, self.base, self.stamp = entry.alloca(I32), entry.alloca(I64), entry.alloca(I64)
         entry.store(I64(0), self.stamp)
+        if self.tracing:
+            self.reports = reports_of(entry, entry.load(self._place(entry, "TRACE"), typ=POINTER))
         for block in self.code.blocks.values():
             self._block(block)
         first = self.at
@@ -115,6 +117,10 @@ class _Translation:
         self._leave()
         self._enter()
         return self.made
+
+    def _sum(self, name: str, factors: Sequence[int]) -> ir.Function:
+        """Return the function that adds up all counts, each times its factor."""
+        return sum_of(self.made, name, without(self.implied.values(), self.numbers, factors))
 
     def slot(self, register: str) -> ir.Instruction:
         """Return where code has a register: on the stack, which LLVM makes registers of the host; in a large program in the state."""
@@ -242,10 +248,14 @@ class _Translation:
         builder.position_at_end(goes_on)
 
     def _report(self, builder: ir.IRBuilder, address: Value, access: int, cclk: int, site: int) -> None:
-        told = builder.inttoptr(self._read(builder, "TRACE"), POINTER)
-        tracer = builder.load(told, typ=REPORT.as_pointer())
+        place = address.zero_extended(64).ir
+        followed, goes_on = self._new("followed"), self._new("goes_on")
+        builder.cbranch(self.reports.may_follow(builder, place), followed, goes_on)
+        builder.position_at_end(followed)
         stamp = builder.add(builder.load(self.stamp), I64(cclk))
-        builder.call(tracer, [told, address.zero_extended(64).ir, I64(access), stamp, I64(site)])
+        self.reports.tell(builder, place, I64(access), stamp, I64(site))
+        builder.branch(goes_on)
+        builder.position_at_end(goes_on)
 
     def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
         """Let cycles pass for what is reported."""
@@ -286,9 +296,8 @@ class _Translation:
         if (number := self.numbers.get((edge.target, False, edge))) is not None:
             self._add(builder, number, I64(1))
             self._pass(builder, I64(self.counted[number].stall_cclk))
-        target = self.code.blocks[edge.target]
-        if edge.way is Way.FALLS and not self.fuel and (loop := division(target) or root(self.code, target)):
-            self._make_at_once(builder, loop)
+        if edge.way is Way.FALLS and edge.target in self.at_once:
+            self._make_at_once(builder, self.at_once[edge.target])
         builder.branch(self.at[edge.target])
 
     def _loops(self, builder: ir.IRBuilder, block: Block, *, jumps: bool = True) -> None:
