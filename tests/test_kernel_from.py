@@ -103,6 +103,20 @@ def test_arrays_in_the_memory_of_a_board_are_not_copied() -> None:
     assert (space.at(space.window(memory) + 4096, len(ROW)) == ROW).all()
 
 
+def test_functions_of_a_file_share_its_static_variables(tmp_path: Path) -> None:
+    """They keep them from call to call, and another file of the same contents has its own."""
+    shutil.copy(DATA / "keeping.o", tmp_path)
+
+    def both(folder: Path) -> tuple[Kernel, Kernel]:
+        file = folder / "keeping.o"
+        return kernel_from(file, "begin", value=i32), kernel_from(file, "add", value=i32, result=i32)
+
+    (begin, add), (_, add_elsewhere) = both(DATA), both(tmp_path)
+    begin(5)
+    assert [add(1), add(2)] == [6, 8]
+    assert add_elsewhere(1) == 101
+
+
 def test_integers_of_any_kind_are_handed_over() -> None:
     """Those of numpy, and -1, which the C interface of Python returns for a mistake, too."""
     out = np.zeros(len(ROW), np.int32)

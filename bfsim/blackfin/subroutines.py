@@ -43,7 +43,7 @@ KEPT = ("R4", "R5", "R6", "R7", "P3", "P4", "P5", "FP", "SP")
 """[GCC] Registers that a function leaves as they were."""
 
 
-@dataclass
+@dataclass(eq=False)
 class LoadedImage:
     """An image in an address space of its own, with a stack and room for arrays."""
 
@@ -60,6 +60,10 @@ class LoadedImage:
             self.space.add(first, end - first)
         for each in self.image.segments:
             self.space.at(each.address, len(each.octets))[:] = np.frombuffer(each.octets, np.uint8)
+
+    def anew(self) -> LoadedImage:
+        """Return the image in another address space, with its variables as they are at first."""
+        return LoadedImage(self.image, _codes=self._codes, _counted=self._counted)
 
     def subroutine(
         self, symbol: str, timing: Timing = GNU, name: str = "", *, is_checked: bool = False

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
+from weakref import WeakValueDictionary
 
 from bfsim.blackfin.image import Routine
 from bfsim.blackfin.linking import link
@@ -20,6 +21,7 @@ from bfsim.errors import KernelError
 from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
+from bfsim.kernel.objects.loaded_files import LoadedFiles
 from bfsim.kernel.objects.places import Places, object_function
 from bfsim.kernel.objects.sources import SourceFiles, source_of
 from bfsim.kernel.objects.timing import timing_of
@@ -33,7 +35,11 @@ OPTIONS = ("-O2", "-g2", "-gno-statement-frontiers", "-fno-var-tracking")
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
 
 
-@dataclass(frozen=True)
+LOADED: WeakValueDictionary[tuple[Path, str], LoadedImage] = WeakValueDictionary()
+"""Images of the kernels of this process, by their files and digests: what runs where a kernel is called by itself."""
+
+
+@dataclass(frozen=True, eq=False)
 class FileCode:
     """The object code of one file, as one of its functions has it. `files`: what it was made of, with their SHA-256."""
 
@@ -43,17 +49,22 @@ class FileCode:
     loaded: LoadedImage
     places: Places
 
-    _compiled: dict[tuple[str, bool], CompiledObject] = field(default_factory=dict)
+    _called: LoadedFiles = field(default_factory=LoadedFiles)
 
-    def compiled(self, profile: CompilerProfile, *, traced: bool = False) -> CompiledObject:
-        """Return it ready to run, timed as `profile` has it; it is translated once. `traced`: its accesses to memory are reported."""
+    def compiled(
+        self, profile: CompilerProfile, *, traced: bool = False, files: LoadedFiles | None = None
+    ) -> CompiledObject:
+        """Return it ready to run, timed as `profile` has it; it is translated once.
+
+        `traced`: its accesses to memory are reported. `files`: what the core that runs it has loaded, if one does.
+        """
         timing = timing_of(profile).placed(self.loaded.image)
-        key = timing.digest, traced
-        if key not in self._compiled:
-            self._compiled[key] = compiled_object(
-                self.function, self.symbol, self.loaded, self.places, timing, traced=traced
-            )
-        return self._compiled[key]
+        loaded = files.image(self.loaded) if files else self.loaded
+
+        def made() -> CompiledObject:
+            return compiled_object(self.function, self.symbol, loaded, self.places, timing, traced=traced)
+
+        return (files or self._called).once((self, timing.digest, traced), made)
 
 
 def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result: Number | None) -> Kernel:
@@ -71,7 +82,8 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
     own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)
     function = kernels[routine.name] = object_function(name, own, source, parameters, result)
     digests = {path.parent / each: hashlib.sha256(octets).hexdigest() for each, octets in files.items()}
-    return Kernel(function, None, FileCode(digests, function, symbol, LoadedImage(image), places))
+    loaded = LOADED.setdefault((path.resolve(), image.digest), LoadedImage(image))
+    return Kernel(function, None, FileCode(digests, function, symbol, loaded, places))
 
 
 def _sources(folder: Path, names: Iterable[str]) -> SourceFiles:

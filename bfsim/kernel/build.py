@@ -15,6 +15,7 @@ from bfsim.machine_code import Effort
 
 if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
+    from bfsim.kernel.objects.loaded_files import LoadedFiles
 
 
 class Ready(Protocol):
@@ -47,12 +48,18 @@ class Build:
         """Whether a kernel runs as object code."""
         return kernel.object_code is not None or kernel.function in self.objects
 
-    def compiled(self, kernel: Kernel, *, traced: bool = False) -> CompiledKernel | CompiledObject:
-        """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`."""
+    def compiled(
+        self, kernel: Kernel, *, traced: bool = False, files: LoadedFiles | None = None
+    ) -> CompiledKernel | CompiledObject:
+        """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`.
+
+        `files`: what the core that runs it has loaded.
+        """
         if kernel.function in self.objects:
             return self.objects[kernel.function].compiled(kernel.function, traced=traced)
         # code that calls at each access: all of LLVM's effort takes seven times as long, and a frame with it a tenth less
-        return kernel.compile(self.profile, traced=traced, effort=Effort.REGISTERS if traced else Effort.ALL)
+        effort = Effort.REGISTERS if traced else Effort.ALL
+        return kernel.compile(self.profile, traced=traced, effort=effort, files=files)
 
     def counters(self, kernel: Kernel) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `Kernel.counters`."""

@@ -30,6 +30,7 @@ from bfsim.machine_code import Effort
 
 if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
+    from bfsim.kernel.objects.loaded_files import LoadedFiles
 
 AS_WRITTEN = GCC_O0
 """A profile that leaves every access and division in the code."""
@@ -43,8 +44,13 @@ class ObjectCode(Protocol):
     @property
     def files(self) -> Mapping[Path, str]: ...
 
-    def compiled(self, profile: CompilerProfile, *, traced: bool = False) -> CompiledObject:
-        """Return it ready to run, timed as `profile` has it; `traced`: its accesses to memory are reported."""
+    def compiled(
+        self, profile: CompilerProfile, *, traced: bool = False, files: LoadedFiles | None = None
+    ) -> CompiledObject:
+        """Return it ready to run, timed as `profile` has it; `traced`: its accesses to memory are reported.
+
+        `files`: what the core that runs it has loaded, if one does.
+        """
 
 
 class RunnableCall(Protocol):
@@ -126,13 +132,14 @@ class Kernel:
         counted: bool = True,
         checked: bool = True,
         effort: Effort = Effort.ALL,
+        files: LoadedFiles | None = None,
     ) -> CompiledKernel | CompiledObject:
-        """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`.
+        """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`, and `ObjectCode.compiled` of `files`.
 
         Raises KernelError where the kernel has floats and the profile has no library for them.
         """
         if self.object_code:
-            return self.object_code.compiled(profile, traced=traced)
+            return self.object_code.compiled(profile, traced=traced, files=files)
         self._refuse_floats(profile)
         return compile_kernel(
             self.function, profile, traced=traced, counted=counted, checked=checked, effort=effort

@@ -13,6 +13,7 @@ from bfsim.errors import FirmwareError, KernelError
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import Build
+from bfsim.kernel.objects.loaded_files import LoadedFiles
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.conflicts import Accesses, StageGroups, SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
@@ -135,6 +136,7 @@ class CallCache:
         """
         self._core = core
         self._build = build
+        self._files = LoadedFiles()
         self._access_trace = access_trace
         self._code = code
         self._subbanks = subbanks
@@ -279,7 +281,7 @@ class CallCache:
     def _group(self, kernel: Kernel, owners: tuple[int, ...], traced: bool) -> CallGroup:
         key = (self.stage, kernel, owners)
         if key not in self._groups:
-            code = self._build.compiled(kernel, traced=traced)
+            code = self._build.compiled(kernel, traced=traced, files=self._files)
             fetched = tuple(self._code.of(code.program.costs.counters))
             totals, first_event, first_site = self._ledger.room(
                 len(code.new_totals()), len(code.program.sites) + len(fetched)
