@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from bfsim.api import f32, i8, i16, i32, kernel_from, u8
+from bfsim.api import f32, i8, i16, i32, kernel_from, u8, u16
 from bfsim.errors import KernelError
 
 FILE = Path(__file__).parent / "blackfin" / "data" / "prototypes.o"
@@ -15,6 +16,8 @@ STEP = "void step(const short int *gains, struct state *state, void *scratch, fl
 WIDE = "double wide(double x, int n)"
 TICKS = "long long int ticks(int n)"
 AT = "int at(struct state state)"
+DARKER = "unsigned char darker(const unsigned char *row, unsigned char limit, short int by)"
+DARKENED = {"row": u8[:], "limit": u8, "by": i16, "result": u8}
 STEPPED = {"gains": i16[:], "state": i32[:], "scratch": u8[:], "by": f32, "pace": i32}
 
 
@@ -59,6 +62,30 @@ def test_what_takes_more_than_a_register_is_refused(
     assert str(refused.value).endswith(f"; in prototypes.o it is `{prototype}`")
 
 
+@pytest.mark.parametrize(
+    ("declared", "why"),
+    [
+        ({"result": i32}, "the result of darker must be u8, not i32"),
+        ({"result": i8}, "the result of darker must be u8, not i8"),
+        ({"limit": i32}, "limit of darker must be u8, not i32"),
+        ({"by": u16}, "by of darker must be i16, not u16"),
+    ],
+)
+def test_short_numbers_are_declared_as_such(declared: dict[str, object], why: str) -> None:
+    """C's caller cuts what it hands over and extends what it gets: a byte of 200 came as -56, for GCC loads it with a sign."""
+    with pytest.raises(KernelError) as refused:
+        kernel_from(FILE, "darker", **(DARKENED | declared))
+    assert str(refused.value) == f"{why}; in prototypes.o it is `{DARKER}`"
+
+
+def test_short_numbers_are_extended_and_held_to_their_range() -> None:
+    darker = kernel_from(FILE, "darker", **DARKENED)
+    row = np.array([255, 203], np.uint8)
+    assert [darker(row, 202, -1), darker(row, 220, 20), darker(row, 255, 0)] == [204, 183, 255]
+    with pytest.raises(KernelError, match=r"by must be an int in -32768\.\.32767, not 40000"):
+        darker(row, 0, 40000)
+
+
 def test_an_array_of_doubles_is_told_from_one_of_floats() -> None:
     """It said that the array must be f32[:], not f32[:]."""
     with pytest.raises(KernelError, match=r"values of halve must be an array of 64-bit floats, not f32\[:\]"):
@@ -70,6 +97,7 @@ def test_an_array_of_doubles_is_told_from_one_of_floats() -> None:
     [
         ("sum", {"pixels": u8[:], "n": i32, "result": i32}),
         ("sum", {"row": i8[:], "n": i16}),
+        ("darker", {"row": u8[:], "limit": u8, "by": u8}),
         ("sum", {"row": i32, "n": i32}),
         ("step", STEPPED),
         ("step", STEPPED | {"state": i16[:], "scratch": i32[:]}),

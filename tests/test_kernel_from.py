@@ -117,6 +117,12 @@ def test_functions_of_a_file_share_its_static_variables(tmp_path: Path) -> None:
     assert add_elsewhere(1) == 101
 
 
+def test_variables_without_a_value_have_a_place() -> None:
+    """They were told as missing."""
+    put = kernel_from(DATA / "common.o", "put", value=i32, result=i32)
+    assert [put(7), put(8)] == [107, 208]
+
+
 def test_integers_of_any_kind_are_handed_over() -> None:
     """Those of numpy, and -1, which the C interface of Python returns for a mistake, too."""
     out = np.zeros(len(ROW), np.int32)

@@ -24,6 +24,8 @@ from bfsim.errors import KernelError, cut
 VISUALDSP = 0x22
 """[seen] The machine of object files, not of programs, of VisualDSP++ 5."""
 MACHINES = ("EM_BLACKFIN", VISUALDSP)
+COMMON = "SHN_COMMON"
+"""[ELF] In place of its section's number: a variable without a value. GCC before 10 makes these, as ADI's own, and with -fcommon."""
 RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
 MOST_BYTES = 64 << 20
 """[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
@@ -119,16 +121,19 @@ def _read(octets: bytes, name: str) -> ObjectFile:
             f"{name} must have all of its {elf.num_sections()} section headers, but ends before them"
         )
     parts = [elf.get_section(number) for number in range(elf.num_sections())]
-    sections = tuple(_section(each, octets, name) for each in parts)
+    tables = [each for each in parts if isinstance(each, SymbolTableSection)]
+    entries = [each for table in tables[:1] for each in table.iter_symbols()]
+    common = [each for each in entries if each["st_shndx"] == COMMON]
+    sections = (*(_section(each, octets, name) for each in parts), *map(_common, common))
+    numbers = {id(each): number for number, each in enumerate(common, len(parts))}
     if sum(each.nbytes for each in sections if each.use is not Use.NOTES) > MOST_BYTES:
         raise KernelError(f"{name} must need at most {MOST_BYTES:,} bytes of memory, but needs more")
-    tables = [each for each in parts if isinstance(each, SymbolTableSection)]
     return ObjectFile(
         name=name,
         octets=octets,
         is_linked=elf["e_type"] == EXECUTABLE,
         sections=sections,
-        symbols=tuple(_symbol(each, len(sections)) for table in tables[:1] for each in table.iter_symbols()),
+        symbols=tuple(_symbol(each, len(parts), numbers.get(id(each))) for each in entries),
         relocations=tuple(
             each
             for part in parts
@@ -159,19 +164,25 @@ def _section(part: ElfSection, octets: bytes, name: str) -> Section:
     )
 
 
-def _symbol(entry: Any, sections: int) -> Symbol:
+def _common(entry: Any) -> Section:
+    """Return a place for a variable of C that has no value and no section: its symbol says how large it is, and how it is aligned."""
+    return Section(entry.name, Use.DATA, 0, entry["st_size"], max(1, entry["st_value"]), b"", 0)
+
+
+def _symbol(entry: Any, sections: int, own: int | None) -> Symbol:
+    """Return a symbol of a file with so many sections. `own`: the number of the section that was made for it, if one was."""
     place = entry["st_shndx"]
     return Symbol(
         name=entry.name,
-        value=entry["st_value"],
+        value=entry["st_value"] if own is None else 0,
         nbytes=entry["st_size"],
-        section=place if isinstance(place, int) and place < sections else None,
+        section=place if isinstance(place, int) and place < sections else own,
         is_function=not entry.name.startswith(LABELS)
         and (
             (entry["st_info"]["type"], entry["st_info"]["bind"]) in FUNCTIONS
             or entry["st_info"]["type"] == "STT_FUNC"
         ),
-        is_defined=place not in ("SHN_UNDEF", "SHN_COMMON"),
+        is_defined=place != "SHN_UNDEF",
     )
 
 

@@ -21,8 +21,8 @@ NUMBERS = {"base", "enumeration"}
 PREFIXES = {"structure": "struct", "union": "union", "enumeration": "enum"}
 """What C writes before the name of a type that is of one of these kinds."""
 
-FLOAT = 4
-"""[DWARF 5, table 7.11] DW_ATE_float."""
+FLOAT, SIGNED = 4, (5, 6)
+"""[DWARF 5, table 7.11] DW_ATE_float; DW_ATE_signed and DW_ATE_signed_char."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,7 @@ class CType:
     text: str
     nbytes: int
     is_float: bool = False
+    is_signed: bool = False
     target: CType | None = None
 
 
@@ -111,4 +112,5 @@ def _plain(entry: Any, qualifiers: str) -> CType:
         _name(entry) or (kind if kind not in PREFIXES else ""),
     ]
     nbytes = values["DW_AT_byte_size"] if kind in NUMBERS else 0
-    return CType(" ".join(filter(None, words)), nbytes, values.get("DW_AT_encoding") == FLOAT)
+    encoding = values.get("DW_AT_encoding")
+    return CType(" ".join(filter(None, words)), nbytes, encoding == FLOAT, encoding in SIGNED)

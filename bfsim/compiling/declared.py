@@ -11,7 +11,7 @@ from bfsim.blackfin.prototypes import CPrototype, CType, prototype_of
 from bfsim.errors import KernelError
 from bfsim.kernel import keys
 from bfsim.kernel.function import Parameter
-from bfsim.kernel.types import ArrayType, FloatType, Number
+from bfsim.kernel.types import ArrayType, FloatType, IntType, Number
 
 REGISTER_BYTES = 4
 ONE_REGISTER = "a number of at most 32 bits or a pointer in C"
@@ -22,7 +22,8 @@ def require_declared(
 ) -> None:
     """Raise KernelError unless parameters and result are as C has them, where the debugging information tells.
 
-    A number may be shorter in C, an array be of numbers where C has a pointer to a struct or to void, a pointer be the number 0,
+    A number of fewer than 32 bits must be that in Python, too: GCC leaves it to the caller to cut what it hands over, and to
+    extend what it gets. An array may be of numbers where C has a pointer to a struct or to void, a pointer be the number 0,
     and a result be left alone. What takes more than one register in C, a number of 64 bits or a struct itself, cannot be declared.
     """
     key = keys.object_key(image.digest, name, "", f"told apart from {tuple(parameters)} {result}")
@@ -59,6 +60,8 @@ def _differences(c: CPrototype, parameters: Sequence[Parameter], result: Number 
         yield f"the result of {c.name} must be {ONE_REGISTER}, not {c.result.text}"
     elif result is not None and c.result is not None and isinstance(result, FloatType) != c.result.is_float:
         yield f"the result of {c.name} must be {'f32' if c.result.is_float else 'an integer'}, not {result}"
+    elif result is not None and c.result is not None and (short := _short(c.result)) not in (None, result):
+        yield f"the result of {c.name} must be {short}, not {result}"
 
 
 def _is_one_register(kind: CType) -> bool:
@@ -77,7 +80,23 @@ def _what_fits(kind: CType, declared: Number | ArrayType) -> str:
         return _elements_that_fit(kind.target, declared)
     if kind.target is None and kind.nbytes and isinstance(declared, FloatType) != kind.is_float:
         return "f32" if kind.is_float else "an integer"
+    short = _short(kind)
+    if short and isinstance(declared, IntType) and not _is_within(declared, short):
+        return str(short)
     return ""
+
+
+def _short(kind: CType) -> IntType | None:
+    """Return what C has as an integer of fewer than 32 bits, or None for anything else."""
+    if kind.target is not None or kind.is_float or not 0 < kind.nbytes < REGISTER_BYTES:
+        return None
+    return IntType(f"{'i' if kind.is_signed else 'u'}{8 * kind.nbytes}", 8 * kind.nbytes, kind.is_signed)
+
+
+def _is_within(one: IntType, other: IntType) -> bool:
+    """Whether all that one type holds fits into another one."""
+    (low, high), (lowest, highest) = one.bounds, other.bounds
+    return lowest <= low and high <= highest
 
 
 def _elements_that_fit(target: CType, declared: ArrayType) -> str:

@@ -33,3 +33,8 @@ void halve(double *values, int n)
 }
 
 int state_of(const struct state *state) { return state->at; }
+
+byte darker(const byte *row, byte limit, short by)
+{
+    return row[row[0] > limit] - by;
+}
