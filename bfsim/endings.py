@@ -96,11 +96,14 @@ def _shortened(message: str) -> str:
     return f"{message[:half]}[{hidden} more characters]{message[-half:]}" if hidden > 0 else message
 
 
-class _OutputError(Exception):
-    """Raised when standard output or standard error takes no more. No OSError, which click and rich end with code 1."""
+class _OutputError(BaseException):
+    """Raised when standard output or standard error takes no more.
+
+    No OSError, which click and rich end with code 1, and no Exception, which would be a mistake of the firmware that prints.
+    """
 
     def __init__(self, name: str, error: OSError) -> None:
-        super().__init__(name)
+        super().__init__(name, error)  # simpy makes it once more of these
         self.name = name
         self.error = error
 

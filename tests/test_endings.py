@@ -33,6 +33,18 @@ from bfsim.__main__ import main
 main()
 """
 
+TALKING = """
+from dataclasses import replace
+from tinyphoon import tinyphoon
+
+def main(core):
+    while (frame := (yield from core.next_frame())) is not None:
+        for number in range(10_000):
+            print(core.name, "has", number, flush=True)
+
+firmware = replace(tinyphoon, mains={"A": main, "B": main})
+"""
+
 
 def bfsim(command: str, *, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run a line of shell in which "$BFSIM" is the command."""
@@ -46,6 +58,14 @@ def bfsim(command: str, *, cwd: Path | None = None) -> subprocess.CompletedProce
 def test_a_closed_pipe_is_no_broken_limit(command: str) -> None:
     """Who stops to read ends the command as a signal would, in silence."""
     done = bfsim(f"$BFSIM {command} | true; exit ${{PIPESTATUS[0]}}")
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+def test_a_closed_pipe_is_no_mistake_of_firmware_that_prints(tmp_path: Path) -> None:
+    """It was told that the firmware failed with an error of bfsim's own."""
+    (tmp_path / "talking.py").write_text(TALKING)
+    command = "run --firmware talking.py:firmware --frames 1"
+    done = bfsim(f"$BFSIM {command} | true; exit ${{PIPESTATUS[0]}}", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (141, "")
 
 
