@@ -115,6 +115,8 @@ def test_functions_of_a_file_share_its_static_variables(tmp_path: Path) -> None:
     begin(5)
     assert [add(1), add(2)] == [6, 8]
     assert add_elsewhere(1) == 101
+    (_, add_again) = both(DATA)  # as by another test
+    assert [add_again(1), add(1)] == [101, 9]
 
 
 def test_variables_without_a_value_have_a_place() -> None:

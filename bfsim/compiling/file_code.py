@@ -8,9 +8,8 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
-from weakref import WeakValueDictionary
 
-from bfsim.blackfin.image import Routine
+from bfsim.blackfin.image import Image, Routine
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.blackfin.subroutines import LoadedImage
@@ -35,8 +34,8 @@ OPTIONS = ("-O2", "-g2", "-gno-statement-frontiers", "-fno-var-tracking")
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
 
 
-LOADED: WeakValueDictionary[tuple[Path, str], LoadedImage] = WeakValueDictionary()
-"""Images of the kernels of this process, by their files and digests: what runs where a kernel is called by itself."""
+_last: dict[Path, tuple[LoadedImage, set[str]]] = {}
+"""Of each file the image that was loaded last for kernels that are called by themselves, and which of its functions have it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +81,16 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
     own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)
     function = kernels[routine.name] = object_function(name, own, source, parameters, result)
     digests = {path.parent / each: hashlib.sha256(octets).hexdigest() for each, octets in files.items()}
-    loaded = LOADED.setdefault((path.resolve(), image.digest), LoadedImage(image))
-    return Kernel(function, None, FileCode(digests, function, symbol, loaded, places))
+    return Kernel(function, None, FileCode(digests, function, symbol, _loaded(path, image, name), places))
+
+
+def _loaded(path: Path, image: Image, name: str) -> LoadedImage:
+    """Return a file's image, which has functions of one file in common; that of one which is taken once more is loaded anew."""
+    loaded, names = _last.get(path.resolve(), (None, set[str]()))
+    if loaded is None or loaded.image.digest != image.digest or name in names:
+        loaded, names = _last[path.resolve()] = LoadedImage(image), set()
+    names.add(name)
+    return loaded
 
 
 def _sources(folder: Path, names: Iterable[str]) -> SourceFiles:
