@@ -109,6 +109,9 @@ class Rule(StrEnum):
     ARGUMENT_LOADS = (
         "an argument on the stack that is used once, outside of loops, is loaded where it is used"
     )
+    STAYING_ARGUMENTS = "an argument on the stack that is seldom used stays there where a register would have to be saved for it"
+    EXPANSION_ORDER = "what is used once is computed where it is used, the longer operand first"
+    BYTE_ADDRESSES = "of an array of bytes that comes in a data register, addresses are added up there if they are all that uses it"
     NARROW_BITS = "narrow values are masked and joined bit by bit before they are extended"
     SUMMED_INDICES = "an index that is a sum is added up before it becomes an address, unless elements are bytes and one access uses it"
 
@@ -156,6 +159,9 @@ GCC: dict[Rule, str] = {
     Rule.SINKING: "tree-ssa-sink.cc",
     Rule.NEIGHBOURS: "fold_range_test in fold-const.cc",
     Rule.ARGUMENT_LOADS: "combine_and_move_insns in ira.cc",
+    Rule.STAYING_ARGUMENTS: "assign_hard_reg in ira-color.cc",
+    Rule.EXPANSION_ORDER: "tree-ssa-ter.cc; reorder_operands in cfgexpand.cc",
+    Rule.BYTE_ADDRESSES: "find_costs_and_classes in ira-costs.cc",
     Rule.NARROW_BITS: '"(bitop (convert @0) (convert? @1))" in match.pd',
     Rule.OWN_OPERATIONS: "factor_out_conditional_conversion in tree-ssa-phiopt.cc, which takes nothing else",
     Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
@@ -227,6 +233,9 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.SHIFTED_PRODUCTS: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_numbers.py
     Rule.OWN_OPERATIONS: (),
     Rule.ARGUMENT_LOADS: (),
+    Rule.STAYING_ARGUMENTS: (),  # from kernels that are not measured here: tests/kernel/test_saved_registers.py
+    Rule.EXPANSION_ORDER: (),
+    Rule.BYTE_ADDRESSES: (),
     Rule.NARROW_BITS: (),
     Rule.BIT_TESTS: (),
     Rule.CONSTANT_TABLES: (),

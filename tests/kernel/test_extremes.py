@@ -175,6 +175,20 @@ def test_narrow_choices_are_gccs_alone(tmp_path: Path) -> None:
     assert lowered(text, tmp_path, GCC_O2)[Op.DSP_ALU] == 0
 
 
+def test_a_sum_that_nothing_needs_is_no_choice(tmp_path: Path) -> None:
+    """What a side of a test adds to a value that is overwritten is in the text when extremes are looked for."""
+    text = """
+        @kernel
+        def f(x: i32) -> i32:
+            v = -20
+            if v * 127 >= 0:
+                return x
+            w = v - 255
+            return v
+    """
+    assert run(import_text(text, tmp_path).f, 3, profile=GCC_O2).value == -20
+
+
 def test_places_of_long_computations_are_compared(tmp_path: Path) -> None:
     """Each value is numbered once: as an expression, forty squares would be longer than memory."""
     squares = "    x = x * x\n" * 40

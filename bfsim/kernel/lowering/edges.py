@@ -41,6 +41,17 @@ def put_between(blocks: dict[str, BasicBlock], source: str, label: str, between:
     blocks[between] = BasicBlock(between, (jump,))
 
 
+def join_before(blocks: dict[str, BasicBlock], sources: list[str], label: str, between: str) -> None:
+    """Put one empty block on the ways from all of `sources` to block `label`, on which the same values come to its phis."""
+    first, *others = sources
+    put_between(blocks, first, label, between)
+    for each in others:
+        blocks[each] = going_to(blocks[each], label, between)
+        blocks[label] = replace(
+            blocks[label], instructions=tuple(without_way(row, each) for row in blocks[label].instructions)
+        )
+
+
 def bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: str) -> None:
     """Lead all that goes to an empty block on to where it leads."""
     for each in before:

@@ -91,7 +91,7 @@ def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice |
     if narrows and _is_none(flow, phi, yes, no):
         return None
     rows = tuple(row for arm in arms for row in flow.blocks[arm].instructions[:-1])
-    sum_of = next((row for row in rows if row.opcode in SUMS), None)
+    sum_of = next((row for row in rows if row.opcode in SUMS and row.result in (yes, no)), None)
     if sum_of is not None:
         if (
             is_narrowed(flow, phi)

@@ -107,7 +107,9 @@ class Pressure:
         for instruction in reversed(self.code.of[label]):
             if instruction.result:
                 alive.discard(self.find(instruction.result))
-            if across_calls and instruction.op is Op.CALL:
+            if (
+                across_calls and instruction.op is Op.CALL and instruction.code_bytes
+            ):  # not what a library routine calls
                 found.append(set(alive))
             alive.update(self.find(name) for name, _ in instruction.uses if not name.startswith("#"))
             if not across_calls:

@@ -6,17 +6,19 @@ allocator would: see `webs`, `moves` and `pressure`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.argument_loads import load_where_used
+from bfsim.kernel.lowering.byte_addresses import add_in_data_registers
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.expansion_order import order_as_expanded
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
-from bfsim.kernel.lowering.pressure import POINTERS, Pressure
+from bfsim.kernel.lowering.pressure import Pressure
 from bfsim.kernel.lowering.register_classes import RegisterClasses
+from bfsim.kernel.lowering.taken_registers import TakenRegisters
 from bfsim.kernel.lowering.webs import Webs
 from bfsim.kernel.rules import Rule
 
@@ -42,6 +44,10 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
     """Insert moves, constants and reloads into `code`; return what belongs to edges and to the function's ends."""
     loads_late = context.profile.applies(Rule.ARGUMENT_LOADS)
     loaded = load_where_used(context, code) if loads_late else frozenset()
+    if context.profile.applies(Rule.BYTE_ADDRESSES):
+        add_in_data_registers(context, code)
+    if context.profile.applies(Rule.EXPANSION_ORDER):
+        order_as_expanded(context, code)
     webs = Webs(context, code)
     if context.profile.applies(Rule.SUM_CLASSES):
         RegisterClasses(webs).place()
@@ -66,24 +72,17 @@ class _Ends:
         """`loaded`: arguments that are loaded where they are used."""
         self.webs, self.pressure, self.result, self.loaded = webs, pressure, result, loaded
         self.flow, self.code, self.bank = webs.flow, webs.code, webs.bank
+        self.taken = TakenRegisters(webs, pressure)
 
     def save(self) -> None:
         """Find the registers that are saved, and load or move the arguments."""
-        peak = {RegisterBank.DATA: 0, RegisterBank.POINTER: 0}
         across = {RegisterBank.DATA: set[str](), RegisterBank.POINTER: set[str]()}
         for label in self.flow.blocks:
-            for alive in self.pressure.points(label, across_calls=False):
-                for bank, highest in peak.items():
-                    peak[bank] = max(highest, sum(self.bank.get(name) is bank for name in alive))
-            for alive in self._reloaded(label):
-                pointers = sum(self.bank.get(name) is RegisterBank.POINTER for name in alive)
-                peak[RegisterBank.POINTER] = max(peak[RegisterBank.POINTER], pointers)
             for alive in self.pressure.points(label, across_calls=True):
                 for name in alive:
                     across[self.bank.get(name, RegisterBank.DATA)].add(name)
-        constants = {name for loop in self.flow.loops for name in self.pressure.constants_in(loop)}
-        data = min(peak[RegisterBank.DATA] + len(constants), isa.DATA_REGISTERS) - isa.SCRATCH_DATA_REGISTERS
-        pointers = min(peak[RegisterBank.POINTER], POINTERS) - isa.SCRATCH_POINTER_REGISTERS
+        data = self.taken.most(RegisterBank.DATA) - isa.SCRATCH_DATA_REGISTERS
+        pointers = self.taken.most(RegisterBank.POINTER) - isa.SCRATCH_POINTER_REGISTERS
         if self.result.calls:
             data, pointers = (
                 max(data, len(across[RegisterBank.DATA])),
@@ -95,14 +94,7 @@ class _Ends:
         if self.webs.context.profile.applies(Rule.KEPT_RESULTS):
             self._results()
         self._parameters(across)
-
-    def _reloaded(self, label: str) -> Iterator[set[str]]:
-        """What is alive where an operand was moved to a pointer register: it cannot be the one of the result [order_regs_for_reload]."""
-        points = self.pressure.points(label, across_calls=False)[::-1]
-        for instruction, before in zip(self.code.of[label], points, strict=False):
-            moved = {name for name, bank in instruction.uses if bank is RegisterBank.POINTER and "@" in name}
-            if moved and instruction.result and self.bank.get(instruction.result) is RegisterBank.POINTER:
-                yield before | {self.webs.find(instruction.result)}
+        self._load_staying()
 
     def _results(self) -> None:
         """The next call destroys R0: a result that is wanted behind it moves to a register that survives."""
@@ -136,10 +128,29 @@ class _Ends:
         used |= {value for arms in self.webs.phis.values() for value, _ in arms}
         line = self.flow.routine.blocks[0].instructions[0].line
         for number, name in enumerate(self.webs.context.parameters()):
-            if name not in used or name in self.loaded:
+            if name not in used or name in self.loaded | self.taken.staying:
                 continue
             bank = self.bank.get(self.webs.find(name), RegisterBank.DATA)
             if number >= isa.REGISTER_ARGUMENTS:
                 self.result.entry.append(MachineInstruction(Op.LOAD32, line, None, bank))
             elif bank is RegisterBank.POINTER or name in across[bank]:
                 self.result.entry.append(MachineInstruction(Op.MOVE, line, None, bank))
+
+    def _load_staying(self) -> None:
+        """Load arguments that stay on the stack where they are used, or where a phi takes them."""
+        for name in self.taken.staying:
+            for label, block in self.code.of.items():
+                self.code.of[label] = [row for each in block for row in self._loaded(name, each)]
+            for phi, arms in self.webs.phis.items():
+                home, each = self.flow.defined[phi]
+                for value, label in arms:
+                    if value == name and self.webs.find(value) == self.webs.find(phi):
+                        load = MachineInstruction(Op.LOAD32, each.line, None, RegisterBank.ANY)
+                        self.result.on_edges.setdefault((label, home), []).append(load)
+
+    def _loaded(self, name: str, instruction: MachineInstruction) -> list[MachineInstruction]:
+        """An instruction and the load of the argument `name`, if it uses that; a copy is a load then."""
+        if name not in (used for used, _ in instruction.uses):
+            return [instruction]
+        load = MachineInstruction(Op.LOAD32, instruction.line, instruction.result, instruction.bank)
+        return [load] if instruction.op is Op.MOVE else [load, instruction]

@@ -1,6 +1,7 @@
 """Sinking: values that only some paths need are computed on those paths [tree-ssa-sink.cc of GCC 12].
 
-What one side of a test does not use waits for the other side, if that is the rarer one.
+What one side of a test does not use waits for the other side, if that is the rarer one. Ways on which one value comes to a choice are
+joined before it, so that the value can be computed there [make_forwarders_with_degenerate_phis in tree-ssa-dce.cc].
 """
 
 from __future__ import annotations
@@ -10,12 +11,13 @@ from itertools import permutations
 
 from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.edges import bypass, put_between
+from bfsim.kernel.lowering.edges import bypass, join_before, put_between
 from bfsim.kernel.lowering.predict import Likelihood
 
 MOVABLE = (
     "load", "getelementptr", "add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "zext", "sext", "trunc",
 )  # fmt: skip
+CHOOSING = ("@llvm.smin", "@llvm.smax", "@llvm.umin", "@llvm.umax", "@llvm.abs")
 CASTS = ("zext", "sext", "trunc")  # in C, what is tested is extended already
 LEFT = "else"
 RARER, RARER_LOAD = (
@@ -26,16 +28,47 @@ RARER, RARER_LOAD = (
 
 def sink(routine: Routine) -> Routine:
     """Return `routine` with each value in the block where it is first needed."""
-    places = _places(ControlFlow(routine))
+    flow = ControlFlow(routine)
     blocks = {each.label: each for each in routine.blocks}
-    for label, way in places:
-        put_between(blocks, label, way, _place(label, way))
-    sinking = _Sinking(replace(routine, blocks=tuple(blocks.values())))
+    ways = [([label], way, f"{label}.to.{way}") for label, way in _places(flow)]
+    for label, way in _places(flow):
+        put_between(blocks, label, way, f"{label}.to.{way}")
+    for before, way in _joined(ControlFlow(replace(routine, blocks=tuple(blocks.values())))):
+        ways.append((before, way, f"{before[0]}.joined.{way}"))
+        join_before(blocks, before, way, ways[-1][-1])
+    last = {between: before[-1] for before, _, between in ways}
+    sinking = _Sinking(replace(routine, blocks=tuple(blocks.values())), last)
     blocks = {label: sinking.block(each) for label, each in blocks.items()}
-    for label, way in places:
-        if len(blocks[_place(label, way)].instructions) == 1:
-            bypass(blocks, [label], _place(label, way), way)
+    for before, way, between in ways:
+        if len(blocks[between].instructions) == 1:
+            bypass(blocks, before, between, way)
     return replace(routine, blocks=tuple(blocks.values()))
+
+
+def _joined(flow: ControlFlow) -> list[tuple[list[str], str]]:
+    """Return the blocks from which the same values come to the choices of another one, which nothing but these choices needs."""
+    headers = {loop.header for loop in flow.loops}
+    found = []
+    for way in flow.order:
+        arms = [arms_of(each) for each in flow.blocks[way].instructions if each.opcode == "phi"]
+        for values in dict.fromkeys(tuple(each[label] for each in arms) for label in flow.predecessors[way]):
+            before = [
+                label for label in flow.predecessors[way] if tuple(each[label] for each in arms) == values
+            ]
+            if way not in headers and len(before) > 1 and any(_is_for(flow, value, way) for value in values):
+                found.append((before, way))
+    return found
+
+
+def _is_for(flow: ControlFlow, value: str, way: str) -> bool:
+    """Whether a value is computed, and nothing but a choice at the head of block `way` needs it."""
+    each = flow.instruction(value)
+    users = flow.users.get(value, [])
+    return (
+        each is not None
+        and _is_movable(each)
+        and all(user.opcode == "phi" and flow.defined[user.result or ""][0] == way for user in users)
+    )
 
 
 def _places(flow: ControlFlow) -> list[tuple[str, str]]:
@@ -52,30 +85,36 @@ def _places(flow: ControlFlow) -> list[tuple[str, str]]:
     return found
 
 
-def _place(label: str, way: str) -> str:
-    return f"{label}.to.{way}"
-
-
 def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
     """Whether a choice in block `way` alone needs a value that is computed in a block before it, and on this way alone."""
     for choice in flow.blocks[way].instructions:
         value = arms_of(choice).get(label, "") if choice.opcode == "phi" else ""
         home, each = flow.defined.get(value, ("", choice))
         is_alone = len(flow.users.get(value, ())) == 1 and choice.operands.count(value) == 1
-        if home == label and is_alone and each.opcode in MOVABLE and each.opcode not in CASTS:
+        if home == label and is_alone and _is_movable(each) and each.opcode not in CASTS:
             return True
     return False
 
 
+def _is_movable(each: Instruction) -> bool:
+    """Whether an instruction may be done elsewhere."""
+    return each.opcode in MOVABLE or (each.opcode == "call" and any(name in each.text for name in CHOOSING))
+
+
 class _Sinking:
-    def __init__(self, routine: Routine) -> None:
+    def __init__(self, routine: Routine, joined: dict[str, str]) -> None:
+        """`joined`: the last block before each that was put in; to GCC, what was put in runs as often as it is come to from there."""
         self.flow = ControlFlow(routine)
-        self.frequency = Likelihood(self.flow).frequency
+        likelihood = Likelihood(self.flow)
+        counts = {
+            way: likelihood.frequency[last] * likelihood.taken[last, way] for way, last in joined.items()
+        }
+        self.frequency = likelihood.frequency | counts
         self.home = {name: label for name, (label, _) in self.flow.defined.items()}
         self.arrived: dict[str, list[Instruction]] = {label: [] for label in self.flow.blocks}
         for label in reversed(self.flow.order):
             for each in reversed(self.flow.blocks[label].instructions):
-                if each.opcode in MOVABLE and each.result and (place := self._place(each, label)) != label:
+                if _is_movable(each) and each.result and (place := self._place(each, label)) != label:
                     self.home[each.result] = place
                     self.arrived[place].insert(0, each)
 
