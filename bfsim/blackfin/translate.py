@@ -35,6 +35,9 @@ ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
 
+ASKING_BLOCKS = 100
+"""[ours] Code of more blocks reports every access: to ask first takes LLVM twice the time there, and such code seldom runs."""
+
 
 def is_large(code: Code) -> bool:
     """Whether registers stay in the state and LLVM does not optimise."""
@@ -249,13 +252,16 @@ class _Translation:
 
     def _report(self, builder: ir.IRBuilder, address: Value, access: int, cclk: int, site: int) -> None:
         place = address.zero_extended(64).ir
-        followed, goes_on = self._new("followed"), self._new("goes_on")
-        builder.cbranch(self.reports.may_follow(builder, place), followed, goes_on)
-        builder.position_at_end(followed)
+        goes_on = self._new("goes_on") if len(self.code.blocks) <= ASKING_BLOCKS else None
+        if goes_on:
+            followed = self._new("followed")
+            builder.cbranch(self.reports.may_follow(builder, place), followed, goes_on)
+            builder.position_at_end(followed)
         stamp = builder.add(builder.load(self.stamp), I64(cclk))
         self.reports.tell(builder, place, I64(access), stamp, I64(site))
-        builder.branch(goes_on)
-        builder.position_at_end(goes_on)
+        if goes_on:
+            builder.branch(goes_on)
+            builder.position_at_end(goes_on)
 
     def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
         """Let cycles pass for what is reported."""
