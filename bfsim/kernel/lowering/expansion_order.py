@@ -2,7 +2,7 @@
 
 So a whole expression is computed where its value is needed, of two operands that may change places the longer one first
 [reorder_operands in cfgexpand.cc], and of a store the address before the value [expand_assignment in expr.cc]. That decides how many
-registers are taken at once. Nothing waits for a store or a call that it must be done before.
+registers are taken at once. Nothing waits for a store or a call that it must be done before, and a load not for its own store, which may be to the same place.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction
 from bfsim.kernel.lowering.schedule import BARRIERS, LOADS, STORES
 
-WAITING = {*LOADS, Op.ALU, Op.DSP_ALU, Op.SHIFT, Op.ADD_SHIFT, Op.MUL16, Op.MUL32, Op.EXTEND}
+COMPUTING = {Op.ALU, Op.DSP_ALU, Op.SHIFT, Op.ADD_SHIFT, Op.MUL16, Op.MUL32, Op.EXTEND}
+WAITING = {*LOADS, *COMPUTING, Op.MOVE, Op.IMM, Op.IMM32}
 EITHER_WAY = ("add", "mul", "and", "or", "xor", "call")
 
 
@@ -46,7 +47,8 @@ class _Expressions:
         users = {name: number for number, each in enumerate(block) for name, _ in each.uses if name in once}
         for number in reversed(self.parts):
             user = users.get(block[number].result or "", -1)
-            if user > number and self._may_wait(number, self.root[user]):
+            is_copied = block[number].op in LOADS and user >= 0 and block[user].op in STORES
+            if user > number and not is_copied and self._may_wait(number, self.root[user]):
                 self.parts[user].append(number)
                 self.root[number] = self.root[user]
 

@@ -1,7 +1,7 @@
 """How many registers of each bank are taken at once, from which follows how many a function saves; and which arguments stay on the stack.
 
 A constant that is no immediate takes a register beside the operands of its instruction. The register of an operand that is done with may
-be that of the result, unless the operand was moved to a pointer register for that [order_regs_for_reload in reload1.cc of GCC 12].
+be that of the result; in a loop, unless the operand was moved to a pointer register for that [order_regs_for_reload in reload1.cc of GCC 12].
 
 To save one more register costs a store and a load. So where all others are taken, an argument on the stack that is used seldom stays
 there, and is loaded wherever it is used [assign_hard_reg in ira-color.cc].
@@ -81,7 +81,7 @@ class TakenRegisters:
                 alive.discard(self._key(instruction.result))
             alive.update(self._key(name) for name, _ in instruction.uses if not name.startswith("#"))
             yield set(alive) if in_loop else alive | _constants(instruction)
-            if moved := self._kept_from_result(instruction):
+            if in_loop and (moved := self._kept_from_result(instruction)):
                 yield behind | moved | {self._key(instruction.result or "")}
 
     def _kept_from_result(self, instruction: MachineInstruction) -> set[str]:
