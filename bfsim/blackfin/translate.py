@@ -35,8 +35,9 @@ ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
 
-ASKING_BLOCKS = 100
-"""[ours] Code of more blocks reports every access: to ask first takes LLVM twice the time there, and such code seldom runs."""
+SMALL_PROGRAM_BLOCKS = 50
+"""[ours] Code of more blocks reports every access without asking first, and finds the way back from a function by its table: anything else
+takes LLVM up to twice the time there, two seconds of a cold start of the built-in firmware, and such code seldom runs."""
 
 
 def is_large(code: Code) -> bool:
@@ -90,14 +91,14 @@ class _Translation:
         self.dispatch, self.leave = self._new("dispatch"), self._new("leave")
         self.at = {start: self._new(f"at_{start:08x}") for start in of.code.blocks}
         self.last_turns: list[dict[int, ir.Block]] = []
-        self.is_large = is_large(of.code)
+        self.is_large, self.is_small = is_large(of.code), len(of.code.blocks) <= SMALL_PROGRAM_BLOCKS
         self.slots: dict[str, ir.Instruction] = {}
         self.values: dict[str, ir.Value] = {}
         self.numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(counted)
         }
         self.at_once = {} if fuel else loops_at_once(of.code)
-        self.returns = {} if self.is_large else returns(of.code)
+        self.returns = returns(of.code) if self.is_small else {}
         self.implied = {} if fuel else {each.block: each for each in implied(of.code)}
         self.clock = self._sum("clock", [each.cclk + each.stall_cclk for each in counted])
         self.waited = self._sum("waited", [each.stall_cclk for each in counted])
@@ -252,7 +253,7 @@ class _Translation:
 
     def _report(self, builder: ir.IRBuilder, address: Value, access: int, cclk: int, site: int) -> None:
         place = address.zero_extended(64).ir
-        goes_on = self._new("goes_on") if len(self.code.blocks) <= ASKING_BLOCKS else None
+        goes_on = self._new("goes_on") if self.is_small else None
         if goes_on:
             followed = self._new("followed")
             builder.cbranch(self.reports.may_follow(builder, place), followed, goes_on)
