@@ -25,8 +25,8 @@ WORKS = "works"
 LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 30 ms to run, 40 ms to record and 8 ms to play (20 and 200 frames, whole commands,
-means of three): n points that are left gain from n = (40 - 8) / (30 - 8), 1.5, on.
+With all that kernels work on in L1 a frame more takes 27 ms to run, 37 ms to record and 8 ms to play (20 and 200 frames, whole commands,
+means of three): n points that are left gain from n = (37 - 8) / (27 - 8), 1.5, on.
 """
 
 MOST_WAITS = 0.02
