@@ -13,26 +13,41 @@ REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 
 
 class Reports(NamedTuple):
-    """The block that reports go through, the function that is told, and from which address on how many bytes are followed."""
+    """The block that reports go through, the function that is told, from which address on how many bytes are followed, and where the cycle stands.
+
+    `asks`: whether it is asked first if an address may be of memory that is followed: most are not, and that is soon seen.
+    """
 
     block: ir.Value
     tracer: ir.Value
     lowest: ir.Value
     span: ir.Value
+    stamp: ir.Value
+    asks: bool
 
-    def may_follow(self, builder: ir.IRBuilder, address: ir.Value) -> ir.Value:
-        """Return whether an address may be of memory that is followed: most are not, and that is soon seen."""
-        return builder.icmp_unsigned("<", builder.sub(address, self.lowest), self.span)
+    def report(self, builder: ir.IRBuilder, address: ir.Value, access: int, cclk: int, site: int) -> None:
+        """Report an access of a kind, so many cycles after its block has begun, by a site."""
+        if not self.asks:
+            self._tell(builder, address, access, cclk, site)
+            return
+        with builder.if_then(builder.icmp_unsigned("<", builder.sub(address, self.lowest), self.span)):
+            self._tell(builder, address, access, cclk, site)
 
-    def tell(self, builder: ir.IRBuilder, *access: ir.Value) -> None:
-        """Tell an access: its address, of what kind it is, its cycle and its site."""
-        builder.call(self.tracer, [self.block, *access])
+    def _tell(self, builder: ir.IRBuilder, address: ir.Value, access: int, cclk: int, site: int) -> None:
+        stamp = builder.add(builder.load(self.stamp), I64(cclk))
+        builder.call(self.tracer, [self.block, address, I64(access), stamp, I64(site)])
+
+    def go_on(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
+        """Let cycles pass."""
+        builder.store(builder.add(builder.load(self.stamp), cclk), self.stamp)
 
 
-def reports_of(builder: ir.IRBuilder, block: ir.Value) -> Reports:
-    """Return what stands in a block for reports, read once."""
+def reports_of(builder: ir.IRBuilder, block: ir.Value, *, asks: bool) -> Reports:
+    """Return what stands in a block for reports, read once, at cycle 0."""
 
     def word(number: int, kind: ir.Type) -> ir.Value:
         return builder.load(builder.gep(block, [I64(number)], source_etype=I64), typ=kind)
 
-    return Reports(block, word(0, REPORT.as_pointer()), word(1, I64), word(2, I64))
+    stamp = builder.alloca(I64)
+    builder.store(I64(0), stamp)
+    return Reports(block, word(0, REPORT.as_pointer()), word(1, I64), word(2, I64), stamp, asks)

@@ -105,10 +105,10 @@ class _Translation:
 
     def module(self) -> ir.Module:
         entry = ir.IRBuilder(self.entry)
-        self.event, self.base, self.stamp = entry.alloca(I32), entry.alloca(I64), entry.alloca(I64)
-        entry.store(I64(0), self.stamp)
+        self.event, self.base = entry.alloca(I32), entry.alloca(I64)
         if self.tracing:
-            self.reports = reports_of(entry, entry.load(self._place(entry, "TRACE"), typ=POINTER))
+            block_at = entry.load(self._place(entry, "TRACE"), typ=POINTER)
+            self.reports = reports_of(entry, block_at, asks=self.is_small)
         for block in self.code.blocks.values():
             self._block(block)
         first = self.at
@@ -239,7 +239,8 @@ class _Translation:
         """Report an access, and take note of whether it is aligned, where that is asked for."""
         if self.tracing:
             access = nbytes + self.tracing.write * writes
-            self._report(builder, address, access, cclk, self.tracing.site_of(block, instruction.address))
+            site = self.tracing.site_of(block, instruction.address)
+            self.reports.report(builder, address.zero_extended(64).ir, access, cclk, site)
         if self.aligned and nbytes > 1:
             off = builder.and_(address.ir, I32(nbytes - 1))
             self.misaligned = off if self.misaligned is None else builder.or_(self.misaligned, off)
@@ -251,23 +252,10 @@ class _Translation:
         self._event(ir.IRBuilder(leaves), Event.MISALIGNED, I32(block))
         builder.position_at_end(goes_on)
 
-    def _report(self, builder: ir.IRBuilder, address: Value, access: int, cclk: int, site: int) -> None:
-        place = address.zero_extended(64).ir
-        goes_on = self._new("goes_on") if self.is_small else None
-        if goes_on:
-            followed = self._new("followed")
-            builder.cbranch(self.reports.may_follow(builder, place), followed, goes_on)
-            builder.position_at_end(followed)
-        stamp = builder.add(builder.load(self.stamp), I64(cclk))
-        self.reports.tell(builder, place, I64(access), stamp, I64(site))
-        if goes_on:
-            builder.branch(goes_on)
-            builder.position_at_end(goes_on)
-
     def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
         """Let cycles pass for what is reported."""
         if self.tracing:
-            builder.store(builder.add(builder.load(self.stamp), cclk), self.stamp)
+            self.reports.go_on(builder, cclk)
 
     def _flow(self, builder: ir.IRBuilder, flow: Flow, block: Block) -> None:
         """Go where the last instruction of a block says, through the end of a loop if there is one."""

@@ -14,13 +14,7 @@ from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction
 def load_where_used(context: Context, code: MachineCode) -> frozenset[str]:
     """Insert the loads of such arguments into `code`, and return their names."""
     on_stack = context.parameters()[isa.REGISTER_ARGUMENTS :]
-    copied = {
-        operand
-        for block in context.routine.blocks
-        for each in block.instructions
-        if each.opcode == "phi"
-        for operand in each.operands
-    }
+    copied = context.operands_of("phi")
     found = set[str]()
     for name in on_stack:
         uses = [

@@ -17,13 +17,7 @@ DATA, POINTER = RegisterBank.DATA, RegisterBank.POINTER
 
 def add_in_data_registers(context: Context, code: MachineCode) -> None:
     """Add up such addresses in data registers, outside of loops."""
-    chosen = {
-        operand
-        for block in context.routine.blocks
-        for each in block.instructions
-        if each.opcode == "phi"
-        for operand in each.operands
-    }
+    chosen = context.operands_of("phi")
     for array in context.parameters()[: isa.REGISTER_ARGUMENTS]:
         users = [
             (label, each)

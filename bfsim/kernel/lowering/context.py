@@ -191,6 +191,11 @@ class Context:
         )
         return value in parameters[number : number + 1] and users == [call] and not repeats
 
+    def operands_of(self, *opcodes: str) -> set[str]:
+        """What any instruction with one of these opcodes takes."""
+        instructions = (each for block in self.routine.blocks for each in block.instructions)
+        return {operand for each in instructions if each.opcode in opcodes for operand in each.operands}
+
     def arms(self, phi: Instruction) -> list[tuple[str, str]]:
         """(value, label of the block it comes from) of a phi."""
         return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]

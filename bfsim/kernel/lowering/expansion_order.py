@@ -17,20 +17,21 @@ from bfsim.kernel.lowering.schedule import BARRIERS, LOADS, STORES
 
 COMPUTING = {Op.ALU, Op.DSP_ALU, Op.SHIFT, Op.ADD_SHIFT, Op.MUL16, Op.MUL32, Op.EXTEND}
 WAITING = {*LOADS, *COMPUTING, Op.MOVE, Op.IMM, Op.IMM32}
-EITHER_WAY = ("add", "mul", "and", "or", "xor", "call")
+EITHER_WAY = (
+    "add",
+    "mul",
+    "and",
+    "or",
+    "xor",
+    "call",
+)  # what is called and has operations of its own is a minimum or a maximum
 
 
 def order_as_expanded(context: Context, code: MachineCode) -> None:
     """Put the operations of each block outside of loops in the order of GCC's expressions."""
     computed = Tally(each.result for block in code.of.values() for each in block)
     used = Tally(name for block in code.of.values() for each in block for name, _ in each.uses)
-    kept = {
-        context.name(operand)
-        for block in context.routine.blocks
-        for each in block.instructions
-        if each.opcode in ("phi", "ret", "switch")
-        for operand in each.operands
-    }
+    kept = set(map(context.name, context.operands_of("phi", "ret", "switch")))
     once = {name for name in used if used[name] == computed[name] == 1 and name not in kept}
     for label, block in code.of.items():
         if context.flow.innermost(label) is None:

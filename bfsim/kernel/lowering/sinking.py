@@ -28,11 +28,10 @@ RARER, RARER_LOAD = (
 
 def sink(routine: Routine) -> Routine:
     """Return `routine` with each value in the block where it is first needed."""
-    flow = ControlFlow(routine)
     blocks = {each.label: each for each in routine.blocks}
-    ways = [([label], way, f"{label}.to.{way}") for label, way in _places(flow)]
-    for label, way in _places(flow):
-        put_between(blocks, label, way, f"{label}.to.{way}")
+    ways = [([label], way, f"{label}.to.{way}") for label, way in _places(ControlFlow(routine))]
+    for (label,), way, between in ways:
+        put_between(blocks, label, way, between)
     for before, way in _joined(ControlFlow(replace(routine, blocks=tuple(blocks.values())))):
         ways.append((before, way, f"{before[0]}.joined.{way}"))
         join_before(blocks, before, way, ways[-1][-1])

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.pacing import aligned
+from bfsim.machine.bus.pacing import aligned, arrival
 from bfsim.machine.bus.sdram import hits_ahead
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import traffic_at
@@ -15,6 +15,12 @@ from bfsim.machine.bus.walk import WORD_BITS, WORD_BYTES
 
 SLOW_SCLK = 4
 """A camera whose words are so far apart loses none, and none gets urgent, while it waits for a word of the other one."""
+
+
+@native
+def transfer_of(state: State, number: int) -> int:
+    """Return where the transfer of a master stands."""
+    return w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
 
 
 @native
@@ -27,7 +33,7 @@ def hits_of(state: State, number: int) -> int:
         or state[master + w.FIFO] < 2
     ):
         return 0
-    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
+    transfer = transfer_of(state, number)
     if (
         state[transfer + w.MODE] != w.PACED_IN
         or state[transfer + w.ELEMENT_BITS] != WORD_BITS
@@ -74,26 +80,9 @@ def take_hits(state: State, memory: Memory, limit: int) -> None:
 
 
 @native
-def parts_until(state: State, transfer: int, ahead: int) -> int:
-    """Return when the word `ahead` of the next one of a transfer is there, in parts of a tick from its start."""
-    place = state[transfer + w.PLACE] + 1 + ahead
-    return state[transfer + w.LINE_BEGAN] + place * state[transfer + w.ELEMENT]
-
-
-@native
-def transfer_of(state: State, number: int) -> int:
-    """Return where the transfer of a master stands."""
-    return w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
-
-
-@native
 def word_at(state: State, number: int, ahead: int) -> int:
     """Return when a PPI asks for the bus with the word `ahead` of its next one, both of one line."""
-    transfer = transfer_of(state, number)
-    ticks = (
-        aligned(parts_until(state, transfer, ahead), state[transfer + w.PARTS]) // state[transfer + w.PARTS]
-    )
-    return aligned(state[transfer + w.START] + ticks, state[w.SCLK])
+    return aligned(arrival(state, transfer_of(state, number), ahead), state[w.SCLK])
 
 
 @native
@@ -101,9 +90,8 @@ def words_before(state: State, number: int, tick: int) -> int:
     """With how many words a PPI asks for the bus before a tick, all of one line."""
     transfer, sclk = transfer_of(state, number), state[w.SCLK]
     last_edge = (tick - 1) // sclk * sclk
-    parts = (last_edge - state[transfer + w.START]) * state[transfer + w.PARTS] - parts_until(
-        state, transfer, 0
-    )
+    there = state[transfer + w.LINE_BEGAN] + (state[transfer + w.PLACE] + 1) * state[transfer + w.ELEMENT]
+    parts = (last_edge - state[transfer + w.START]) * state[transfer + w.PARTS] - there
     return parts // state[transfer + w.ELEMENT] + 1 if parts >= 0 else 0
 
 

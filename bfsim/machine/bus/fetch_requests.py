@@ -12,7 +12,7 @@ from bfsim.machine.bus.core_jobs import charge, cycles_until, go_past, next_entr
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.l2_port import has_turn, hold_l2, read_l2, try_lock
 from bfsim.machine.bus.memory_owners import piece_for
-from bfsim.machine.bus.runs import cores_quiet_until
+from bfsim.machine.bus.runs import buffers_quiet_until, cores_quiet_until
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_traffic
 
@@ -42,7 +42,7 @@ def fetch_among_tries(state: State, core: int, other: int, until: int) -> bool:
         w.MASTERS_AT + w.CORE_A + other,
         w.JOBS_AT + core * w.JOB_WORDS,
     )
-    limit = min(until, state[w.MASTERS_AT + w.STORES_A + w.READY], state[w.MASTERS_AT + w.STORES_B + w.READY])
+    limit = buffers_quiet_until(state, until)
     had_one = False
     while state[job + w.IN_TURN] and state[job + w.PRESENT] & log.OFFSET_MASK >= state[w.SDRAM_END]:
         ready, free = state[me + w.READY], state[w.L2_FREE]

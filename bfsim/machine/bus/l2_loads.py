@@ -15,13 +15,14 @@ from bfsim.machine.bus.fetch_requests import stall_of_word
 from bfsim.machine.bus.l2_port import has_turn, hold_l2
 from bfsim.machine.bus.l2_requests import is_eligible, is_followed
 from bfsim.machine.bus.memory_owners import owner_for
+from bfsim.machine.bus.runs import buffers_quiet_until
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_traffic
 
 A, B = range(w.CORES)
 
 LoadState = tuple[int, int, int, int, int, int, int]
-"""How far a core is: what follows."""
+"""How far a core is with its loads: the numbers below."""
 NUMBER, ASKS_AT, STALLED, WAITS, DONE_AT, FETCHES_AT, LOADS = range(7)
 """Its next access in the log, when that asks for the port, the ticks that its call was stalled, the cycles of these for the port, when its last
 load was done, the stamp of the next fetch of its code, and whether it loads a word of L2 next, and another access of these follows."""
@@ -36,7 +37,7 @@ def load_ahead(state: State, until: int) -> bool:
     one, other = progress_of(state, A), progress_of(state, B)
     if not (one[LOADS] or other[LOADS]):
         return False
-    limit = min(until, state[w.MASTERS_AT + w.STORES_A + w.READY], state[w.MASTERS_AT + w.STORES_B + w.READY])
+    limit = buffers_quiet_until(state, until)
     free, others_turn, last_at, latency = state[w.L2_FREE], has_turn(state, B), w.NONE, stall_of_word(state)
     while True:
         at, other_at = max(one[ASKS_AT], free), max(other[ASKS_AT], free)

@@ -47,6 +47,12 @@ def cores_quiet_until(state: State, number: int, until: int) -> int:
 
 
 @native
+def buffers_quiet_until(state: State, until: int) -> int:
+    """Until when neither core's store buffer asks for anything."""
+    return min(until, state[w.MASTERS_AT + w.STORES_A + w.READY], state[w.MASTERS_AT + w.STORES_B + w.READY])
+
+
+@native
 def preferred_until(state: State, number: int, until: int, alone: int) -> int:
     """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap; `alone`: until when to itself."""
     if alone > state[w.BEGAN]:
