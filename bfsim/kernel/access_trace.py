@@ -98,6 +98,7 @@ class AccessTrace:
         self._arena = arena  # the state has its address only
         self._state = room
         self._words: Any = room.data
+        self._at: int = room.ctypes.data  # numpy takes as long to find it as a short call
         self._state[TAGS:LOG] = EMPTY
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
         self._room = self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
@@ -118,11 +119,11 @@ class AccessTrace:
             from bfsim.kernel.traced_access import trace_access  # which has the numbers above from here
 
             self._state[FUNCTION] = trace_access.address()
-        return int(self._state.ctypes.data)
+        return self._at
 
     def address_of(self, word: int) -> int:
         """Return the host address of a word of the state."""
-        return int(self._state.ctypes.data) + self._state.itemsize * word
+        return self._at + self._state.itemsize * word
 
     def logs(self, address: int) -> bool:
         """Whether accesses to memory at a host address are logged: whether it is outside of L1."""
@@ -141,24 +142,6 @@ class AccessTrace:
         """Return the sites of these entries."""
         first = LOG + self._room + self._words[KEPT]
         return self._state[first : first + count]
-
-    def add(self, count: int, entry: int, site: int) -> int:
-        """Add an entry behind the `count` of the last call; return the new count."""
-        self.check_room(count + 1)
-        first, words = LOG + self._words[KEPT] + count, self._words
-        words[first], words[first + self._room] = entry, site
-        return count + 1
-
-    def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
-        """Add `entries`, ordered by their stamps, to the `count` of the last call, behind those of the same; return the new count."""
-        total = count + len(entries)
-        self.check_room(total)
-        merged, merged_sites = self.entries(total), self.sites(total)
-        merged[count:], merged_sites[count:] = entries, sites
-        if count:
-            order = np.argsort(merged >> STAMP_BIT, kind="stable")
-            merged[:], merged_sites[:] = merged[order], merged_sites[order]
-        return total
 
     def check_room(self, count: int) -> None:
         """Raise KernelError if a call must not log so many accesses."""

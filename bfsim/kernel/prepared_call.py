@@ -42,7 +42,11 @@ class PreparedCall:
         self.stays_in_l1 = access_trace is None
         """Whether no access of it can leave L1."""
         self.run: Callable[..., Work] = bound_call(
-            called, words, len(function.parameters), left, log_of(access_trace)
+            called,
+            words,
+            len(function.parameters),
+            left,
+            log_of(access_trace) if access_trace else None,
         )
         """Runs the kernel now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
 

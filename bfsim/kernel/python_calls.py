@@ -50,6 +50,6 @@ def left_by(
     return Left(work, work.at, result, bits, fail)
 
 
-def log_of(access_trace: AccessTrace | None) -> Log | None:
-    """Return where accesses are logged, if they are."""
-    return Log(*map(access_trace.address_of, (ENTRIES, KEPT, ROOM))) if access_trace else None
+def log_of(access_trace: AccessTrace) -> Log:
+    """Return where accesses are logged."""
+    return Log(*map(access_trace.address_of, (ENTRIES, KEPT, ROOM)))

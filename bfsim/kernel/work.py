@@ -58,10 +58,6 @@ class Work:
         """How many accesses outside L1 the access_trace logged."""
         return self._numbers[ACCESSES]
 
-    @accesses.setter
-    def accesses(self, count: int) -> None:
-        self._numbers[ACCESSES] = count
-
 
 UNYIELDED = "core.run(...) gives its value when it is yielded: write `yield core.run(...)`, in parentheses within an expression"
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from struct import pack
+from struct import iter_unpack, pack
 from sys import intern
 from typing import Any, NamedTuple
 
 from bfsim import machine_code
 from bfsim.machine_code import caller as w
+from bfsim.machine_code.followed import call_both
 from bfsim.machine_code.left import WORD_BITS, Left
 
 VALUE = intern("value")
@@ -94,6 +95,26 @@ def bound_call(
         *(head[each] for each in range(w.HEAD)),
         *(each for column in zip(*taken, strict=True) for each in column),
     ]
+    return _bound(values, (called, handed, left))
+
+
+def followed_call(
+    call: Callable[..., Any], then: int, given: tuple[int, int, int], log: Log, kept: object
+) -> Callable[..., Any]:
+    """Return what `bound_call` has made with a function called behind it, at the address `then`, which is `given` three words.
+
+    That logs accesses, and needs what is `kept`.
+    """
+    block: Block = call.__self__  # type: ignore[attr-defined]
+    values = [each for (each,) in iter_unpack("q", block)]
+    both = (ctypes.c_int64 * 6)(values[w.CALLED], values[w.DATA], then, *given)
+    values[w.CALLED], values[w.DATA] = call_both(), ctypes.addressof(both)
+    values[w.LOGGED], values[w.BEFORE], values[w.ROOM] = log
+    return _bound(values, (block, both, kept))
+
+
+def _bound(values: Sequence[int], kept: object) -> Callable[..., Any]:
+    """Return the function that Python calls, bound to words."""
     block = Block(pack(f"{len(values)}q", *values))
-    block.kept = called, handed, left
+    block.kept = kept
     return machine_code.python_function(w.caller(), block)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,7 @@ from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.bus.state import FETCH_BYTES
+from bfsim.machine.calls import code_fetches
 from bfsim.machine.calls.fetch import CodeCache
 from bfsim.machine.code import code_symbols
 from bfsim.trace import StallReason
@@ -154,10 +157,37 @@ def test_values_do_not_depend_on_where_the_code_is(memory: str, name: str) -> No
     assert StallReason.CODE_FETCH not in costs[0].stall_cclk
 
 
+class Fetched:
+    """Calls whose code lies in certain lines, without a board: what they log, by the compiled part in plain Python."""
+
+    def __init__(self) -> None:
+        self.cache = CodeCache(CHIP.cache).words
+        self.room = np.zeros(log.LOG + log.ENTRY_WORDS * 16, np.int64)
+        self.access_trace = AccessTrace(np.zeros(64, np.uint8), 64, self.room)
+
+    def log(self, *entries: int) -> None:
+        """Log what a kernel has accessed, from site 0 on."""
+        self.room[log.ENTRIES] = len(entries)
+        self.access_trace.entries(len(entries))[:] = entries
+        self.access_trace.sites(len(entries))[:] = range(len(entries))
+
+    def lines(self, lines: Sequence[int], site: int = 0) -> int:
+        """Fetch these lines; return how many were not there."""
+        words = [len(lines), *chain(*((each, site) for each in lines)), *lines]
+        missed: int = code_fetches.fetch_lines.python(self.room, self.cache, np.array(words))
+        return missed
+
+    def logged(self) -> list[tuple[int, int]]:
+        """What has been logged, with the sites."""
+        count = int(self.room[log.ENTRIES])
+        columns = self.access_trace.entries(count), self.access_trace.sites(count)
+        return [(int(each), int(site)) for each, site in zip(*columns, strict=True)]
+
+
 @given(st.lists(st.lists(st.integers(0, 5).map(lambda tag: tag * 512), max_size=8), max_size=8))
 def test_the_line_used_last_stays_longest(calls: list[list[int]]) -> None:
     """Four ways, LRU: beside a model in plain Python, in one set, call by call."""
-    cache, plain = CodeCache(CHIP.cache), OrderedDict[int, None]()
+    fetched, plain = Fetched(), OrderedDict[int, None]()
     for lines in calls:
         expected = []
         for line in lines:
@@ -167,17 +197,19 @@ def test_the_line_used_last_stays_longest(calls: list[list[int]]) -> None:
                     plain.popitem(last=False)
             plain[line] = None
             plain.move_to_end(line)
-        assert cache.miss(lines) == expected
+        fetched.log()
+        assert fetched.lines(lines) == len(expected)
+        assert [each for each, _ in fetched.logged()] == [fill(line) for line in expected]
 
 
 def test_lines_of_different_sets_do_not_push_each_other_out() -> None:
     """As many lines as the cache has: all of them stay."""
     lines = range(CHIP.cache.code_bytes // LINE)
-    cache = CodeCache(CHIP.cache)
-    assert cache.miss(lines) == list(lines)
-    assert cache.miss(lines) == []
-    assert cache.miss([len(lines)]) == [len(lines)]
-    assert cache.miss([0]) == [0], "the one that was used first has left"
+    fetched = Fetched()
+    assert fetched.lines(lines) == len(lines)
+    assert fetched.lines(lines) == 0
+    assert fetched.lines([len(lines)]) == 1
+    assert fetched.lines([0]) == 1, "the one that was used first has left"
 
 
 def entry(stamp: int, kind: int, offset: int) -> int:
@@ -185,30 +217,69 @@ def entry(stamp: int, kind: int, offset: int) -> int:
     return stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
 
 
-def new_trace() -> AccessTrace:
-    """One with room for 16 entries."""
-    return AccessTrace(np.zeros(64, np.uint8), 64, np.zeros(log.LOG + log.ENTRY_WORDS * 16, np.int64))
+def fill(line: int) -> int:
+    """The entry of a line of code that is fetched at the beginning of its call."""
+    return entry(0, log.FETCH_LINE, line * LINE)
 
 
-def test_line_fills_come_between_the_accesses_without_reordering_them() -> None:
-    """The log is in order of time; accesses of one block, which have one stamp, stay as the block made them."""
-    access_trace = new_trace()
-    block = [entry(5, log.WRITE_BACK, 32), entry(5, log.FILL, 0), entry(5, log.LOAD, 60)]
-    access_trace.entries(3)[:] = block
-    fills = [entry(0, log.FETCH_LINE, 8), entry(5, log.FETCH_LINE, 16), entry(9, log.FETCH_LINE, 24)]
-    assert access_trace.insert(3, np.array(fills), np.arange(3)) == 6
-    assert access_trace.entries(6).tolist() == [fills[0], *block, fills[1], fills[2]]
+def test_line_fills_come_behind_the_accesses_of_the_first_block() -> None:
+    """The log is in order of time; accesses of one block, which have one stamp, stay as the block made them. Each keeps its site."""
+    fetched = Fetched()
+    first = [entry(0, log.WRITE_BACK, 32), entry(0, log.FILL, 0), entry(0, log.LOAD, 60)]
+    later = [entry(5, log.LOAD, 8), entry(9, log.STORE, 4)]
+    fetched.log(*first, *later)
+    assert fetched.lines([7, 8], site=20) == 2
+    assert fetched.logged() == [
+        *zip(first, (0, 1, 2), strict=True),
+        (fill(7), 20),
+        (fill(8), 20),
+        *zip(later, (3, 4), strict=True),
+    ]
+    fetched.log(*later)
+    assert fetched.lines([8, 7]) == 0
+    assert [each for each, _ in fetched.logged()] == later
+
+
+def test_accesses_of_earlier_calls_stay_before_those_of_the_present_one() -> None:
+    """A core that runs ahead keeps them in front."""
+    fetched = Fetched()
+    kept, present = entry(3, log.LOAD, 8), entry(4, log.LOAD, 12)
+    fetched.log(kept, present)
+    fetched.room[log.KEPT] = 1
+    fetched.lines([7])
+    fetched.room[log.KEPT] = 0
+    assert [each for each, _ in fetched.logged()] == [kept, fill(7), present]
+
+
+def test_a_log_without_room_counts_what_it_would_need() -> None:
+    """So that the error can say how many accesses there were; nothing is written behind its end."""
+    fetched = Fetched()
+    loads = [entry(each, log.LOAD, 4 * each) for each in range(15)]
+    fetched.log(*loads)
+    sites = fetched.access_trace.sites(15).copy()
+    assert fetched.lines([1, 2]) == 2
+    assert fetched.room[log.ENTRIES] == 17
+    assert fetched.access_trace.entries(15).tolist() == loads
+    assert fetched.access_trace.sites(15).tolist() == sites.tolist()
 
 
 def test_single_fetches_are_one_entry_behind_the_accesses() -> None:
-    """With its site, and as long as there is room."""
-    access_trace = new_trace()
-    access_trace.entries(15)[:] = [entry(each, log.LOAD, 4 * each) for each in range(15)]
-    fetches = entry(100, log.FETCHES, 0)
-    assert access_trace.add(15, fetches, 7) == 16
-    assert (access_trace.entries(16)[15], access_trace.sites(16)[15]) == (fetches, 7)
+    """For every 64 bits that were executed since the last time, with their site; as long as there is room."""
+    fetched, totals, code = Fetched(), np.array([3, 1]), np.array([2, 0, 7, 10, 4])
+    loads = [entry(each, log.LOAD, 4 * each) for each in range(14)]
+    for turns, nbytes in (([3, 1], 34), ([4, 1], 10), ([4, 1], 0)):
+        fetched.log(*loads)
+        totals[:] = turns
+        fetches = -(-nbytes // FETCH_BYTES)
+        assert code_fetches.fetch_singly.python(fetched.room, totals, code) == fetches
+        expected = [(entry(fetches, log.FETCHES, 0), 7)] if fetches else []
+        assert fetched.logged()[14:] == expected
+    totals[:] = 5, 1
+    fetched.log(*loads, *loads[:2])
+    code_fetches.fetch_singly.python(fetched.room, totals, code)
+    assert fetched.room[log.ENTRIES] == 17
     with pytest.raises(KernelError, match="at most 16 times, not 17 times"):
-        access_trace.add(16, fetches, 7)
+        fetched.access_trace.check_room(17)
 
 
 def test_code_is_fetched_in_turn_evenly_over_its_call() -> None:

@@ -51,19 +51,20 @@ class ObjectCall:
         function = code.function
         space = code.subroutine.processor.space
         parts: Sequence[Placed] = ()
+        hosts = [each.ctypes.data for each in arrays]
         if memory is None:
             named = zip(function.array_names, arrays, strict=True)
             written = [array.flags.writeable and code.may_write(name) for name, array in named]
             parts, addresses = placed(arrays, written, space)
         else:
             from_host = space.window(memory) - memory.ctypes.data
-            addresses = [each.ctypes.data + from_host for each in arrays]
+            addresses = [each + from_host for each in hosts]
         trace = None
         if access_trace:
             followed = [
-                Followed(address, array.nbytes, array.ctypes.data, first_site + number)
-                for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
-                if access_trace.logs(array.ctypes.data)
+                Followed(address, array.nbytes, host, first_site + number)
+                for number, (address, array, host) in enumerate(zip(addresses, arrays, hosts, strict=True))
+                if access_trace.logs(host)
             ]
             if stack is not None:
                 followed.append(_followed_stack(stack, first_site + len(arrays)))
@@ -79,7 +80,7 @@ class ObjectCall:
             Counts(totals[: len(code.order)], code.order),
             left_by(function, access_trace, check, partial(_refuse, code.subroutine)),
             ctypes.addressof(trace) if trace else 0,
-            log_of(access_trace),
+            log_of(access_trace) if access_trace else None,
             kept=(arrays, memory, trace, access_trace),
         )
         """Runs the code now and says what it cost, until the next run. Of its arguments, only the numbers are read."""

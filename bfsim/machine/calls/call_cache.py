@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from bfsim.kernel.build import Build
 from bfsim.kernel.objects.loaded_files import LoadedFiles
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.conflicts import Accesses, StageGroups, SubBanks
-from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
+from bfsim.machine.calls.fetch import CodeOutside
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import FrameCounts, Ledger
 from bfsim.machine.calls.ready_calls import ReadyCalls
@@ -25,14 +24,6 @@ from bfsim.machine.memories import Row
 from bfsim.machine.owner_costs import Owner
 from bfsim.machine_code.calling import words_at
 from bfsim.trace import REST
-
-
-class BoundCall(Protocol):
-    """What can be run with arguments."""
-
-    def run(self, *arguments: Row | int) -> Work:
-        """Run the kernel now and say what it cost."""
-
 
 BeforeCall = Callable[[Kernel, tuple[Row | int, ...]], None]
 """Is told of a kernel and its arguments before each call, and changes neither."""
@@ -85,15 +76,15 @@ KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, Know
 class WatchedCall:
     """A call that others are told of before it runs."""
 
-    call: BoundCall
+    run: Callable[..., Work]
     kernel: Kernel
     before: tuple[BeforeCall, ...]
 
-    def run(self, *arguments: Row | int) -> Work:
+    def __call__(self, *arguments: Row | int) -> Work:
         """Tell of the call, run the kernel, and say what it cost."""
         for tell in self.before:
             tell(self.kernel, arguments)
-        return self.call.run(*arguments)
+        return self.run(*arguments)
 
 
 class DeferredWork(Work):
@@ -240,7 +231,7 @@ class CallCache:
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
         access_trace = self._access_trace if traced else None
-        call: BoundCall = kernel.prepare(
+        run = kernel.prepare(
             group.code,
             [each.array for each in rows],
             group.totals,
@@ -248,16 +239,16 @@ class CallCache:
             group.first_site,
             stack,
             self._memory,
-        )
+        ).run
         if group.fetches:
-            call = FetchedCall(call, group.fetches)
+            run = group.fetches.behind(run)
         if self._before_call:
-            call = WatchedCall(call, kernel, self._before_call)
+            run = WatchedCall(run, kernel, self._before_call)
         return KnownCall(
             kernel.name,
             len(self.made),
-            call.run,
-            words_at(call.run),
+            run,
+            words_at(run),
             stays_in_l1=not (leaves_l1 or group.fetched),
             is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
             handed_over=tuple(

@@ -8,60 +8,33 @@ used later. Code that is not cached is fetched 64 bits at a time, as often as it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Protocol
+from itertools import chain, repeat
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.chip.spec import CacheSpec
 from bfsim.kernel import Work
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.access_trace import FUNCTION, AccessTrace
 from bfsim.kernel.counters import Counter
-from bfsim.machine.bus.state import FETCH_BYTES
+from bfsim.kernel.native import NativeEntry
+from bfsim.kernel.python_calls import log_of
+from bfsim.machine.calls import code_fetches as c
 from bfsim.machine.calls.groups import CallGroup, Fetches
-from bfsim.machine.memories import Row
+from bfsim.machine_code.calling import followed_call
 
-SUBBANK_BYTES = 4096
 KeepRoutine = Callable[[int, int, int, int], None]
 """Is told of a routine: its site, where it lies, its bytes, and the site of the one that is fetched behind it."""
 
 
-class Runnable(Protocol):
-    """A kernel bound to its rows."""
-
-    def run(self, *arguments: Row | int) -> Work:
-        """Run it."""
-
-
 class CodeCache:
-    """Tags of the code cache: `ways` lines a set, the one used last at the end of its list."""
+    """The tags of a core's code cache: its `words`, as compiled code knows them."""
 
     def __init__(self, spec: CacheSpec) -> None:
         self.line_bytes = spec.line_bytes
-        self._ways = spec.code_ways
         sets = spec.code_bytes // (spec.line_bytes * spec.code_ways)
-        self._sets: list[list[int]] = [[] for _ in range(sets)]
-
-    def _set_of(self, line: int) -> int:
-        """Return the set of a line: addr[9:5] in the sub-bank of 4 KB that addr[13:12] names (Programming Reference p.243)."""
-        at = line * self.line_bytes
-        per_bank = SUBBANK_BYTES // (self.line_bytes * self._ways)
-        return at // SUBBANK_BYTES * per_bank % len(self._sets) + line % per_bank
-
-    def miss(self, lines: Iterable[int]) -> list[int]:
-        """Use `lines` one after the other; return those that were not there."""
-        missed = []
-        for line in lines:
-            kept = self._sets[self._set_of(line)]
-            if line in kept:
-                kept.remove(line)
-            else:
-                missed.append(line)
-                if len(kept) == self._ways:
-                    del kept[0]
-            kept.append(line)
-        return missed
+        self.words = np.full(c.TAGS + sets * spec.code_ways, c.NO_LINE, np.int64)
+        self.words[: c.TAGS] = spec.line_bytes, spec.code_ways, sets
 
 
 class CodeOutside:
@@ -92,28 +65,26 @@ class CodeOutside:
 
 
 class LineFills:
-    """Fetches of code that a cache holds. `places`: offset in the arena and bytes of each routine, by its site."""
+    """Fetches of code that a cache holds: a fill of each line that is not there, at the beginning of a call.
+
+    `places`: offset in the arena and bytes of each routine, by its site.
+    """
 
     def __init__(
         self, cache: CodeCache, places: Mapping[int, tuple[int, int]], access_trace: AccessTrace
     ) -> None:
         self._cache = cache
         self._access_trace = access_trace
-        self._lines = [
+        lines = [
             (line, site)
             for site, (offset, nbytes) in places.items()
             for line in range(offset // cache.line_bytes, (offset + nbytes - 1) // cache.line_bytes + 1)
         ]
-        self._site_of = dict(reversed(self._lines))
+        self._words = np.array([len(lines), *chain(*lines), *repeat(0, len(lines))], np.int64)
 
-    def add(self, work: Work) -> int:
-        """Add a fill of each line that was not there, at the beginning of the call."""
-        missed = self._cache.miss(line for line, _ in self._lines)
-        if not missed:
-            return work.accesses
-        places = np.array(missed, np.int64) * self._cache.line_bytes
-        sites = np.array([self._site_of[line] for line in missed], np.int64)
-        return self._access_trace.insert(work.accesses, places | log.FETCH_LINE << log.KIND_BIT, sites)
+    def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
+        """Return a call that adds them."""
+        return _followed(run, c.fetch_lines, self._access_trace, self._cache.words, self._words)
 
 
 class SingleFetches:
@@ -124,31 +95,19 @@ class SingleFetches:
 
     def __init__(self, group: CallGroup, first_site: int, access_trace: AccessTrace) -> None:
         self._access_trace = access_trace
-        self._site = first_site
         self._totals = group.totals
         outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
-        self._nbytes = np.array(outside or [0], np.int64)
-        self._executed = 0
+        self._words = np.array([len(outside), 0, first_site, *outside], np.int64)
 
-    def add(self, work: Work) -> int:
-        """Add as many as code has been executed since the last time."""
-        before, self._executed = self._executed, int(self._totals.dot(self._nbytes))
-        count = -(-(self._executed - before) // FETCH_BYTES)
-        if not count:
-            return work.accesses
-        entry = count << log.STAMP_BIT | log.FETCHES << log.KIND_BIT
-        return self._access_trace.add(work.accesses, entry, self._site)
+    def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
+        """Return a call that adds as many as code has been executed since the last time."""
+        return _followed(run, c.fetch_singly, self._access_trace, self._totals, self._words)
 
 
-@dataclass(frozen=True, slots=True)
-class FetchedCall:
-    """A call whose code lies outside L1: its fetches are added to what its access trace has."""
-
-    call: Runnable
-    fetches: Fetches
-
-    def run(self, *arguments: Row | int) -> Work:
-        """Run the kernel now and say what it cost."""
-        work = self.call.run(*arguments)
-        work.accesses = self.fetches.add(work)
-        return work
+def _followed(
+    run: Callable[..., Work], then: NativeEntry, access_trace: AccessTrace, *own: NDArray[np.int64]
+) -> Callable[..., Work]:
+    """Return a call with compiled code behind it that adds fetches to the access trace."""
+    one, two = (each.ctypes.data for each in own)
+    given = access_trace.address_of(FUNCTION), one, two
+    return followed_call(run, then.address(), given, log_of(access_trace), (access_trace, own))

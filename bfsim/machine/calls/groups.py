@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
@@ -25,8 +25,8 @@ Label = TypeVar("Label")
 class Fetches(Protocol):
     """The fetches of code by calls that are counted together."""
 
-    def add(self, work: Work) -> int:
-        """Add those of the call that has just been made to its accesses, in the access trace; return how many entries these have now."""
+    def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
+        """Return a call that adds them to its accesses, in the access trace."""
 
 
 class GroupSite(NamedTuple):
