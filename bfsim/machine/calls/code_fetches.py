@@ -80,7 +80,7 @@ def fetch_singly(trace_at: Any, totals_at: Any, code_at: Any) -> int:
     executed = 0
     for number in range(code[COUNTERS]):
         executed += totals[number] * code[NBYTES_AT + number]
-    fetches = (executed - code[EXECUTED] + FETCH_BYTES - 1) // FETCH_BYTES
+    fetches: int = (executed - code[EXECUTED] + FETCH_BYTES - 1) // FETCH_BYTES
     code[EXECUTED] = executed
     if fetches:
         at = log.LOG + trace[log.ENTRIES]
