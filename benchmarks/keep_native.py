@@ -17,6 +17,7 @@ from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.tape import note, note_access, note_run
 from bfsim.machine.bus.tape_lines import note_copy, note_fetch, note_program, note_send, note_wait
 from bfsim.machine.bus.weave import advance
+from bfsim.machine.calls.code_fetches import fetch_lines, fetch_singly
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
@@ -37,6 +38,8 @@ ENTRIES = (
     note_fetch,
     note_send,
     find_call,
+    fetch_lines,
+    fetch_singly,
     count_events,
     charge_conflicts,
     charge_events,
