@@ -2,14 +2,11 @@
 
 Processes with re-timing play what they can from a recorded run, as `bfsim sweep` does; without, and on the cluster, all runs.
 
-    python benchmarks/sweeps.py                  10 and 30 frames, and from these 1000: seven minutes of processor time
-    python benchmarks/sweeps.py --frames 1000    all of them: half an hour to some hours
-    python benchmarks/sweeps.py --json
+    python benchmarks/sweeps.py [--frames 1000] [--json]
 
-The frames are those of the built-in recording over and over; the configurations two placements times two clocks times two
-SDRAM timings. Each way runs in a process of its own, with as many workers. CPU seconds are those of all processes
-together: they say what it costs on a machine that is busy with other things, too. What 1000 frames take is on the straight
-line through two shorter recordings: a point costs its start, and each of its frames the same as the others.
+With 1000 frames that takes a quarter of an hour on two cores. The frames are those of the built-in recording over and over; the
+configurations two placements times two clocks times two SDRAM timings. Each way runs in a process of its own, with as many
+workers. CPU seconds are those of all processes together: they say what it costs on a machine that is busy with other things, too.
 """
 
 from __future__ import annotations
@@ -43,7 +40,6 @@ from bfsim.sweeping.sweep import Planned, Sweep, Workers
 from bfsim.sweeping.workers import Pool
 
 PERIOD_NS = 40_000_000
-WHOLE = 1000
 Figures = dict[str, float]
 COLUMNS = {
     "s": "whole_s",
@@ -52,7 +48,6 @@ COLUMNS = {
     "CPU s": "cpu_s",
     "MB a worker": "largest_worker_mb",
 }
-GROWING = ("whole_s", "runs_s", "cpu_s")
 FILE = """\
 base.recording = "long.mcap"
 [axes]
@@ -135,7 +130,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--frames", type=int, nargs="+", default=[10, 30], metavar="N")
+    parser.add_argument("--frames", type=int, default=1000, metavar="N")
     parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--in", dest="folder", type=Path, help=argparse.SUPPRESS)
@@ -144,23 +139,11 @@ def main() -> None:
     if given.way:
         sys.stdout.write(json.dumps(sweep_in(given.folder, given.way, given.workers)))
         return
-    found = {frames: measured_all(frames, given.workers) for frames in given.frames}
-    if len(found) == 2:
-        found[WHOLE] = {way: on_line(found, way) for way in WAYS}
+    found = measured_all(given.frames, given.workers)
     if given.json:
-        print(json.dumps({"workers": given.workers, "frames": found}, indent=2))
-        return
-    for frames, ways in found.items():
-        how = "" if frames in given.frames else " (on the line through the others)"
-        print_table(f"{frames} frames x 8 configurations, {given.workers} workers{how}", ways)
-
-
-def on_line(found: Mapping[int, Mapping[str, Figures]], way: str) -> Figures:
-    """Return what grows with the frames, of a way for WHOLE of them, on the straight line through two shorter recordings."""
-    (few, at_few), (many, at_many) = ((frames, ways[way]) for frames, ways in found.items())
-    return {
-        name: at_few[name] + (at_many[name] - at_few[name]) * (WHOLE - few) / (many - few) for name in GROWING
-    }
+        print(json.dumps({"workers": given.workers, "frames": given.frames, "ways": found}, indent=2))
+    else:
+        print_table(f"{given.frames} frames x 8 configurations, {given.workers} workers", found)
 
 
 def measured_all(frames: int, workers: int) -> dict[str, Figures]:
@@ -176,7 +159,7 @@ def print_table(title: str, ways: Mapping[str, Figures]) -> None:
     for head in ("way", *COLUMNS):
         table.add_column(head, justify="left" if head == "way" else "right")
     for way, each in ways.items():
-        table.add_row(way, *(f"{each[name]:.1f}" if name in each else "" for name in COLUMNS.values()))
+        table.add_row(way, *(f"{each[name]:.1f}" for name in COLUMNS.values()))
     Console().print(table)
 
 
