@@ -67,7 +67,7 @@ class Rule(StrEnum):
     )
     PARALLEL_COUNTS = "bits that are counted in parallel are counted by an instruction"
     SPILLED_RANGES = "what is reloaded is used least for the places at which it is in the way"
-    FINAL_VALUES = "a counter that is wanted behind its loop is what it was compared with"
+    FINAL_VALUES = "a counter that is wanted behind its loop is computed there, of how often that iterates"
     PARTIAL_REDUNDANCIES = (
         "an operation that changes nothing on one way to it is done on the others alone, with a branch"
     )

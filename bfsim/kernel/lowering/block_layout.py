@@ -20,8 +20,9 @@ from bfsim.kernel.lowering.traces import Edge, Graph, Layout, laid_out
 class BlockLayout:
     """Positions of the blocks of one routine.
 
-    `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge. `nbytes`: of the
-    code of a block or an edge. `counted`: the ways back of counted loops, which are jumps.
+    `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge, `alike` of an edge the
+    first one that leads to the same block with the same copies: they are one block. `nbytes`: of the code of a block or an edge.
+    `counted`: the ways back of counted loops, which are jumps.
     `threaded`: where edges lead whose jumps are threaded.
     """
 
@@ -31,12 +32,13 @@ class BlockLayout:
         likelihood: Likelihood,
         skipped: frozenset[str],
         copies: dict[tuple[str, str], list[Charge]],
+        alike: Mapping[tuple[str, str], tuple[str, str]],
         nbytes: Callable[[str], int],
         counted: frozenset[tuple[str, str]],
         threaded: Mapping[tuple[str, str], str],
     ) -> None:
         self.flow, self.likelihood, self.skipped, self.copies = flow, likelihood, skipped, copies
-        self.threaded = threaded
+        self.alike, self.threaded = alike, threaded
         self.names = [*self._named(copies)]
         layout = self._laid_out(nbytes, counted)
         self.order, self.copied = layout.order, layout.copied
@@ -46,7 +48,7 @@ class BlockLayout:
         """Blocks with code, in the order of the source; an edge's copies right before where it leads."""
         names = []
         for label in self.flow.order:
-            names += [edge_name(edge) for edge in copies if edge[1] == label]
+            names += [edge_name(edge) for edge in copies if edge[1] == label and self.alike[edge] == edge]
             if label not in self.skipped:
                 names.append(label)
         return names
@@ -58,7 +60,9 @@ class BlockLayout:
         found = []
         for way in self.flow.blocks[name].successors:
             own = (name, way) in self.copies
-            found.append(edge_name((name, way)) if own else self.landing(self.threaded.get((name, way), way)))
+            found.append(
+                self._copied(name, way) if own else self.landing(self.threaded.get((name, way), way))
+            )
         return tuple(found)
 
     def landing(self, label: str) -> str:
@@ -113,8 +117,12 @@ class BlockLayout:
     def _frequency(self, name: str) -> float:
         if name in self.flow.blocks:
             return self.likelihood.frequency[name]
-        label, way = edge_of(name)
-        return self.likelihood.frequency[label] * self.likelihood.taken[label, way]
+        edges = (edge for edge in self.copies if self.alike[edge] == edge_of(name))
+        return sum(self.likelihood.frequency[edge[0]] * self.likelihood.taken[edge] for edge in edges)
+
+    def _copied(self, label: str, way: str) -> str:
+        """Name of the copies on an edge."""
+        return edge_name(self.alike[label, way])
 
     def falls(self, name: str, target: str) -> bool:
         """Whether `target`, or a copy of it, follows `name` in the code."""
@@ -145,17 +153,16 @@ class BlockLayout:
 
     def on(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         """Return the cost of going from the end of `label` to the block `target`, its edge's copies included."""
-        edge = edge_name((label, target))
         if (label, target) not in self.copies:
             return self.jump(label, self.landing(self.threaded.get((label, target), target)), line)
-        return [*self.jump(label, edge, line), *self._behind(label, target, line)]
+        return [*self.jump(label, self._copied(label, target), line), *self._behind(label, target, line)]
 
     def _behind(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         if (label, target) not in self.copies:
             return []
         return [
             *self.copies[label, target],
-            *self.jump(edge_name((label, target)), self.landing(target), line),
+            *self.jump(self._copied(label, target), self.landing(target), line),
         ]
 
     def sides(self, label: str, line: SourceLine) -> tuple[list[Charge], list[Charge]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine, is_number
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.demanded_values import DemandedValues
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
@@ -71,25 +71,39 @@ class Context:
         """Calls that are jumps, by the labels of their blocks."""
         return tail_calls(self.flow, self.arguments, len(self.parameters()), self.fills)
 
-    @cached_property
-    def _conversion_by_phi(self) -> dict[str, ConvertedIf]:
-        return {
-            conversion.phi.result or "": conversion for conversion in self.if_conversion.by_label.values()
-        }
+    def is_kept(self, block: BasicBlock) -> bool:
+        """Whether the condition at the end of a block was computed before the loop: a register keeps it, and CC gets it back."""
+        if block.terminator.opcode != "br" or not block.terminator.operands:
+            return False
+        condition = block.terminator.operands[0]
+        moved = self.code_motion.of.get(condition, block.label) != block.label
+        tested = self.flow.innermost(block.label)
+        hoisted = moved and tested is not None and self.code_motion.is_invariant(condition, tested)
+        return (
+            hoisted and self.profile.applies(Rule.GUARDS) and block.label not in self.if_conversion.by_label
+        )
 
-    def conversion_of(self, phi: Instruction) -> ConvertedIf | None:
-        """The branchless `if` that computes a phi."""
-        return self._conversion_by_phi.get(phi.result or "")
+    @cached_property
+    def _conversions_by_phi(self) -> dict[str, list[ConvertedIf]]:
+        found: dict[str, list[ConvertedIf]] = {}
+        for conversion in self.if_conversion.by_label.values():
+            found.setdefault(conversion.phi.result or "", []).append(conversion)
+        return found
+
+    def conversions_of(self, phi: Instruction) -> list[ConvertedIf]:
+        """The branchless `if`s that compute a phi, each on ways of its own."""
+        return self._conversions_by_phi.get(phi.result or "", [])
 
     def others(self, phi: Instruction) -> list[tuple[str, str]]:
-        """Arms of a phi that come from elsewhere than from the branchless `if` that computes it."""
-        conversion = self.conversion_of(phi)
-        own = {conversion.label, *conversion.arms} if conversion else set()
+        """Arms of a phi that come from elsewhere than from a branchless `if` that computes it."""
+        own = {label for each in self.conversions_of(phi) for label in (each.label, *each.arms)}
         return [(value, label) for value, label in self.arms(phi) if label not in own]
 
-    def converted(self, phi: Instruction) -> str:
+    def converted(self, conversion: ConvertedIf) -> str:
         """Name of what a branchless `if` computes: a value of its own where other ways lead to the phi as well."""
-        return f"{phi.result}.converted" if self.others(phi) else phi.result or ""
+        phi = conversion.phi
+        is_alone = not self.others(phi) and len(self.conversions_of(phi)) == 1
+        return phi.result or "" if is_alone else f"{phi.result}.converted.{conversion.label}"
 
     def is_alias(self, each: Instruction) -> bool:
         """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""

@@ -12,10 +12,13 @@ from bfsim.kernel.rules import Rule
 
 
 class HardwareLoops:
-    """Those of one routine, by their headers in `all`."""
+    """Those of one routine, by their headers in `all`. `copied`: blocks that stand in the code more than once."""
 
-    def __init__(self, context: Context, code: MachineCode, allocation: Allocation) -> None:
+    def __init__(
+        self, context: Context, code: MachineCode, allocation: Allocation, copied: frozenset[str]
+    ) -> None:
         self.context, self.flow, self.code, self.allocation = context, context.flow, code, allocation
+        self.copied = copied
         self.all = {loop.header for loop in self.flow.loops if self._is_one(loop)}
 
     def _is_one(self, loop: Loop) -> bool:
@@ -25,6 +28,8 @@ class HardwareLoops:
         if self.flow.is_split(loop):
             return False
         end = self.flow.ending(loop)
+        if end in self.copied:
+            return False  # its copies end loops of their own, and all count with one register ["uses iterator" in hw-doloop.cc]
         if end != loop.latch and not self._begins_behind_end(loop):
             return False
         in_front = self.context.profile.applies(Rule.COPIES_IN_FRONT) and not self._is_one_block(loop)

@@ -123,10 +123,28 @@ class Moves:
         return not taken_over and not any(phi in self.webs.live.into[way] for way in outside)
 
     def _on_edge(self, label: str, home: str, instruction: MachineInstruction) -> None:
-        if len(set(self.flow.blocks[label].successors)) == 1:
+        if len(set(self.flow.blocks[label].successors)) == 1 or self._is_loaded_early(
+            label, home, instruction
+        ):
             self.code.add(label, instruction)
         else:
             self.on_edges.setdefault((label, home), []).append(instruction)
+
+    def _is_loaded_early(self, label: str, home: str, instruction: MachineInstruction) -> bool:
+        """Whether a constant that one side of a test wants is loaded before its branch [find_if_case_1 in ifcvt.cc].
+
+        So it is where the condition was computed before the loop; else that side is too seldom come to.
+        """
+        others = (way for way in self.flow.blocks[label].successors if way != home)
+        return (
+            instruction.op in (Op.IMM, Op.MOVE)
+            and self.webs.context.is_kept(self.flow.blocks[label])
+            and home not in self.flow.dominators[label]
+            and all(
+                self.find(instruction.result or "") not in map(self.find, self.webs.live.into[way])
+                for way in others
+            )
+        )
 
     def _overwrites(self) -> None:
         """Two-operand instructions destroy an operand: one that is still needed is copied first."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, is_number
+from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, arms_of, is_number
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
@@ -52,11 +52,13 @@ class _OptimisedLowering:
             self.context.likelihood,
             frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys()),
             copies,
+            dict(self._alike()),
             self._nbytes,
             frozenset(self._way_back(loop) for loop in self._counted()),
             dict(self._threaded()),
         )
-        self.hardware = HardwareLoops(self.context, self.code, self.allocation)
+        copied = frozenset(target for _, target in self.layout.copied)
+        self.hardware = HardwareLoops(self.context, self.code, self.allocation, copied)
 
     def _nbytes(self, name: str) -> int:
         """Code bytes of a block with its branch or return, or of the copies on an edge."""
@@ -72,6 +74,22 @@ class _OptimisedLowering:
             return nbytes
         branches = len(set(block.successors)) > 1
         return nbytes + (COSTS[Op.BRANCH_TAKEN].nbytes if branches else 0)
+
+    def _alike(self) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
+        """Edges with copies, and the first one that leads to the same block with the same ones [try_crossjump_to_edge in cfgcleanup.cc]."""
+        first: dict[object, tuple[str, str]] = {}
+        for edge, steps in self.allocation.on_edges.items():
+            label, home = edge
+            phis = (each for each in self.flow.blocks[home].instructions if each.opcode == "phi")
+            values = (
+                (self._register(each.result or ""), self._register(arms_of(each)[label])) for each in phis
+            )
+            copied = frozenset(each for each in values if each[0] != each[1])
+            yield edge, first.setdefault((home, copied, tuple(each.op for each in steps)), edge)
+
+    def _register(self, value: str) -> str:
+        name = self.context.name(value)
+        return self.allocation.register.get(name, name)
 
     def _threaded(self) -> Iterator[tuple[tuple[str, str], str]]:
         """Edges from blocks that set a flag which ends their loop, and where that leads."""
@@ -281,7 +299,7 @@ class _OptimisedLowering:
         elif self.context.jump_threading.decides(block.terminator) or self.flow.is_overflow_guard(block):
             sides = tuple(self.layout.on(label, way, line) for way in block.successors)
         else:
-            if self._is_kept(block):
+            if self.context.is_kept(block):
                 cost.charges.append(charge(Op.CC_MOVE, line))
                 cost.nbytes += COSTS[Op.CC_MOVE].nbytes
             sides = self._branch(label, line)
@@ -299,18 +317,6 @@ class _OptimisedLowering:
                 [*copied, *(() if way == tested.inside else instead(before[1 - first], before[first]))]
             )
         return tuple(sides)
-
-    def _is_kept(self, block: BasicBlock) -> bool:
-        """Whether a condition was computed before the loop: a register keeps it, and CC gets it back."""
-        condition = block.terminator.operands[0]
-        moved = self.context.code_motion.of.get(condition, block.label) != block.label
-        tested = self.flow.innermost(block.label)
-        hoisted = moved and tested is not None and self.context.code_motion.is_invariant(condition, tested)
-        return (
-            hoisted
-            and self.profile.applies(Rule.GUARDS)
-            and block.label not in self.context.if_conversion.by_label
-        )
 
     def _branch(self, label: str, line: SourceLine) -> tuple[list[Charge], list[Charge]]:
         loop = next(

@@ -24,6 +24,7 @@ NEUTRAL = {
 COMMUTATIVE = ("add", "or", "xor", "mul", "and")
 ABSORBING = {"mul": "0", "and": "0"}
 """With these nothing else counts."""
+SHIFTS = ("shl", "lshr", "ashr")
 CASTS = ("zext", "sext", "trunc")
 SAME_IN_ALL_WIDTHS = 1 << 7
 """Numbers from 0 to before it."""
@@ -52,7 +53,7 @@ class _Redundancy:
 
 
 def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> _Redundancy | None:
-    """Return the first redundancy in a block, which is no loop's header, and not what loops are left for (`Rule.ADDED_FLAGS`).
+    """Return the first redundancy in a block, which is no loop's header, and left for by no loop with other ends (`Rule.ADDED_FLAGS`).
 
     `converted`: choices of which phiopt has made an operation, or a flag.
     """
@@ -60,7 +61,7 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
     choices = {each.result for each in block.instructions if each.opcode == "phi"} - converted
     if len(before) < 2 or not choices or any(label in flow.dominators[each] for each in before):
         return None
-    if any(_loops(flow, each) != _loops(flow, label) for each in before):
+    if any(_loops(flow, each) != _loops(flow, label) and not _is_end(flow, each, label) for each in before):
         return None
     if any(flow.blocks[each].terminator.opcode != "br" for each in before):
         return None
@@ -92,6 +93,16 @@ def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) ->
 def _loops(flow: ControlFlow, label: str) -> set[str]:
     """The loops around a block, by their headers."""
     return {loop.header for loop in flow.loops_of(label)}
+
+
+def _is_end(flow: ControlFlow, label: str, behind: str) -> bool:
+    """Whether a block is the one end of a loop in those around the block behind it."""
+    loop = flow.innermost(label)
+    return (
+        loop is not None
+        and flow.exits(loop) == [label]
+        and {each.header for each in flow.loops_of(label)} - {loop.header} == _loops(flow, behind)
+    )
 
 
 def _root(flow: ControlFlow, value: str) -> str:
@@ -140,6 +151,8 @@ def _operand_on_way(
 def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
     """Return what an operation gives without being done, None if it has to be."""
     left, right = operands
+    if left == "0" and opcode in SHIFTS:
+        return left
     if is_number(left) and is_number(right):
         return None  # another number, which takes a register there: to add it behind, as it was, is nearer to GCC's code
     sides = [(left, right), (right, left)] if opcode in COMMUTATIVE else [(left, right)]

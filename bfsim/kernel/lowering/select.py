@@ -15,7 +15,7 @@ from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.idioms import counting_ops
-from bfsim.kernel.lowering.if_conversion import ConversionKind
+from bfsim.kernel.lowering.if_conversion import ConversionKind, ConvertedIf
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.ranges import Range
@@ -66,11 +66,10 @@ class _Selector(Accesses):
     def emit(self, each: Instruction, label: str) -> None:
         """Append the operations of one instruction to the block where it is computed."""
         self.label = label
-        conversion = self.context.conversion_of(each)
         if each.opcode == "phi":
-            if conversion is not None:
+            for conversion in self.context.conversions_of(each):
                 self.label = conversion.label
-                self._converted(each)
+                self._converted(each, conversion)
             if self.context.demanded.sunk_mask(each):
                 self.append(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
             return
@@ -277,11 +276,9 @@ class _Selector(Accesses):
         uses = ((flag, DATA) for flag in flags)
         self.append(Op.COMPARE if decides else Op.ALU, each, None if decides else each.result, DATA, *uses)
 
-    def _converted(self, each: Instruction) -> None:
+    def _converted(self, each: Instruction, conversion: ConvertedIf) -> None:
         """An `if` without a branch: its operation stands in the block that tests."""
-        conversion = self.context.conversion_of(each)
-        assert conversion is not None
-        result = self.context.converted(each)
+        result = self.context.converted(conversion)
         if conversion.kind is ConversionKind.ABSOLUTE:
             self.append(Op.DSP_ALU, each, result, DATA, (conversion.operands[0], DATA))
             if self.context.demanded.is_short(conversion.operands[0]):

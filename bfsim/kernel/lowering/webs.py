@@ -34,19 +34,18 @@ class Webs:
             if block.label in self.context.replaced:
                 continue
             for each in block.instructions:
-                conversion = self.context.conversion_of(each)
+                conversions = self.context.conversions_of(each)
+                others = self.context.others(each)
+                is_one = len(conversions) == 1 and not others
                 if (
                     each.opcode == "phi"
                     and not is_merged_pointer(each)
                     and self.context.demanded.emits(each)
-                    and (conversion is None or self.context.others(each))
+                    and not is_one
                 ):
-                    arms = self.context.others(each)
                     found[each.result or ""] = [
-                        (self.context.name(value), label) for value, label in arms if value != "poison"
-                    ]
-                    if conversion is not None:
-                        found[each.result or ""].append((self.context.converted(each), conversion.label))
+                        (self.context.name(value), label) for value, label in others if value != "poison"
+                    ] + [(self.context.converted(conversion), conversion.label) for conversion in conversions]
         return found
 
     def analyse(self) -> None:
