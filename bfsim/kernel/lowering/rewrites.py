@@ -12,6 +12,7 @@ from bfsim.kernel.lowering.bit_tests import with_bit_tests
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.chosen_ranges import with_chosen_ranges
 from bfsim.kernel.lowering.counted_fills import count_fills
+from bfsim.kernel.lowering.early_loads import with_early_loads
 from bfsim.kernel.lowering.extremes import with_extremes
 from bfsim.kernel.lowering.factored_sums import factor_sums
 from bfsim.kernel.lowering.final_values import with_final_values
@@ -65,6 +66,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_preheaders,
     without_redundant_loads,
     carry_over,
+    with_early_loads,
     sink,
     hoist_loads,
     with_final_values,
@@ -82,6 +84,7 @@ SWITCHES = {
     split_loads: Rule.MERGED_LOADS,
     without_partial_redundancies: Rule.PARTIAL_REDUNDANCIES,
     without_redundant_loads: Rule.CARRIED_LOADS,
+    with_early_loads: Rule.SINKING,
     sink: Rule.SINKING,
     copy_headers: Rule.COPIED_HEADERS,
     copy_breaks: Rule.COPIED_BREAKS,

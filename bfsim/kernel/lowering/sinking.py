@@ -6,6 +6,7 @@ joined before it, so that the value can be computed there [make_forwarders_with_
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import permutations
 
@@ -172,7 +173,12 @@ class _Sinking:
         return len(self.flow.loops_of(label))
 
     def _is_written(self, load: Instruction, label: str, place: str) -> bool:
-        """Whether there is a store or a call on a way from a load to the block `place`."""
+        """Whether there is a store or a call on a way from a load to the block `place`, or on another way behind the load alone, before any other.
+
+        GCC does not ask which way a store is on ["There is no easy way to disregard defs not on the path" in tree-ssa-sink.cc].
+        """
+        if any(self._parting(each, place) == label for each in self._first_written(load, label)):
+            return True
         rows = list(self.flow.blocks[label].instructions)
         rows = rows[next(number for number, row in enumerate(rows) if row is load) :]
         between, waiting = {label, place}, list(self.flow.predecessors[place])
@@ -183,3 +189,20 @@ class _Sinking:
         for each in between - {label, place}:
             rows += self.flow.blocks[each].instructions
         return any(row.opcode == "store" or row.is_call for row in rows)
+
+    def _parting(self, one: str, other: str) -> str:
+        """The last block that the ways to two blocks share."""
+        shared = self.flow.dominators[one] & self.flow.dominators[other]
+        return max(shared, key=lambda each: len(self.flow.dominators[each]))
+
+    def _first_written(self, load: Instruction, label: str) -> Iterator[str]:
+        """Blocks behind that of a load, which lead from it alone, with the first store or call on their way."""
+        seen, waiting = {label}, list(self.flow.blocks[label].successors)
+        while waiting:
+            if (way := waiting.pop()) in seen or label not in self.flow.dominators[way]:
+                continue
+            seen.add(way)
+            if any(row.opcode == "store" or row.is_call for row in self.flow.blocks[way].instructions):
+                yield way
+            else:
+                waiting += self.flow.blocks[way].successors
