@@ -1,4 +1,4 @@
-"""Hardware loops whose ends are copied, what is known behind loops, and variables that several choices set."""
+"""Hardware loops whose ends are copied, what is known behind loops, loads before tests, and variables that several choices set."""
 
 from __future__ import annotations
 
@@ -56,6 +56,36 @@ def f(a: u8[:], o: u8[:], n: i32) -> i32:
             left -= 1
     return k
 """
+BLOCKS = """
+def f(a: u8[:], n: i32) -> i32:
+    low = 0
+    high = 0
+    at = 0
+    left = n
+    while left > 0:
+        block = left if left < 20 else 20
+        left -= block
+        while block > 0:
+            low += a[at]
+            high += low
+            at += 1
+            block -= 1
+        high = (high & 255) + (high >> 8)
+    return high + low
+"""
+RING = """
+def f(a: u8[:], o: u8[:], c: i32[:], n: i32, t: i32) -> i32:
+    head = 0
+    tail = t & 63
+    for i in range(n):
+        byte = a[i]
+        if (head + 1) & 127 == tail:
+            c[2] += 1
+        else:
+            o[head] = byte
+            head = (head + 1) & 127
+    return head
+"""
 CASES: dict[str, tuple[str, int, float]] = {
     "the end of a loop stands behind both ways to it, and counts without a hardware loop": (
         WINDOWS,
@@ -65,6 +95,8 @@ CASES: dict[str, tuple[str, int, float]] = {
     "what is 0 if a loop does not run is so before the branch round it": (ROWS, 11892, 0.04),
     "one variable is set by two choices": (STATES, 6299, 0.05),
     "where a loop has written to is computed of how often it went round": (COPIES, 6648, 0.03),
+    "of a loop whose test is sure to hold at first, too": (BLOCKS, 804, 0.02),
+    "a load is done before a test on whose other side something is stored": (RING, 6179, 0.05),
 }
 
 

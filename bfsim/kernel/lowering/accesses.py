@@ -125,12 +125,15 @@ class Accesses(Calls):
                 continue
             line = variable.line
             entering, latch = self.flow.entering(variable.loop), variable.loop.latch
-            start = MachineInstruction(Op.MOVE, line, variable.name, POINTER, ((variable.root, ANY),))
-            self.code.add(entering, start)
+            if not variable.start:
+                start = MachineInstruction(Op.MOVE, line, variable.name, POINTER, ((variable.root, ANY),))
+                self.code.add(entering, start)
+            total = self.context.name(variable.root)
             for name, times in variable.start:
                 op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
-                terms = ((variable.name, POINTER), (self.context.name(name), POINTER))
+                terms = ((total, POINTER), (self.context.name(name), POINTER))
                 self.code.add(entering, MachineInstruction(op, line, variable.name, POINTER, terms))
+                total = variable.name
             if variable.offset_apart:
                 self.code.add(
                     entering,

@@ -124,12 +124,10 @@ class _FinalValues:
         left = _atom(bound).plus(_atom(counter.start), -1).plus(Affine(constant=-counter.more))
         iterations = Affine(constant=1).plus(left, counter.step)
         by_order = relation != "ne" and STEPS.get(relation[1:]) == counter.step
-        return (
-            iterations if relation == "ne" or (by_order and self._is_guarded(iterations, relation)) else None
-        )
+        return iterations if relation == "ne" or (by_order and self._is_guarded(iterations, test)) else None
 
-    def _is_guarded(self, iterations: Affine, relation: str) -> bool:
-        """Whether the loop is only come to if so many iterations are at least one."""
+    def _is_guarded(self, iterations: Affine, last: Instruction) -> bool:
+        """Whether the loop is only come to if so many iterations are at least one: its last test was made before, or is known to hold there."""
         if not iterations.terms:
             return iterations.constant >= 1
         for label in self.flow.dominators[self.loop.header] - self.loop.blocks:
@@ -144,10 +142,16 @@ class _FinalValues:
                     left, right = test.operands[:2]
                     if holds == "ne" and right == "0" and self._is_extended(iterations, left):
                         return True
-                    least = _least(holds, left, right, relation[0])
+                    least = _least(holds, left, right, predicate(last)[0])
                     if least is not None and not (rest := iterations.plus(least, -1)).terms:
                         return rest.constant >= 0
-        return False
+        return self._is_first(last)
+
+    def _is_first(self, last: Instruction) -> bool:
+        """Whether the source makes the last test of the loop at its top: LLVM leaves it out before a loop where it is sure to hold."""
+        rows = (each for label in self.loop.blocks for each in self.flow.blocks[label].instructions)
+        lines = [each.line.line for each in rows if each.line._replace(line=0) == last.line._replace(line=0)]
+        return min(lines) == last.line.line < max(lines)
 
     def _is_extended(self, iterations: Affine, narrow: str) -> bool:
         """Whether the number of iterations is a narrow value, which is no less than none."""

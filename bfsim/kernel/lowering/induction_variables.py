@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine, arms_of
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine, arms_of, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.profile import CompilerProfile
@@ -26,7 +26,7 @@ class InductionVariable:
     accesses: list[tuple[str, Instruction, int]] = field(default_factory=list)
     """(block, access, offset in bytes)"""
     start: tuple[tuple[str, int], ...] = ()
-    """What is added to the array's address where the loop starts, with factors: values computed from data."""
+    """What is added to the array's address where the loop starts, with factors: values that the loop around does not step along."""
     steps_free: bool = False
     offset_apart: bool = False
     neighbour: InductionVariable | None = None
@@ -148,22 +148,17 @@ class InductionVariables:
         return next(iter((*arrays, *once)), affine.terms[0][0])
 
     def _start(self, affine: Affine, root: str, loop: Loop) -> tuple[tuple[str, int], ...]:
-        """The terms of a first address that are computed from data: a counter of the loop around would step them along."""
+        """The terms of a first address that the loop around does not step along."""
         around = self.flow.around(loop)
         if around is None:
             return ()
         terms = [(self._entering_value(name, loop), times) for name, times in affine.terms if name != root]
-        return tuple((name, times) for name, times in terms if self._is_loaded(name, around))
-
-    def _is_loaded(self, name: str, around: Loop, depth: int = 4) -> bool:
-        """Whether a value is computed from one that the loop around loads in each iteration."""
-        each = self.flow.instruction(name)
-        if each is None or depth == 0 or self.flow.defined[name][0] not in around.blocks:
-            return False
-        if each.opcode == "load":
-            return not self.evolution.code_motion.is_invariant(name, around)
-        return each.opcode != "phi" and any(
-            self._is_loaded(value, around, depth - 1) for value in each.operands
+        return tuple(
+            (name, times)
+            for name, times in terms
+            if not is_number(name)
+            and self.evolution.code_motion.is_invariant(name, loop)
+            and self.evolution.increment(name, around) is None
         )
 
     def _entering_value(self, name: str, loop: Loop) -> str:
