@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import cached_property
 
-from bfsim.kernel.ir_text import NO_HINT, BasicBlock, predicate
+from bfsim.kernel.ir_text import NO_HINT, BasicBlock, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.counter_comparisons import CounterComparisons
 from bfsim.kernel.lowering.frequencies import frequencies
@@ -139,8 +139,14 @@ class Likelihood:
         return max((1 - LOOP_EXIT) / max(exits, 1), LEAST_EXIT)
 
     def _entered(self, way: str, other: str, block: BasicBlock) -> Loop | None:
-        """The loop that one side of a test right before it enters, while the other one goes where the loop ends."""
+        """The loop that one side of a test right before it enters, while the other one goes where the loop ends.
+
+        A loop from one number to another has no test before it: that is another one's.
+        """
         for loop in self.flow.loops:
+            fixed = is_number(self.evolution.counter_start(loop) or "")
+            if fixed and self.evolution.iterations(loop) is not None:
+                continue
             if loop.header in self._onwards(way) and block.label not in loop.blocks:
                 ends = {
                     after
