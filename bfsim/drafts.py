@@ -22,8 +22,6 @@ _PREFIX, _SUFFIX = ".bfsim-", ".draft"
 _NAME = re.compile(re.escape(_PREFIX) + r"\w{8}" + re.escape(_SUFFIX))
 """Only such names, which nobody gives to anything else, are swept."""
 
-_open: set[Path] = set()
-
 
 @contextmanager
 def draft_folder(where: Path) -> Iterator[Path]:
@@ -36,12 +34,10 @@ def draft_folder(where: Path) -> Iterator[Path]:
     lock = _lock(unnamed)
     folder = unnamed.with_name(unnamed.name + _SUFFIX)
     unnamed.rename(folder)  # only now, with its lock on it, could it be swept
-    _open.add(folder)
     try:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-        _open.discard(folder)
         if lock is not None:
             os.close(lock)
 
@@ -54,12 +50,6 @@ def sweep(where: Path) -> None:
             if lock is not None:
                 shutil.rmtree(folder, ignore_errors=True)
                 os.close(lock)
-
-
-def discard_all() -> None:
-    """Remove the drafts of this process, which ends at once and comes to the end of no `with` block."""
-    for folder in [*_open]:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _lock(folder: Path) -> int | None:

@@ -6,22 +6,15 @@ signal it was.
 
 from __future__ import annotations
 
-import os
 import signal
-import socket
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Event, Thread, Timer, current_thread, get_ident, main_thread
+from threading import Event, Timer, current_thread, main_thread
 from types import FrameType
-
-from bfsim.drafts import discard_all
 
 BY_SIGNAL = 128
 """Exit codes from here on say which signal ended a command, as in a shell."""
-
-DEAF_S = 2.0
-"""Calls of kernels take milliseconds: one that a signal has not ended by then does not end at all."""
 
 AGAIN_S = 0.01
 """A callback is over by then."""
@@ -89,38 +82,3 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(number, handler)
     if waiting:
         handlers[waiting[0]](waiting[0], None)
-
-
-@contextmanager
-def ending_deaf_kernels(line_in: Callable[[FrameType], str]) -> Iterator[None]:
-    """Let signals end Python from inside a kernel that loops for ever: machine code, which hears of no exception.
-
-    `line_in` says which line of the firmware has called what runs in a frame of Python.
-    """
-    heard_here = {int(number) for number in _SIGNALS if signal.getsignal(number) is _hear}
-    if not heard_here or current_thread() is not main_thread():
-        yield  # signals are ignored, or another's: in the background, or in a debugger
-        return
-
-    def watch() -> None:
-        while number := pressed.recv(1):  # Python's own part of a handler writes the signal's number
-            if number[0] in heard_here and not _heard.wait(DEAF_S):
-                discard_all()
-                line = line_in(sys._current_frames()[main])  # noqa: SLF001  # of another thread
-                told = f"bfsim: interrupted in a kernel that does not end ({line})\n"
-                os.write(2, told.encode(errors="replace"))
-                os._exit(BY_SIGNAL + number[0])
-
-    main = get_ident()
-    pressed, press = socket.socketpair()
-    press.settimeout(0)
-    watcher = Thread(target=watch, daemon=True)
-    watcher.start()
-    signal.set_wakeup_fd(press.fileno())
-    try:
-        yield
-    finally:
-        signal.set_wakeup_fd(-1)
-        press.close()
-        watcher.join()
-        pressed.close()

@@ -252,6 +252,15 @@ def cpu_ticks(pid: int) -> int:
     return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11])
 
 
+def wait_for_the_kernel(process: subprocess.Popen[str], folder: Path) -> None:
+    """Return when the kernel that does not end has surely begun."""
+    while process.poll() is None and not (folder / "begun").exists():
+        time.sleep(0.05)
+    begun = cpu_ticks(process.pid)
+    while process.poll() is None and cpu_ticks(process.pid) < begun + SURELY_IN_THE_KERNEL_TICKS:
+        time.sleep(0.05)
+
+
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
 @pytest.mark.parametrize("number", [signal.SIGINT, *exhaustive(signal.SIGTERM)])
 @pytest.mark.parametrize("code", ["spin", OBJECT_CODE])
@@ -260,16 +269,51 @@ def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal
     (tmp_path / "endless.py").write_text(f"{ENDLESS}\nspin = {code}\n")
     command = [sys.executable, "-m", "bfsim", "run", "--firmware", "endless:fw"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
-        while process.poll() is None and not (tmp_path / "begun").exists():
-            time.sleep(0.05)
-        begun = cpu_ticks(process.pid)
-        while process.poll() is None and cpu_ticks(process.pid) < begun + SURELY_IN_THE_KERNEL_TICKS:
-            time.sleep(0.05)
+        wait_for_the_kernel(process, tmp_path)
         process.send_signal(number)
         _, err = process.communicate()
     line = ENDLESS.splitlines().index("        yield core.run(spin, 1)") + 1
-    told = f"bfsim: interrupted in a kernel that does not end ({tmp_path}/endless.py:{line})\n"
+    told = f"bfsim: interrupted before the first frame was done, in a kernel that does not end ({tmp_path}/endless.py:{line})\n"
     assert (process.returncode, err) == (128 + number, told)
+
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from endless import fw, spin
+from bfsim.run import simulate
+
+try:
+    if sys.argv[1] == "call":
+        spin(0)
+        Path("begun").touch()
+        spin(1)
+    else:
+        run = simulate(firmware=fw)
+        print(run.interrupted, run.interrupted_at)
+except KeyboardInterrupt as error:
+    print(error)
+print(spin(0))
+"""
+"""A call, or a run, that Ctrl-C ends; then the kernel is called once more."""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
+@pytest.mark.parametrize("code", ["spin", OBJECT_CODE])
+@pytest.mark.parametrize("what", ["call", "run"])
+def test_ctrl_c_ends_a_kernel_that_does_not_end_in_a_script(tmp_path: Path, code: str, what: str) -> None:
+    """Python's own handler had its turn when the kernel was over: never."""
+    (tmp_path / "endless.py").write_text(f"{ENDLESS}\nspin = {code}\n")
+    (tmp_path / "script.py").write_text(SCRIPT)
+    command = [sys.executable, "script.py", what]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as process:
+        wait_for_the_kernel(process, tmp_path)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+    line = ENDLESS.splitlines().index("        yield core.run(spin, 1)") + 1
+    told = {"call": "", "run": "True , "}[what]
+    place = {"call": "", "run": f" ({tmp_path}/endless.py:{line})"}[what]
+    assert out == f"{told}in a kernel that does not end{place}\n0\n"
 
 
 def write_recording(path: Path, width: int = 16, height: int = 8) -> Path:

@@ -18,7 +18,7 @@ MAY_IMPORT = {
     "errors": set(),
     "drafts": set(),
     "store": {"errors"},
-    "signals": {"drafts"},
+    "signals": set(),
     "garbage": set(),
     "reading_ahead": set(),
     "once": set(),

@@ -17,6 +17,7 @@ from bfsim import machine_code
 from bfsim.blackfin.address_space import SPAN_BYTES
 from bfsim.blackfin.event import Event
 from bfsim.machine_code.native_code import native_code
+from bfsim.machine_code.signal_action import SA_NODEFER, SA_SIGINFO, SignalAction
 
 RUNNER = f"""
 @bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16
@@ -89,19 +90,6 @@ define i32 @bfsim_run(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
 }}
 """
 """`si_addr` is at byte 16 of Linux's `siginfo_t` on every 64-bit processor."""
-SA_SIGINFO, SA_NODEFER = 4, 0x40000000
-"""Linux: the handler gets the address; the signal is not blocked while it runs, for it never returns."""
-
-
-class _Action(ctypes.Structure):
-    """The C library's `struct sigaction` on Linux."""
-
-    _fields_ = (
-        ("handler", ctypes.c_void_p),
-        ("mask", ctypes.c_uint64 * 16),
-        ("flags", ctypes.c_int),
-        ("restorer", ctypes.c_void_p),
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +109,7 @@ def runner() -> Runner:
     """Return what runs native code."""
     machine_code.add(native_code(RUNNER))
     for each in ("run", "always"):
-        action = _Action.from_address(machine_code.address_of(f"bfsim_{each}_action"))
+        action = SignalAction.from_address(machine_code.address_of(f"bfsim_{each}_action"))
         action.handler = machine_code.address_of(f"bfsim_{each}_handler")
         action.flags = SA_SIGINFO | SA_NODEFER
     kind = ctypes.CFUNCTYPE(ctypes.c_int32, *(4 * [ctypes.c_void_p]))

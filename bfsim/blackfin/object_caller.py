@@ -127,6 +127,8 @@ define i64 @{ENTRY}(ptr %block, ptr %handed, ptr %cost) {{
 {loop("brought", "%parts", _copy("brought", back=False), "start")}\
 {_registers()}\
 {START}\
+  %nbytes = mul i64 %counted, 8
+  call void @llvm.memset.p0.i64(ptr %counts, i8 0, i64 %nbytes, i1 false)
   %event = call i32 %run(ptr %code, ptr %memory, ptr %state, ptr %counts)
   %pc = load i64, ptr %set.PC
   %is_outside = icmp eq i64 %pc, {OUTSIDE}
@@ -145,8 +147,6 @@ stopped:
 fetch:
 {loop("fetched", "%parts", _copy("fetched", back=True), "add_up")}\
 {loop("total", "%totalled", ADD_UP, "done")}\
-  %nbytes = mul i64 %counted, 8
-  call void @llvm.memset.p0.i64(ptr %counts, i8 0, i64 %nbytes, i1 false)
 {LEAVE}\
 }}
 """

@@ -27,6 +27,7 @@ from bfsim.kernel.reading import read_kernel
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import Work, is_single
 from bfsim.machine_code import Effort
+from bfsim.machine_code.endless import ended_by_signals
 
 if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
@@ -331,7 +332,9 @@ class Kernel:
 
     def _run(self, arguments: Sequence[Any], code: CompiledKernel | CompiledObject) -> Work:
         arrays = [arguments[each] for each in self.array_positions]
-        return self.prepare(code, arrays, code.new_totals()).run(*arguments)
+        call = self.prepare(code, arrays, code.new_totals())
+        with ended_by_signals():
+            return call.run(*arguments)
 
     def _own(self, profile: CompilerProfile) -> CompiledObject | None:
         """Return the code that the compiler of a profile makes of it, if that is what runs."""

@@ -38,7 +38,7 @@ from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.finished_frames import FinishedFrames
-from bfsim.machine.firmware_lines import line_at_work, running_line
+from bfsim.machine.firmware_lines import line_at_work
 from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loop import MainLoop
@@ -51,7 +51,7 @@ from bfsim.machine.program import Firmware, View
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
-from bfsim.signals import ending_deaf_kernels
+from bfsim.machine_code.endless import ended_by_signals
 from bfsim.trace import BoardRecord, FrameRecord, Later
 
 
@@ -157,7 +157,7 @@ class Board:
         loops = MainLoops(self._env, self.main_loops, self._shared.turns, announcer)
         interrupted, where = False, ""
         try:
-            with rarely_collected(), ending_deaf_kernels(running_line):
+            with rarely_collected(), ended_by_signals():
                 loops.play()
                 loops.check_end(len(frames.records), has_more=capture.has_more)
                 for each in self._peripherals.values():

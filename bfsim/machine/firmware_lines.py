@@ -10,7 +10,6 @@ import traceback
 from functools import cache
 from itertools import takewhile
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -35,9 +34,9 @@ def _is_firmware(file: str) -> bool:
     return not NOT_FIRMWARE.match(file)
 
 
-def running_line(of: FrameType | None = None) -> str:
-    """Return the innermost line of the firmware that has called here, or what runs in a frame of Python, such as firmware/core_a.py:41."""
-    frame = of or sys._getframe()  # noqa: SLF001  # the way to one's callers
+def running_line() -> str:
+    """Return the innermost line of the firmware that has called here, such as firmware/core_a.py:41."""
+    frame = sys._getframe()  # noqa: SLF001  # the way to one's callers
     while frame.f_back is not None and not _is_firmware(frame.f_code.co_filename):
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
@@ -61,12 +60,16 @@ def line_at(task: Any) -> str:
 
 
 def line_at_work(interruption: KeyboardInterrupt) -> str:
-    """Return the line of the firmware that was at work when a run was interrupted, as ` (file:line)`; nothing if the simulator itself was."""
+    """Return the line of the firmware that was at work when a run was interrupted, as ` (file:line)`; nothing if the simulator itself was.
+
+    Before it stands what the interruption says of itself, as that a kernel does not end.
+    """
     calls = traceback.extract_tb(interruption.__traceback__)
     tasks = [number for number, each in enumerate(calls) if each.filename == TASKS and each.name == "perform"]
     called = calls[tasks[-1] + 1 :] if tasks else []
     own = list(takewhile(lambda each: _is_firmware(each.filename), called))
-    return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
+    said = f", {interruption}" if str(interruption) else ""
+    return f"{said} ({own[-1].filename}:{own[-1].lineno})" if own else said
 
 
 def line_of(error: BaseException) -> str:

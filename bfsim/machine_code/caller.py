@@ -6,11 +6,13 @@ their positions among Python's arguments, then the words where they are put, the
 
 from __future__ import annotations
 
+import ctypes
 from enum import IntEnum
 from functools import cache
 
 from bfsim import machine_code
-from bfsim.machine_code.left import ACCESSES, NO_ROOM, UNFIT, VALUE, Result
+from bfsim.machine_code.endless import CALL, add_leavable_calls
+from bfsim.machine_code.left import ACCESSES, INTERRUPTED, NO_ROOM, UNFIT, VALUE, Result
 from bfsim.machine_code.native_code import native_code
 
 (
@@ -157,7 +159,10 @@ leave:
   call void @Py_IncRef(ptr %left)
   ret ptr %left
 """
+INTERRUPTED_IN = "in a kernel that does not end"
 MODULE = f"""
+@bfsim_interruption = global ptr null
+@bfsim_interrupted = internal constant [{len(INTERRUPTED_IN) + 1} x i8] c"{INTERRUPTED_IN}\\00"
 declare ptr @PyBytes_AsString(ptr)
 declare i64 @PyLong_AsLongLong(ptr)
 declare ptr @PyLong_FromLongLong(i64)
@@ -171,6 +176,10 @@ declare ptr @PyErr_Occurred()
 declare void @PyErr_Clear()
 declare ptr @PyEval_SaveThread()
 declare void @PyEval_RestoreThread(ptr)
+declare i32 @PyErr_CheckSignals()
+declare i32 @PyErr_ExceptionMatches(ptr)
+declare void @PyErr_SetString(ptr, ptr)
+declare i64 @{CALL}(ptr, ptr, ptr, ptr)
 declare double @llvm.fabs.f64(double)
 declare float @llvm.fabs.f32(float)
 
@@ -188,15 +197,32 @@ define ptr @{ENTRY}(ptr %block, ptr %arguments, i64 %count) {{
 take:
 {loop("argument", "%taken", TAKE, "run")}\
   %thread = call ptr @PyEval_SaveThread()
-  %status = call i64 %called(ptr %data, ptr %handed, ptr %cost)
+  %status = call i64 @{CALL}(ptr %called, ptr %data, ptr %handed, ptr %cost)
   call void @PyEval_RestoreThread(ptr %thread)
   %has.failed = icmp slt i64 %status, 0
-  br i1 %has.failed, label %fail, label %done
+  br i1 %has.failed, label %ask_why, label %done
+ask_why:
+  %was.interrupted = icmp eq i64 %status, {INTERRUPTED}
+  br i1 %was.interrupted, label %interrupted, label %fail
+interrupted:
+  %interruption = load ptr, ptr @bfsim_interruption
+  %heard = call i32 @PyErr_CheckSignals()
+  %is.heard = icmp ne i32 %heard, 0
+  br i1 %is.heard, label %has_raised, label %say
+has_raised:
+  %as.usual = call i32 @PyErr_ExceptionMatches(ptr %interruption)
+  %is.usual = icmp ne i32 %as.usual, 0
+  br i1 %is.usual, label %say, label %out
+say:
+  call void @PyErr_SetString(ptr %interruption, ptr @bfsim_interrupted)
+  br label %out
+out:
+  ret ptr null
 unfit:
   call void @PyErr_Clear()
   br label %fail
 fail:
-  %failure = phi i64 [ %status, %run ], [ {UNFIT}, %unfit ], [ {NO_ROOM}, %count_logged ]
+  %failure = phi i64 [ %status, %ask_why ], [ {UNFIT}, %unfit ], [ {NO_ROOM}, %count_logged ]
   store i64 %failure, ptr %cost
   %raised = call ptr @PyObject_Vectorcall(ptr %refuse, ptr %arguments, i64 %count, ptr null)
   ret ptr %raised
@@ -207,12 +233,16 @@ done:
 """
 """It has CALLED leave the numbers in COST and returns LEFT, or what REFUSE returns or raises.
 
-Meanwhile other threads have Python, such as the one that ends a command whose kernel never ends (`signals`).
+Meanwhile other threads have Python, such as the one by which a signal ends a kernel that never ends (`endless`): then it raises what
+Python's handler of the signal raises, and says where if that is KeyboardInterrupt.
 """
 
 
 @cache
 def caller() -> int:
     """Return the address of the function that Python calls. It calls ENTRY, with the words themselves in place of `self`."""
+    add_leavable_calls()
     machine_code.add(native_code(MODULE))
+    interruption = ctypes.c_int64.from_address(machine_code.address_of("bfsim_interruption"))
+    interruption.value = id(KeyboardInterrupt)
     return machine_code.address_of(BOUND)

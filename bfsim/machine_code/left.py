@@ -13,6 +13,8 @@ UNFIT, NO_ROOM = -1, -2
 """Left in place of cycles: an argument does not fit, and nothing was run; there are more accesses than can be logged."""
 FAILED = -3
 """Less the number of an event, left where that ended the code before it returned."""
+INTERRUPTED = -1000
+"""Returned by a call that a signal has ended (`endless`)."""
 
 
 class Result(IntEnum):
