@@ -36,6 +36,11 @@ SAVED_RETS = 4
 """[PRM] How far from FP LINK saves RETS."""
 LOOP_ENDS = {"LB0": 0, "LB1": 1}
 """The registers that say where a hardware loop ends, with the numbers of their counters."""
+MEMORY = {
+    *("load", "store", "load_half", "store_half", "load_indexed", "store_indexed"),
+    *("push", "pop", "push_multiple", "pop_multiple", "link", "unlink", "test_and_set"),
+}
+"""What these do accesses memory."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
 """An instruction with one of these begins a block: it must know the cycles of what was executed before it."""
 
@@ -198,3 +203,8 @@ def does(instruction: Instruction) -> str:
 def is_clocked(instruction: Instruction) -> bool:
     """Whether an instruction must know the cycles of what was executed before it."""
     return not CLOCKED.isdisjoint(map(str, instruction.operations[0].operands.values()))
+
+
+def accesses_memory(instruction: Instruction) -> bool:
+    """Whether an instruction, or one of a bundle, loads or stores."""
+    return not MEMORY.isdisjoint(each.form.does for each in instruction.operations)

@@ -6,9 +6,10 @@ are made in the order of the operations. Where control goes is said by one call 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 from llvmlite import ir
 
@@ -55,6 +56,8 @@ class Effects:
     pending: dict[str, Value] = field(default_factory=dict)
     flow: Flow | None = None
     report: Report | None = None
+    mark: Any = None
+    """What the host's accesses to memory are marked with, if they are."""
     aligns: bool = False
     """Whether words that are loaded through index registers in this bundle are those at the next lower multiple of 4 (its DSP
     instruction says so: DISALGNEXCPT, and the video instructions)."""
@@ -129,14 +132,17 @@ class Effects:
         """Return the little-endian number of 1, 2 or 4 bytes in memory."""
         if self.report:
             self.report(address, nbytes, writes=False)
-        kind = ir.IntType(8 * nbytes)
-        return Value(self.builder, self.builder.load(self._place(address), typ=kind, align=1))
+        kind, place = ir.IntType(8 * nbytes), self._place(address)
+        with self._marked():
+            return Value(self.builder, self.builder.load(place, typ=kind, align=1))
 
     def store(self, address: Value, value: Value) -> None:
         """Store a value of 8, 16 or 32 bits, little-endian."""
         if self.report:
             self.report(address, value.bits // 8, writes=True)
-        self.builder.store(value.ir, self._place(address), align=1)
+        place = self._place(address)
+        with self._marked():
+            self.builder.store(value.ir, place, align=1)
 
     def jump(self, target: int) -> None:
         """Go to an address of the code."""
@@ -178,6 +184,12 @@ class Effects:
 
     def _newest(self, register: str) -> Value:
         return self.pending.get(register) or self.read(register)
+
+    @contextmanager
+    def _marked(self) -> Iterator[None]:
+        self.builder.debug_metadata = self.mark
+        yield
+        self.builder.debug_metadata = None
 
     def _place(self, address: Value) -> ir.Value:
         return self.builder.gep(self.memory, [address.zero_extended(64).ir], source_etype=I8)

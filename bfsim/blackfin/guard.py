@@ -8,6 +8,7 @@ run, or once for all that follow (`catch_always`).
 from __future__ import annotations
 
 import ctypes
+import platform
 import signal
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,6 +20,8 @@ from bfsim.blackfin.event import Event
 from bfsim.machine_code.native_code import native_code
 from bfsim.machine_code.signal_action import SA_NODEFER, SA_SIGINFO, SignalAction
 
+COUNTER_AT = {"x86_64": 168, "aarch64": 440}.get(platform.machine(), 0)
+"""Where the program counter is in Linux's `ucontext_t`; on other processors what is read there is no place in native code."""
 RUNNER = f"""
 @bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16
 @bfsim_run_origin = internal global i64 0
@@ -26,13 +29,14 @@ RUNNER = f"""
 @bfsim_run_action = global [256 x i8] zeroinitializer, align 16
 @bfsim_run_before = internal global [256 x i8] zeroinitializer, align 16
 @bfsim_run_fault = global i64 0
+@bfsim_run_place = global i64 0
 @bfsim_always_action = global [256 x i8] zeroinitializer, align 16
 @bfsim_always_before = internal global [256 x i8] zeroinitializer, align 16
 declare i32 @sigaction(i32, ptr, ptr)
 declare i32 @__sigsetjmp(ptr, i32) returns_twice
 declare void @siglongjmp(ptr, i32) noreturn
 
-define internal void @handle(i32 %number, ptr %information, ptr %before) {{
+define internal void @handle(i32 %number, ptr %information, ptr %context, ptr %before) {{
   %place = getelementptr i8, ptr %information, i64 16
   %address = load i64, ptr %place
   %origin = load i64, ptr @bfsim_run_origin
@@ -44,6 +48,9 @@ define internal void @handle(i32 %number, ptr %information, ptr %before) {{
   br i1 %ours, label %leave, label %pass
 leave:
   store i64 %offset, ptr @bfsim_run_fault
+  %running.at = getelementptr i8, ptr %context, i64 {COUNTER_AT}
+  %running = load i64, ptr %running.at
+  store i64 %running, ptr @bfsim_run_place
   call void @siglongjmp(ptr @bfsim_run_jump, i32 1)
   unreachable
 pass:
@@ -52,12 +59,12 @@ pass:
 }}
 
 define void @bfsim_run_handler(i32 %number, ptr %information, ptr %context) {{
-  call void @handle(i32 %number, ptr %information, ptr @bfsim_run_before)
+  call void @handle(i32 %number, ptr %information, ptr %context, ptr @bfsim_run_before)
   ret void
 }}
 
 define void @bfsim_always_handler(i32 %number, ptr %information, ptr %context) {{
-  call void @handle(i32 %number, ptr %information, ptr @bfsim_always_before)
+  call void @handle(i32 %number, ptr %information, ptr %context, ptr @bfsim_always_before)
   ret void
 }}
 
@@ -94,13 +101,14 @@ define i32 @bfsim_run(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
 
 @dataclass(frozen=True, slots=True)
 class Runner:
-    """`run(code, memory, state, counts)`: calls native code and returns its event; `fault`: the address of the last fault.
+    """`run(code, memory, state, counts)`: calls native code and returns its event.
 
-    `guarded`: the address of what does the same where faults are caught always, not while it runs alone.
+    `fault`: the address of the last fault, and `place` that of the native code which has made it. `guarded`: the address of what does the same where faults are caught always, not while it runs alone.
     """
 
     run: Callable[[int, int, int, int], int]
     fault: ctypes.c_int64
+    place: ctypes.c_int64
     guarded: int
 
 
@@ -116,6 +124,7 @@ def runner() -> Runner:
     return Runner(
         kind(machine_code.address_of("bfsim_run")),
         ctypes.c_int64.from_address(machine_code.address_of("bfsim_run_fault")),
+        ctypes.c_int64.from_address(machine_code.address_of("bfsim_run_place")),
         machine_code.address_of("bfsim_run_guarded"),
     )
 

@@ -14,8 +14,8 @@ from bfsim.errors import KernelError, cut
 
 MOST_NAMES = 5
 """As many names are listed of what is missing."""
-LINKED_WITH = "bfin-elf-gcc -r -nostdlib ... -lm -lc -lgcc"
-"""What joins an object file to the parts of the libraries that it calls."""
+LINKED_WITH = "bfin-elf-gcc -O2 -g -r -nostdlib -o whole.o FILES -lm -lc -lgcc"
+"""What makes one object file of several, in C or object code, and of the parts of the libraries that they call."""
 NOWHERE = 0xFFC00000
 """[HRM] Where the system's registers are: no code is there, and no data of a program."""
 NOWHERE_BYTES = 256

@@ -73,10 +73,11 @@ class State:
 class Translated:
     """Code in this process. `counts`: how often each of its counters has counted since it was translated. `explore`: finds the code.
 
-    `native` has the code where it ends with this.
+    `octets`: its object file. `native` has the code where it ends with this.
     """
 
     entry: int
+    octets: bytes
     native: llvm.ExecutionEngine | None
     counts: NDArray[np.int64]
     explore: Callable[[], Counted]
@@ -168,9 +169,10 @@ class Processor:
         if self.name and self.translated is None:
             return self._kept(self.name)
         found = self.counted()
-        native = machine_code.loaded(native_code(*self._module(found, NAME)))
+        octets = native_code(*self._module(found, NAME))
+        native = machine_code.loaded(octets)
         counts = np.zeros(len(found.counters), np.int64)
-        return Translated(native.get_function_address(NAME), native, counts, lambda: found)
+        return Translated(native.get_function_address(NAME), octets, native, counts, lambda: found)
 
     def _kept(self, name: str) -> Translated:
         """Return the native code that is kept under a name, or made now; a process has it once."""
@@ -180,10 +182,11 @@ class Processor:
             count = len(found.counters).to_bytes(COUNT_BYTES, "little")
             kept = count + machine_code.host_code(*self._module(found, symbol))
             store.save(name, kept)
+        octets = kept[COUNT_BYTES:]
         if not machine_code.address_of(symbol):
-            machine_code.add(kept[COUNT_BYTES:])
+            machine_code.add(octets)
         counts = np.zeros(int.from_bytes(kept[:COUNT_BYTES], "little"), np.int64)
-        return Translated(machine_code.address_of(symbol), None, counts, self.counted)
+        return Translated(machine_code.address_of(symbol), octets, None, counts, self.counted)
 
     def _module(self, found: Counted, symbol: str) -> tuple[str, Effort]:
         """Return the LLVM module of code, whose function is called `symbol`, and how much LLVM is to do for it."""
@@ -202,6 +205,16 @@ class Processor:
         if is_large(found.code):
             return text, Effort.NONE
         return text, Effort.SOME if len(found.code.blocks) <= LOOP_BLOCKS else Effort.SELECTION
+
+    def faulted_at(self) -> list[int]:
+        """Return the addresses of the instructions of which one has made the access that was the last fault; most often that is known."""
+        from bfsim.blackfin.blocks import accesses_memory  # few calls fail
+        from bfsim.blackfin.host_places import instructions_at
+
+        translated = self.prepared()
+        blocks = translated.code.blocks.values()
+        accessing = [one.address for each in blocks for one in each.instructions if accesses_memory(one)]
+        return instructions_at(translated.octets, runner().place.value - translated.entry, accessing)
 
     def counted(self) -> Counted:
         """Return all that can be reached from the entries."""

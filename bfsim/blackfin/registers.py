@@ -34,14 +34,15 @@ ACCUMULATORS = ("A0", "A1")
 ACCUMULATOR_PARTS = ("A0.X", "A0.W", "A1.X", "A1.W")
 _PLAIN = tuple(each for each in ENCODED[32:] if each and each[0] != "A" and not each.startswith("CYCLES"))
 STATE = (
-    *("PC", "CLOCK", "WAITED", "FUEL", "ARGUMENT", "TRACE"),
+    *("PC", "CLOCK", "WAITED", "FUEL", "ARGUMENT", "TRACE", "FROM"),
     *(*DATA, *POINTERS, *DAG, *ACCUMULATORS, *FLAGS, "ASTAT_UNUSED"),
     *(*_PLAIN, "CYCLES_OFFSET", "CYCLES2"),
 )
 """The registers as native code has them, each in 64 bits of the state. PC: where to start, and where it was left. CLOCK: all cycles
 so far; WAITED: those of all counts that instructions waited; CYCLES_OFFSET: what CYCLES is less than CLOCK while it counts, and CYCLES itself while it does not (SYSCFG has the switch).
 FUEL: how many
-blocks may still be run. ARGUMENT: of the event that it was left for. TRACE: where accesses are reported to (`tracing`)."""
+blocks may still be run. ARGUMENT: of the event that it was left for. TRACE: where accesses are reported to (`tracing`).
+FROM: the instruction that has gone to a computed address which the code does not have, where it is held to be right (`translate`)."""
 SLOTS = {name: slot for slot, name in enumerate(STATE)}
 
 

@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.event import ENDS, Event
-from bfsim.blackfin.guard import runner
-from bfsim.blackfin.image import LINKED_WITH, Image
+from bfsim.blackfin.event import Event
+from bfsim.blackfin.image import Image
 from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.errors import KernelError
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
 
 STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
-STACK_OVERRUN_BYTES = 1 << 18
-"""[ours] An access so far below the stack is one of local variables: nothing else is there."""
 ARRAYS, ARRAYS_BYTES = 0x20000000, 64 << 20
 """[HRM] Asynchronous memory, which programs are not linked to: where arrays are laid."""
 ARRAY_ALIGN = 16
@@ -79,7 +76,7 @@ class LoadedImage:
             {address},
             name=name,
             explore=partial(self._counted_from, timing),
-            results=frozenset({RESULT, *KEPT}) if is_checked else frozenset({RESULT}),
+            results=frozenset({RESULT, *KEPT, "FROM"}) if is_checked else frozenset({RESULT}),
             aligned=is_checked,
         )
         return Subroutine(symbol, address, processor, self.image)
@@ -132,50 +129,11 @@ class Subroutine:
 
     def refuse(self, event: Event) -> NoReturn:
         """Raise KernelError for an event for which a call was left without returning. The next call begins anew."""
-        what = self._told(event)
+        from bfsim.blackfin.failed_call import FailedCall  # few calls fail
+
+        what = FailedCall(self, event).told()
         self.processor.state.slots[:] = 0
-        self.translated.counts[:] = 0
         raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
-
-    def _told(self, event: Event) -> str:
-        """Say what happened at an event, by the registers that it has left."""
-        address = self.processor.state["PC"]
-        place = runner().fault.value if event is Event.FAULT else address
-        if missing := self.image.missing_at(place):
-            return (
-                f"it comes to {missing.removeprefix('_')}, which {self.image.name} does not define; define it there, or do "
-                f"without it (an object file is linked with what has it: {LINKED_WITH})"
-            )
-        if event is Event.FAULT:
-            large = (
-                f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be "
-                "static, or arguments"
-            )
-            is_of_stack = STACK - STACK_OVERRUN_BYTES <= place < STACK
-            return f"it accesses 0x{place:08X}, where there is no memory{large if is_of_stack else ''}"
-        if event is Event.MISALIGNED:
-            return (
-                f"in the instructions from 0x{address:08X} on{self._line_at(address)} it accesses an address that is no multiple of the 2 or 4 bytes "
-                "accessed, for which the Blackfin raises an exception"
-            )
-        if event is Event.NOT_KEPT:
-            changed = [each for each in KEPT[:-1] if self.processor.state[each]] or ["SP"]
-            return (
-                f"it changes {', '.join(changed)}; R4 to R7, P3 to P5, FP and SP must be as they were when it returns, for its caller has "
-                "something in them: push them first, and pop them before the return"
-            )
-        if event is Event.UNKNOWN_TARGET:
-            return f"it goes to 0x{address:08X}, an address that neither its code nor its data names; put its label into a table"
-        nbytes, told = ENDS[event]
-        at = address - nbytes
-        return f"at 0x{at:08X}{self._line_at(at)} there is {told}"
-
-    def _line_at(self, address: int) -> str:
-        """Return the source line of the code at an address, as ` (file:line)`; nothing where the file does not tell."""
-        from bfsim.blackfin.lines import lines_of  # few calls fail
-
-        found = lines_of(self.image).at(address)
-        return f" ({found.file}:{found.line})" if found and found.line else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,18 +11,19 @@ by the registers LC, LT and LB, so that code may also leave, save and restore th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
+from functools import partial, reduce
 
 from llvmlite import ir
 
 from bfsim.blackfin.at_once import AtOnce
-from bfsim.blackfin.blocks import Block, Code
+from bfsim.blackfin.blocks import Block, Code, accesses_memory
 from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.counts import POINTER, add, make_writable, sum_of, without, work_out
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way, returns
+from bfsim.blackfin.host_places import HostPlaces
 from bfsim.blackfin.implied import implied
 from bfsim.blackfin.loops_at_once import loops_at_once
 from bfsim.blackfin.registers import SLOTS, width
@@ -57,7 +58,8 @@ def translate(
     """Return the LLVM module of code; its function is called `symbol`. With `fuel`, the FUEL of the state is how many blocks it may run.
 
     With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
-    `results`: registers that somebody reads when it is left, if not all. `aligned`: it is left at an access that is not.
+    `results`: registers that somebody reads when it is left, if not all. `aligned`: it is left at an access that is not, and says which
+    instruction has made an access or a jump for which it is left.
     """
     made = _Translation(of, symbol, fuel=fuel, tracing=tracing, results=results, aligned=aligned)
     return str(made.module())
@@ -78,7 +80,9 @@ class _Translation:
     ) -> None:
         self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
         self.aligned = aligned
-        self.misaligned: ir.Value | None = None  # not 0 if an access of the block is not aligned
+        self.offs: list[
+            tuple[ir.Value, int]
+        ] = []  # of each access of the block, and its instruction: not 0 if it is not aligned
         self.results = None if results is None else results | ALWAYS_READ
         counted = self.counted = of.counters
         self.made = ir.Module(symbol)
@@ -86,6 +90,7 @@ class _Translation:
         self.memory, self.state, self.counts = self.function.args
         for each in self.function.args:
             each.add_attribute("noalias")
+        self.places = HostPlaces(self.made, self.function) if aligned else None
         make_writable(self.counts, len(counted))
         self.entry = self._new("entry")
         self.dispatch, self.leave = self._new("dispatch"), self._new("leave")
@@ -146,7 +151,7 @@ class _Translation:
     def _block(self, block: Block) -> None:
         builder = ir.IRBuilder(self.at[block.start])
         self.values.clear()
-        self.misaligned = None
+        self.offs.clear()
         written: dict[str, None] = {}
         if self.fuel:
             self._burn(builder, block.start)
@@ -161,8 +166,8 @@ class _Translation:
                 written[register] = None
             flow = effects.flow
             cclk += self.timing.of(instruction)
-        if self.misaligned is not None:
-            self._hold_aligned(builder, block.start, self.misaligned)
+        if self.offs:
+            self._hold_aligned(builder)
         for register in written:
             builder.store(self.values[register], self.slot(register))
         if block.start not in self.implied:
@@ -220,6 +225,9 @@ class _Translation:
             instruction.address,
             lambda: self._following(builder, instruction),
             report=partial(self._access, builder, instruction, block, cclk),
+            mark=self.places.of(instruction.address)
+            if self.places and accesses_memory(instruction)
+            else None,
         )
         for each in instruction.operations:
             SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
@@ -242,14 +250,18 @@ class _Translation:
             site = self.tracing.site_of(block, instruction.address)
             self.reports.report(builder, address.zero_extended(64).ir, access, cclk, site)
         if self.aligned and nbytes > 1:
-            off = builder.and_(address.ir, I32(nbytes - 1))
-            self.misaligned = off if self.misaligned is None else builder.or_(self.misaligned, off)
+            self.offs.append((builder.and_(address.ir, I32(nbytes - 1)), instruction.address))
 
-    def _hold_aligned(self, builder: ir.IRBuilder, block: int, misaligned: ir.Value) -> None:
-        """Leave native code if one of the accesses of a block is not aligned."""
+    def _hold_aligned(self, builder: ir.IRBuilder) -> None:
+        """Leave native code if one of the accesses of a block is not aligned: with PC at the first of these."""
+        misaligned = reduce(builder.or_, [off for off, _ in self.offs])
         leaves, goes_on = self._new("misaligned"), self._new("aligned")
         builder.cbranch(builder.icmp_unsigned("!=", misaligned, I32(0)), leaves, goes_on)
-        self._event(ir.IRBuilder(leaves), Event.MISALIGNED, I32(block))
+        builder.position_at_end(leaves)
+        place: ir.Value = I32(self.offs[-1][1])
+        for off, address in reversed(self.offs[:-1]):
+            place = builder.select(builder.icmp_unsigned("!=", off, I32(0)), I32(address), place)
+        self._event(builder, Event.MISALIGNED, place)
         builder.position_at_end(goes_on)
 
     def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
@@ -271,14 +283,23 @@ class _Translation:
         if flow.event is not None:
             self._event(builder, flow.event, target)
         elif isinstance(flow.target, Value):
-            self._jump(builder, target, {each: self.at[each] for each in self.returns.get(block.start, ())})
+            likely = {each: self.at[each] for each in self.returns.get(block.start, ())}
+            self._jump(builder, block, target, likely)
         else:
             builder.branch(self.at[flow.target])
 
-    def _jump(self, builder: ir.IRBuilder, target: ir.Value, likely: Mapping[int, ir.Block]) -> None:
-        """Go to a computed address, which is most likely one of a few."""
+    def _jump(
+        self, builder: ir.IRBuilder, source: Block, target: ir.Value, likely: Mapping[int, ir.Block]
+    ) -> None:
+        """Go from the end of a block to a computed address, which is most likely one of a few."""
         builder.store(target, self.slot("PC"))
-        choice = builder.switch(target, self.dispatch)
+        others = self.dispatch
+        if self.aligned:
+            others = self._new("others")
+            said = ir.IRBuilder(others)
+            said.store(I32(source.instructions[-1].address), self.slot("FROM"))
+            said.branch(self.dispatch)
+        choice = builder.switch(target, others)
         for address in sorted(likely):
             choice.add_case(I32(address), likely[address])
 
@@ -314,7 +335,7 @@ class _Translation:
             builder.cbranch(builder.icmp_unsigned("!=", left, I32(0)), again, out)
             builder.position_at_end(again)
             if jumps:
-                self._repeat(builder, self._read(builder, f"LT{counter}"), block.start, starts)
+                self._repeat(builder, self._read(builder, f"LT{counter}"), block, starts)
             else:
                 builder.branch(done)
             builder.position_at_end(out)
@@ -322,12 +343,12 @@ class _Translation:
             builder.branch(done)
             builder.position_at_end(done)
 
-    def _repeat(self, builder: ir.IRBuilder, target: ir.Value, source: int, likely: set[int]) -> None:
-        """Go to a computed address, which is most likely the start of one of a few loops that end with the block at `source`."""
+    def _repeat(self, builder: ir.IRBuilder, target: ir.Value, source: Block, likely: set[int]) -> None:
+        """Go to a computed address, which is most likely the start of one of a few loops that end with the block `source`."""
         ways = {each: self._new("repeats") for each in sorted(likely)}
-        self._jump(builder, target, ways)
+        self._jump(builder, source, target, ways)
         for each, way in ways.items():
-            self._go_along(ir.IRBuilder(way), Edge(source, each, Way.REPEATS))
+            self._go_along(ir.IRBuilder(way), Edge(source.start, each, Way.REPEATS))
 
     def _following(self, builder: ir.IRBuilder, instruction: Instruction) -> Value:
         """Return the address of what is executed behind an instruction that does not jump: at a loop's end perhaps its start."""

@@ -85,6 +85,8 @@ def _host_machine(effort: Effort) -> llvm.TargetMachine:
 def _new_machine(effort: Effort) -> llvm.TargetMachine:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
+    # what has no line in a table of lines does not take that of what is before it
+    llvm.set_option("bfsim", "-use-unknown-locations=Enable")
     return llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
         features=llvm.get_host_cpu_features().flatten(),

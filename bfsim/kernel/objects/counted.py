@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from bfsim.blackfin.blocks import BRANCHES, CALLS, DIRECT, Code, does
+from bfsim.blackfin.blocks import BRANCHES, CALLS, DIRECT, Code, accesses_memory, does
 from bfsim.blackfin.counters import Counter as BlockCounter
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.interlocks import Wait
@@ -15,7 +15,7 @@ from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import Entrance, SourceLine
 from bfsim.kernel.lowering.charges import Access, Charge, instead, merged
-from bfsim.kernel.objects.operations import TAKEN, accesses_memory, operation_of
+from bfsim.kernel.objects.operations import TAKEN, operation_of
 from bfsim.kernel.objects.places import Places
 
 

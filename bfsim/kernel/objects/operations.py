@@ -30,18 +30,6 @@ TAKEN = {Op.BRANCH_NOT_TAKEN: Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN_BP: Op.BRANCH
 LONG_BYTES = 4
 
 
-MEMORY = {
-    *("load", "store", "load_half", "store_half", "load_indexed", "store_indexed"),
-    *("push", "pop", "push_multiple", "pop_multiple", "link", "unlink", "test_and_set"),
-}
-"""What these do accesses memory."""
-
-
-def accesses_memory(instruction: Instruction) -> bool:
-    """Whether an instruction, or one of a bundle, loads or stores."""
-    return not MEMORY.isdisjoint(each.form.does for each in instruction.operations)
-
-
 def operation_of(instruction: Instruction) -> Op:
     """Return the class of an instruction; of those that are issued together, that of the first which does something."""
     found = [_class(each) for each in instruction.operations]
