@@ -413,6 +413,23 @@ def test_the_line_of_a_wild_access_is_told(tmp_path: Path, option: str) -> None:
 
 @pytest.mark.toolchain
 @pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_several_files_are_one_object_file(tmp_path: Path) -> None:
+    """By the command of docs/how-to/c-and-assembler.md; what either lacks by itself is told with its line."""
+    (tmp_path / "drive.c").write_text("int steered(int a)\n{\n    return a / 3;\n}\n")
+    (tmp_path / "ball.c").write_text("int steered(int);\nint ball(int a)\n{\n    return steered(a) + 1;\n}\n")
+    command = "bfin-elf-gcc -O2 -g -r -nostdlib -o robot.o drive.c ball.c -lm -lc -lgcc"
+    subprocess.run(command.split(), cwd=tmp_path, check=True)
+    kernel = kernel_from(tmp_path / "robot.o", "ball", a=i32, result=i32)
+    assert kernel(42) == 42 // 3 + 1
+    sources = {each.name: each.file for each in kernel.compile(GCC_O2).functions}
+    assert sources.items() >= {"ball": f"{tmp_path}/ball.c", "steered": f"{tmp_path}/drive.c"}.items()
+    alone = kernel_from(tmp_path / "ball.c", "ball", a=i32, result=i32)
+    with pytest.raises(KernelError, match="steered, which ball.c does not define and ball calls at ball.c:4"):
+        alone(42)
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
 def test_c_is_compiled_with_what_it_includes(tmp_path: Path) -> None:
     """A changed header is another code, a float comes back as one, and a library's function is shown beside the own ones."""
     (tmp_path / "half.c").write_text('#include "part.h"\nfloat half(float a) { return PART * a; }\n')
