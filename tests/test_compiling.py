@@ -45,6 +45,18 @@ def test_what_a_compiler_says_of_a_file_obeys_no_terminal(tmp_path: Path) -> Non
         tools.build(tmp_path, (), ())
 
 
+@pytest.mark.parametrize(
+    "error",
+    ["x.c:40:1: error: expected ';'", "x.s:7: Error: syntax error", "cc1: internal compiler error: no"],
+)
+def test_an_error_is_not_lost_behind_warnings(tmp_path: Path, error: str) -> None:
+    """Real code has pages of them, and the first ten lines were all that was told."""
+    tools = Toolchain(("sh", "-c", f'seq -f "x.c:%g:1: warning: unused" 30 >&2; echo "{error}" >&2; exit 1'))
+    with pytest.raises(ConfigError) as told:
+        tools.build(tmp_path, (), ())
+    assert str(told.value) == f"sh must run without an error, but says: {error}"
+
+
 def test_without_a_compiler_code_must_be_kept() -> None:
     """What is missing, whose code it would be, and what helps."""
     with pytest.raises(

@@ -362,6 +362,21 @@ def test_what_c_s_library_asks_an_operating_system_for_is_told_so(tmp_path: Path
     assert kernel_from(tmp_path / "ends.c", "ends", n=i32, result=i32)(3) == 3
 
 
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_a_register_in_memory_is_no_missing_function(tmp_path: Path) -> None:
+    """What a file does not define stood for addresses of the first of them: of the PLL."""
+    (tmp_path / "pll.c").write_text(
+        "extern int other(int);\nint pll(int at)\n{\n    return *(volatile short *)at;\n}\nint uses(int n) { return other(n); }\n"
+    )
+    kernel = kernel_from(tmp_path / "pll.c", "pll", at=i32, result=i32)
+    for at in (0xFFC00000, 0xFFC00014, 0xFFE02000):
+        with pytest.raises(
+            KernelError, match=rf"\(pll.c:4\) it accesses 0x{at:08X}, a register of the Blackfin"
+        ):
+            kernel(at - 2**32)
+
+
 WILD = """
 #include <string.h>
 static int sum(const int *words, int n)

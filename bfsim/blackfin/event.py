@@ -34,7 +34,10 @@ class Event(IntEnum):
 
 ENDS = {
     Event.ILLEGAL: (0, "no instruction of the Blackfin"),
-    Event.EXCEPTION: (2, "an exception (EXCPT), which nothing handles"),
+    Event.EXCEPTION: (
+        2,
+        "an exception (EXCPT), which nothing handles; GCC has one where C does not say what happens, as where it sees a division by 0",
+    ),
     Event.SYSTEM: (
         2,
         "an instruction for the system, such as IDLE, RAISE or RTI, of which a kernel has none",

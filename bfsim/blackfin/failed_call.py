@@ -7,7 +7,7 @@ from functools import cached_property
 
 from bfsim.blackfin.event import ENDS, Event
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.image import LINKED_WITH
+from bfsim.blackfin.image import LINKED_WITH, REGISTERS
 from bfsim.blackfin.lines import lines_of
 from bfsim.blackfin.subroutines import KEPT, STACK, STACK_BYTES, Subroutine
 from bfsim.blackfin.ways import Ways
@@ -87,12 +87,12 @@ class FailedCall:
         places = self._processor.faulted_at()
         if missing := self._image.missing_at(accessed):
             return self._lacks(missing, self._ways.callers(places, "uses"))
-        of_stack = (
-            f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be static, or arguments"
-            if STACK - STACK_OVERRUN_BYTES <= accessed < STACK
-            else ""
-        )
-        return f"{self._one_of(places)}it accesses 0x{accessed:08X}, where there is no memory{of_stack}"
+        what = "where there is no memory"
+        if STACK - STACK_OVERRUN_BYTES <= accessed < STACK:
+            what += f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be static, or arguments"
+        elif accessed >= REGISTERS:
+            what = "a register of the Blackfin in memory, of which a kernel has none: devices are for the main loop, which is in Python"
+        return f"{self._one_of(places)}it accesses 0x{accessed:08X}, {what}"
 
     def _one_of(self, places: Sequence[int]) -> str:
         """Say which place it is, or which few lines it may be; nothing where these are many."""

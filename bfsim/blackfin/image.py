@@ -16,8 +16,8 @@ MOST_NAMES = 5
 """As many names are listed of what is missing."""
 LINKED_WITH = "bfin-elf-gcc -O2 -g -r -nostdlib -o whole.o FILES -lm -lc -lgcc"
 """What makes one object file of several, in C or object code, and of the parts of the libraries that they call."""
-NOWHERE = 0xFFC00000
-"""[HRM] Where the system's registers are: no code is there, and no data of a program."""
+NOWHERE, REGISTERS = 0xFFB80000, 0xFFC00000
+"""[HRM] Reserved between the scratchpad and the memory-mapped registers: nothing is there, and nothing of a program; and where these begin."""
 NOWHERE_BYTES = 256
 """[ours] From one missing symbol to the next."""
 

@@ -63,8 +63,9 @@ class Ways:
             more = f" and {len(named) - MOST_LINES} more" if len(named) > MOST_LINES else ""
             told.append(f"{cut(_name(function))} {verb} at {', '.join(named[:MOST_LINES])}{more}")
             verb = "calls"
-        if len(told) > MOST_CALLS:
-            told[MOST_CALLS - 1 : -1] = [f"{len(told) - MOST_CALLS} more call in turn"]
+        hidden = len(told) - MOST_CALLS
+        if hidden > 1:
+            told[MOST_CALLS - 1 : -1] = [f"{hidden} more call in turn"]
         return ", which ".join(told)
 
     def _way(self, places: tuple[int, ...]) -> list[tuple[str, list[int]]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,6 +16,9 @@ from bfsim.errors import ConfigError, printable
 GCC, SIMULATOR = "bfin-elf-gcc", "bfin-elf-run"
 CPU = ("-mcpu=bf561", "-msim")
 ADVICE = "CONTRIBUTING.md says how to build a toolchain in ten minutes, and --toolchain FOLDER takes another than the PATH's"
+ERROR = re.compile(r"(?!collect2:).*\berror:", re.IGNORECASE)
+"""[GCC] A line of the compiler that says what is wrong has `error:`, one of the assembler `Error:`; collect2 says no more than that the linker failed."""
+MOST_LINES = 10
 LIBRARIES = ("-lm", "-lc", "-lgcc")
 
 
@@ -74,10 +78,17 @@ class Toolchain:
             command, check=False, capture_output=True, text=True, cwd=folder
         )
         if done.returncode:
-            lines = [printable(each) for each in done.stderr.splitlines()[:10]]  # of a file that is no source
-            said = "\n".join(lines) or f"exit code {done.returncode}"
+            said = (
+                "\n".join(_from_the_first_error(done.stderr.splitlines())) or f"exit code {done.returncode}"
+            )
             raise ConfigError(f"{command[0]} must run without an error, but says: {said}")
         return done.stdout
+
+
+def _from_the_first_error(lines: Sequence[str]) -> list[str]:
+    """Return the first lines of what a compiler says, without the warnings before an error."""
+    first = next((number for number, each in enumerate(lines) if ERROR.match(each)), 0)
+    return [printable(each) for each in lines[first : first + MOST_LINES]]  # of a file that is no source, too
 
 
 def prefer(folder: Path) -> None:
