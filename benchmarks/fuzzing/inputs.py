@@ -58,6 +58,14 @@ COMMANDS = (
     ["run"], ["profile"], ["check"], ["explain"], ["boards"], ["ldf"], ["record", "import"], ["record", "info"],
     ["record", "calibrate"], ["record"], [], ["nonsense"],
 )  # fmt: skip
+DATA = Path(__file__).parent.parent.parent / "tests" / "blackfin" / "data"
+OBJECT_FILES = (
+    ("sums.o", "sums", "row=u8[:], out=i32[:], n=i32, first=i32, result=i32"),
+    ("callbacks.o", "handed_over", "values=i32[:], n=i32, result=i32"),
+    ("callbacks.elf", "from_table", "which=i32[:], values=i32[:], n=i32, result=i32"),
+    ("labels.o", "chosen", "x=i32, result=i32"),
+    ("prototypes.o", "state_of", "state=i32, result=i32"),
+)
 SMALL_LDF = """ARCHITECTURE(ADSP-BF533)
 #define SIZE 16K
 $OBJECTS = crt.doj, $COMMAND_LINE_OBJECTS{!prefersMem("external")};
@@ -210,6 +218,16 @@ def pictures(random: Random, folder: Path) -> list[str]:
     return ["record", "import", str(folder / "out.mcap"), source, "--mono", "--force", *options]
 
 
+def object_file(random: Random, folder: Path) -> list[str]:
+    """A kernel in object code, some of whose bytes are others: of the code, the tables, or what a debugger reads."""
+    name, function, parameters = random.choice(OBJECT_FILES)
+    (folder / name).write_bytes(changed_bytes(random, (DATA / name).read_bytes()))
+    (folder / "objects.py").write_text(
+        f"from bfsim.api import i32, kernel_from, u8\nfound = kernel_from({name!r}, {function!r}, {parameters})\n"
+    )
+    return ["explain", f"{folder}/objects.py:found", *(["--asm"] if random.random() < 0.3 else [])]
+
+
 KINDS: tuple[Callable[[Random, Path], list[str]], ...] = (
-    script, baseline, command_line, board, ldf, mcap_structure, mcap_bytes, pictures,
+    script, baseline, command_line, board, ldf, mcap_structure, mcap_bytes, pictures, object_file,
 )  # fmt: skip
