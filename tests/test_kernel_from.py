@@ -402,6 +402,12 @@ int jumps(int *words, int n)
     int (*there)(int) = (int (*)(int))words[0];
     return there(n) + 1;
 }
+int clears(int *words, int n)
+{
+    for (int k = 0; k < n; k++)
+        words[k] = 0;
+    return n;
+}
 """
 
 
@@ -418,6 +424,7 @@ def test_the_line_of_a_wild_access_is_told(tmp_path: Path, option: str) -> None:
         ("reads", 1 << 29, r"at .*\bwild.c:[67]\b.* it accesses 0x"),
         ("stores", 1 << 28, r"\(wild.c:12\) of put, which stores calls at wild.c:15, it accesses 0x60"),
         ("copies", 1 << 28, rf"{at} of memcpy, which copies calls at wild.c:18, it accesses 0x60"),
+        ("clears", 1 << 29, r"at .*\bwild.c:29\b.* it accesses 0x24000000"),
         ("jumps", 0, r"\(wild.c:24\) it goes to 0x00000007, an address that"),
     ):
         kernel = kernel_from(tmp_path / "wild.o", name, words=i32[:], n=i32, result=i32)
@@ -613,6 +620,18 @@ def test_a_wild_access_is_refused() -> None:
     assert (
         kernel.cost(0x20000000) == 7 + 4
     )  # the address waits for its register, which the default profile counts
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_a_wild_access_of_a_python_kernel_s_code_is_told_by_its_address(tmp_path: Path) -> None:
+    """That code is not held to be right as it runs, for the kernel itself is checked: it has no table of places."""
+    (tmp_path / "fw_far.py").write_text(
+        "from bfsim.api import i32, kernel, u8\n\n\n@kernel\ndef far(row: u8[:], at: i32) -> i32:\n    return row[at]\n"
+    )
+    kernel = load_kernel(f"{tmp_path}/fw_far.py:far", "tinyphoon")
+    with pytest.raises(KernelError, match="but it accesses 0x30000000, where there is no memory"):
+        kernel.cost(ROW, 1 << 28, profile="gcc")
 
 
 def lines_of_costs(folder: Path) -> set[int]:

@@ -50,11 +50,14 @@ def instructions_at(code: bytes, offset: int, accessing: Collection[int]) -> lis
     """Return the addresses of the instructions of which one has made the access that native code makes so far behind its beginning.
 
     `code`: the object file of the host. `accessing`: all that access memory. What LLVM has moved, or made of several, is of one of those
-    that have no place of their own.
+    that have no place of their own. Of code without such a table none is returned.
     """
-    tables = ELFFile(io.BytesIO(code)).get_dwarf_info(relocate_dwarf_sections=False)
+    file = ELFFile(io.BytesIO(code))
+    if file.get_section_by_name(".debug_line") is None:  # of code that is not held to be right
+        return []
+    tables = file.get_dwarf_info(relocate_dwarf_sections=False)
     programs = [tables.line_program_for_CU(unit) for unit in tables.iter_CUs()]
     states = [each.state for program in programs if program for each in program.get_entries()]
-    rows = [(each.address, each.line) for each in states if each]
-    line = next((line for first, line in sorted(rows, reverse=True) if first <= offset), 0)
-    return [line] if line else sorted(set(accessing) - {each for _, each in rows})
+    lines = {each.address: 0 if each.end_sequence else each.line for each in states if each}
+    line = lines[max((each for each in lines if each <= offset), default=max(lines))]
+    return [line] if line else sorted(set(accessing) - {*lines.values()})
