@@ -26,6 +26,9 @@ from bfsim.result import Run
 from bfsim.run import has_view, planned, simulate
 from bfsim.trace import Identity, StallReason
 
+PACKAGE = Path(__file__).parent.parent
+"""The folder of bfsim."""
+
 Figures = Mapping[str, int | float]
 
 _plans: dict[str, Known] = {}
@@ -185,11 +188,10 @@ def digest_recording(recording: Path | None, frames: int) -> str:
 
 
 @cache
-def code_digest() -> str:
+def code_digest(package: Path = PACKAGE) -> str:
     """Return the digest of bfsim's own code, without that of its commands: cycles and figures depend on it."""
-    package = Path(__file__).parent.parent
     digest = hashlib.sha256()
     for path in sorted(package.rglob("*")):
-        if path.suffix in {".py", ".lark"} and not path.name.startswith("cli"):
+        if path.suffix in {".py", ".lark"} and not path.is_relative_to(package / "cli"):
             digest.update(f"{path.relative_to(package).as_posix()}\0".encode() + path.read_bytes())
     return digest.hexdigest()

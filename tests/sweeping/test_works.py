@@ -130,3 +130,25 @@ def test_work_that_cannot_be_read_is_run(sweep: Sweep, tmp_path: Path, content: 
     outcome = run_point(sweep.points[0].configuration, tmp_path, code_digest(), Work(path, {}))
     assert not outcome.error
     assert outcome.frames == 2
+
+
+def test_a_change_of_a_command_leaves_the_code_as_it_is(tmp_path: Path) -> None:
+    """Points that are done stay done; a change of anything else does them again."""
+    (tmp_path / "cli").mkdir()
+    (tmp_path / "machine").mkdir()
+    command, bus, grammar = (tmp_path / name for name in ("cli/run.py", "machine/bus.py", "ldf.lark"))
+    for path in (command, bus, grammar):
+        path.write_text("then")
+
+    def digest() -> str:
+        code_digest.cache_clear()
+        return code_digest(tmp_path)
+
+    then = digest()
+    command.write_text("now")
+    assert digest() == then
+    for path in (bus, grammar):
+        path.write_text("now")
+        assert digest() != then
+        path.write_text("then")
+    code_digest.cache_clear()
