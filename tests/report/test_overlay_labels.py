@@ -49,6 +49,18 @@ def test_neighbours_keep_off_each_other() -> None:
     assert rows_of(panel, BLUE).min() > 165
 
 
+def test_a_label_stands_beside_what_it_names_where_above_and_below_are_taken() -> None:
+    """At its height, on the right or else on the left."""
+    thing = label(200, 150, RED)
+    taken = [label(200, y, BLUE, weight=1) for y in (90, 110, 190, 210)]
+    for each in ([], [label(245, 150, GREEN, weight=1)]):
+        panel = written(thing, *taken, *each)
+        rows, columns = rows_of(panel, RED), np.flatnonzero((panel == RED).all(axis=2).any(axis=0))
+        assert rows.min() > 130
+        assert rows.max() < 170
+        assert columns.max() < 180 if each else columns.min() > 220
+
+
 def test_words_without_a_box_give_way() -> None:
     """A depth in the middle of a line is left out where a box stands."""
     box = label(200, 150, RED)
