@@ -18,7 +18,7 @@ from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.memories import Memories
 from bfsim.machine.symbols import PROCESSORS, symbols_of
 from bfsim.recording import StereoFrame
-from bfsim.run import DEFAULT_LDF
+from bfsim.shipped import DEFAULT_LDFS
 
 
 class Turn:
@@ -79,7 +79,7 @@ class BareCore:
         self.name = name
         height, double_width = frames[0].left.shape
         size = FrameSize(double_width // 2, height)
-        places = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size))
+        places = link(parse_ldf(DEFAULT_LDFS["ADSP-BF561"]), symbols_of(firmware, size))
         buffers = firmware.buffers(size)
         rows = {
             each.name: memories.place(each, places.find(PROCESSORS[name], each.name))

@@ -18,7 +18,7 @@ from benchmarks.quality import blobs, edges, lines
 from benchmarks.quality.seen import Seen, see_recording
 from bfsim.errors import BfsimError
 from bfsim.report.tables import new_table, stacked
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from bfsim.terminal import print_report
 
 FEATURES = edges, blobs, lines
@@ -46,7 +46,7 @@ def comparison(feature: ModuleType, recordings: Mapping[str, Sequence[Seen]]) ->
 def main(recordings: tuple[Path, ...], frames: int) -> None:
     """Compare the features found in RECORDINGS, or in the built-in one, with OpenCV's."""
     try:
-        seen = {path.stem: see_recording(path, frames) for path in recordings or (BUILT_IN_RECORDING,)}
+        seen = {path.stem: see_recording(path, frames) for path in recordings or (RECORDING,)}
     except BfsimError as error:
         raise click.ClickException(str(error)) from None
     print_report(stacked(*(comparison(feature, seen) for feature in FEATURES)))

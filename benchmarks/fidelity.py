@@ -30,7 +30,7 @@ from bfsim.linker import LinkMap, link, parse_ldf
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
+from bfsim.shipped import DEFAULT_LDFS, LDF_FOLDER, RECORDING
 from bfsim.trace import REST, BoardRecord
 from tinyphoon import tinyphoon
 
@@ -111,10 +111,10 @@ def board_of(program: Firmware, size: FrameSize, places: LinkMap, fidelity: Fide
 
 def recordings(frames: int) -> Iterator[Comparison]:
     """Compare on the built-in recording, placement by placement."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         size, taken = FrameSize(reader.width, reader.height), list(islice(reader.frames(), frames))
     symbols = symbols_of(tinyphoon, size)
-    for path in sorted(DEFAULT_LDF.parent.glob("*.ldf")):
+    for path in sorted(LDF_FOLDER.glob("*.ldf")):
         try:
             places = link(parse_ldf(path), symbols, CM_BF561.chip.regions)
         except BfsimError:  # of another chip, or a part that others include
@@ -126,7 +126,7 @@ def recordings(frames: int) -> Iterator[Comparison]:
 
 def random_traffic(frames: int, seeds: int) -> Iterator[Comparison]:
     """Compare on random traffic, seed by seed."""
-    script = parse_ldf(DEFAULT_LDF)
+    script = parse_ldf(DEFAULT_LDFS["ADSP-BF561"])
     for seed in range(seeds):
         places = link(script, symbols_of(hammer(seed), SIZE), CM_BF561.chip.regions)
         yield compare(

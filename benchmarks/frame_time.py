@@ -35,8 +35,7 @@ from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
-from bfsim.shipped import FIRMWARE
+from bfsim.shipped import DEFAULT_LDFS, FIRMWARE, RECORDING
 
 INTERVAL_S = 0.001
 SIMULATOR = Path(bfsim.__file__).parent
@@ -60,7 +59,7 @@ REST = "everything else"
 
 def frames_of(number: int) -> list[StereoFrame]:
     """The built-in recording over and over."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         return list(islice(cycle(list(reader.frames())), number))
 
 
@@ -80,7 +79,7 @@ def board_of(build: Build) -> Board:
     """Return a board with the built-in firmware."""
     size, firmware = FrameSize(320, 240), loaded().firmware
     with loaded().own.named():
-        link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size, build))
+        link_map = link(parse_ldf(DEFAULT_LDFS["ADSP-BF561"]), symbols_of(firmware, size, build))
         return Board(CM_BF561, firmware, size, link_map, build=build)
 
 

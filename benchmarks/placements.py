@@ -15,7 +15,8 @@ from rich.table import Table
 from bfsim.errors import BfsimError
 from bfsim.report.budget import Budget, budget_of, milliseconds
 from bfsim.report.tables import new_table, percent
-from bfsim.run import DEFAULT_LDF, simulate
+from bfsim.run import simulate
+from bfsim.shipped import LDF_FOLDER
 from bfsim.terminal import print_report, progress_bar
 from bfsim.trace import RunRecord, StallReason
 
@@ -35,7 +36,7 @@ def run_all(recording: Path | None, frames: int | None) -> dict[str, RunRecord]:
             def show(done: int, total: int, before: int = number) -> None:
                 progress(before * total + done, len(PLACEMENTS) * total)
 
-            ldf = DEFAULT_LDF.with_name(f"{name}.ldf")
+            ldf = LDF_FOLDER / f"{name}.ldf"
             runs[name] = simulate(recording, ldf=ldf, frames=frames, progress=show)
     return runs
 

@@ -14,7 +14,7 @@ from bfsim.machine.board import Board
 from bfsim.machine.peripherals.table import devices_of
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
-from bfsim.run import DEFAULT_LDF
+from bfsim.shipped import DEFAULT_LDFS
 from bfsim.trace import FrameRecord
 
 Taken = TypeVar("Taken")
@@ -58,7 +58,7 @@ def play(
     height, double_width = frames[0].left.shape
     size = FrameSize(double_width // 2, height)
     firmware = replace(firmware, view=view)
-    places = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    places = link(parse_ldf(DEFAULT_LDFS["ADSP-BF561"]), symbols_of(firmware, size), CM_BF561.chip.regions)
     board = Board(CM_BF561, firmware, size, places, devices=devices_of(firmware, script))
     outcome = board.run(iter(frames), on_frame, on_seen=lambda _index, _seen: None)
     return [

@@ -26,7 +26,7 @@ from bfsim.errors import BfsimError
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.lens import Lens
 from bfsim.report.tables import new_table, percent
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from bfsim.terminal import print_report
 from tinyphoon import tinyphoon
 
@@ -99,7 +99,7 @@ def comparison(recordings: Sequence[Path], limit: int) -> Table:
 def main(recordings: tuple[Path, ...], frames: int) -> None:
     """Compare rectification by one table with that by four on RECORDINGS, or on the built-in one."""
     try:
-        print_report(comparison(recordings or (BUILT_IN_RECORDING,), frames))
+        print_report(comparison(recordings or (RECORDING,), frames))
     except BfsimError as error:
         raise click.ClickException(str(error)) from None
 

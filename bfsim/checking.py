@@ -10,9 +10,11 @@ from typing import Any
 from bfsim import shipped
 from bfsim.errors import BfsimError, ConfigError, cut, shown
 from bfsim.identifying import recording_digest
+from bfsim.loading import load_firmware
+from bfsim.planning import identified
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on, update_command
 from bfsim.report.check.judge import require_stages
-from bfsim.run import Feed, Fidelity, cores_of, identified, rows_of
+from bfsim.run import Feed, Fidelity
 
 
 def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
@@ -87,8 +89,8 @@ def require_comparable(case: Case, path: Path) -> None:
     if case.measured_on:
         names = {"board": identity.board, "compiler": identity.compiler, "script": case.script}
         _require_alike(case, path, case.measured_on, measured_on(identity, frames), names)
-    firmware = arguments["firmware"]
-    require_stages(case, path, [each.stage for each in rows_of(firmware)], cores_of(firmware))
+    firmware = load_firmware(arguments["firmware"]).firmware
+    require_stages(case, path, [each.stage for each in firmware.rows], tuple(firmware.mains))
 
 
 def _require_alike(

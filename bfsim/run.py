@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import fields, replace
 from functools import partial, wraps
 from inspect import signature
 from pathlib import Path
 from threading import RLock
 from types import MappingProxyType
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 from bfsim import shipped
 from bfsim.assumptions import assumed_clocks, assumed_geometry, doubted_cameras, geometry_in_words
@@ -19,7 +18,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
-from bfsim.identifying import DigestedFrames, identity_of, recording_digest, written
+from bfsim.identifying import DigestedFrames, identity_of, written
 from bfsim.kernel.profile import DEFAULT
 from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
@@ -38,12 +37,7 @@ from bfsim.room import place
 from bfsim.run_inputs import calibration_of, opened, read_placement
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
-from bfsim.trace import BoardRecord, BudgetRow, Identity, MemoryRecord, RunWarning
-
-BUILT_IN_RECORDING = shipped.RECORDING
-PLACEMENTS = shipped.LDF_FOLDER
-DEFAULT_LDF = shipped.DEFAULT_LDFS["ADSP-BF561"]
-
+from bfsim.trace import BoardRecord, Identity, MemoryRecord, RunWarning
 
 _WATCHING = ("before", "progress", "on_seen", "on_time", "on_spans", "on_call", "record_work", "work")
 """Arguments of `simulate` that change nothing in the records: whoever makes the run again has others."""
@@ -101,27 +95,39 @@ def simulate(
     on_spans: Callable[[Sequence[Span]], None] | None = None,
     on_call: BeforeCall | None = None,
 ) -> Run:
-    """Run `firmware` on a recording and return the records: a `Firmware`, or the name of one, as a built-in one's, "FILE.py:NAME" or "PACKAGE:NAME".
+    """Run `firmware` on a recording and return the records of what every frame cost.
 
-    Of a `Firmware` the identity has the source files as they are now; values that were set otherwise, such as at a prompt,
-    are not in it.
+    What runs, and on what:
 
-    `board` is a shipped one's name, "FILE.py:NAME", "PACKAGE:NAME" or a BoardSpec, and `settings` are numbers to change in it
-    by their paths, such as {"sdram.nRP": 3}; see `bfsim.chip.settings`. `profile` names the compiler whose code is costed
-    in the same ways. Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
-    are macros for it, and `include_dirs` folders that it may include files from; `frames` stops early. What the code of
-    estimated kernels does is always checked; `sanitize` runs each kernel as it is written first, to find what is wrong even where the
-    compiler would leave it out, and so does the first frame where kernels run as the code that a compiler made of them just now. `before` is called with what will run and how many frames of it, before the first one does,
-    and may raise; the digest of the recording is not known then. `progress` is called with
-    (frames done, frames in all); `script` is a JSON or TOML file
-    that tells the firmware's devices what to do; `record_work` is a file to record what the cores do in, and `work` such a
-    file, which is then played in place of the firmware: the same records on another board or LDF, sooner; `on_seen` is called with what was seen in each frame, if
-    the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
-    time in seconds; `on_spans` with what the cores and devices did since the last time; `on_call`
-    with each kernel and its arguments before it runs. Runs of several threads come one after the other: use processes, as `bfsim sweep`
-    does. Ctrl-C ends the run with the frames done. Raises a
-    BfsimError for anything that is wrong with what was given. A crash in native code ends the process, a notebook's, too;
-    standard error then has the name of the kernel.
+    - `recording`: a file, or without it the built-in one; `frames` stops early.
+    - `firmware`: a `Firmware`, or the name of one: a built-in one's, "FILE.py:NAME" or "PACKAGE:NAME". Of a `Firmware` the
+      identity has the source files as they are now; values that were set otherwise, such as at a prompt, are not in it.
+    - `board`: a shipped one's name, "FILE.py:NAME", "PACKAGE:NAME" or a BoardSpec. `settings` are numbers to change in it by
+      their paths, such as {"sdram.nRP": 3}; see `bfsim.chip.settings`.
+    - `profile`: the compiler whose code is costed, named in the same ways.
+    - `ldf`: a file or the name of a shipped one, or without it the board's. `defines` are macros for it, and `include_dirs`
+      folders that it may include files from.
+    - `feed`: when pictures come. `fidelity`: how the buses are simulated.
+    - `script`: a JSON or TOML file that tells the firmware's devices what to do.
+    - `record_work`: a file to record what the cores do in. `work`: such a file, which is then played in place of the firmware:
+      the same records on another board or LDF, sooner.
+    - `sanitize` runs each kernel as it is written first, to find what is wrong even where the compiler would leave it out. So
+      does the first frame where kernels run as the code that a compiler made of them just now. What the code of estimated
+      kernels does is always checked.
+
+    Who is called meanwhile, which changes nothing in the records:
+
+    - `before` with what will run and how many frames of it, before the first one does. It may raise. The digest of the
+      recording is not known then.
+    - `progress` with (frames done, frames in all).
+    - `on_seen` with what was seen in each frame, if the firmware has a view.
+    - `on_time` now and then with the simulated time in seconds.
+    - `on_spans` with what the cores and devices did since the last time.
+    - `on_call` with each kernel and its arguments before it runs.
+
+    Raises a BfsimError for anything that is wrong with what was given. Ctrl-C ends the run with the frames done. Runs of
+    several threads come one after the other: use processes, as `bfsim sweep` does. A crash in native code ends the process, a
+    notebook's, too; standard error then has the name of the kernel.
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
@@ -136,7 +142,7 @@ def simulate(
     placement = read_placement(ldf, spec, defines, include_dirs)
     with (
         loaded.own.named(),
-        opened(recording or BUILT_IN_RECORDING) as reader,
+        opened(recording or shipped.RECORDING) as reader,
     ):
         size = FrameSize(reader.width, reader.height)
         calibration = calibration_of(reader)
@@ -225,53 +231,12 @@ def _path_of(name: Path | str | None) -> Path | None:
     return None if name is None else Path(name)
 
 
-class _KnownError(Exception):
-    """Ends a run before its first frame, when all is known about it."""
-
-
-def planned(**what: Any) -> tuple[Identity, int]:
-    """Return what `simulate` would run, without the digest of the recording, and how many frames of it. Nothing runs.
-
-    All that is given is read and checked, but the frames; raises what `simulate` would before the first one.
-    """
-    known = list[tuple[Identity, int]]()
-
-    def stop(identity: Identity, frames: int) -> None:
-        known.append((identity, frames))
-        raise _KnownError
-
-    with suppress(_KnownError):
-        simulate(before=stop, **what)
-    return known[0]
-
-
-def identified(**what: Any) -> tuple[Identity, int]:
-    """Return what `planned` does, with the digest of the recording, for which all frames are read."""
-    identity, frames = planned(**what)
-    return replace(identity, recording_digest=recording_digest(what.get("recording"), frames)), frames
-
-
 def _memories(link_map: LinkMap, spec: BoardSpec) -> Iterator[MemoryRecord]:
     for region in spec.chip.regions:
         segments = [each for each in link_map.segments if region.holds(each.start, 1)]
         if segments:
             used_bytes = sum(each.used_bytes for each in segments)
             yield MemoryRecord(memory=region.name, nbytes=region.nbytes, used_bytes=used_bytes)
-
-
-def has_view(firmware: str) -> bool:
-    """Whether `firmware` can tell what it sees. Raises FirmwareError as `simulate`."""
-    return load_firmware(firmware).firmware.view is not None
-
-
-def rows_of(firmware: str) -> tuple[BudgetRow, ...]:
-    """Return the rows of the budget of `firmware`. Raises FirmwareError as `simulate`."""
-    return load_firmware(firmware).firmware.rows
-
-
-def cores_of(firmware: str) -> tuple[str, ...]:
-    """Return the cores that have a main loop in `firmware`. Raises FirmwareError as `simulate`."""
-    return tuple(load_firmware(firmware).firmware.mains)
 
 
 def _devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Device], str]:
@@ -316,4 +281,4 @@ def _record(
     )
 
 
-__all__ = ["BUILT_IN_RECORDING", "DEFAULT_LDF", "Feed", "Fidelity", "simulate"]
+__all__ = ["Feed", "Fidelity", "simulate"]

@@ -22,7 +22,7 @@ from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.test_run import FIRMWARE, record
 from tests.tiers import exhaustive
 
@@ -328,7 +328,7 @@ def write_recording(path: Path, width: int = 16, height: int = 8) -> Path:
 def test_broken_recordings_are_refused(tmp_path: Path) -> None:
     """A missing, foreign, cut or damaged recording is named."""
     assert "nothing.mcap" in refused("run", tmp_path / "nothing.mcap")
-    data = BUILT_IN_RECORDING.read_bytes()
+    data = RECORDING.read_bytes()
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(data[: len(data) // 2])
     assert "cut.mcap" in refused("run", cut)

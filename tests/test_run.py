@@ -17,7 +17,8 @@ import pytest
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
 from bfsim.recording import RecordingWriter
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.run import BUILT_IN_RECORDING, PLACEMENTS, Feed, Fidelity, simulate
+from bfsim.run import Feed, Fidelity, simulate
+from bfsim.shipped import LDF_FOLDER, RECORDING
 from bfsim.trace import RunRecord
 
 FIRMWARE = '''\
@@ -286,8 +287,8 @@ def test_pictures_too_large_for_the_rings_are_a_link_error(home: Path) -> None:
 
 def test_names_stand_for_files_and_choices() -> None:
     """As text, as a notebook has them; what there is not is refused in one sentence."""
-    run = simulate(str(BUILT_IN_RECORDING), frames=1, ldf="thesis", feed="recorded", fidelity="fast")
-    assert run.identity == simulate(frames=1, ldf=PLACEMENTS / "thesis.ldf", feed=Feed.RECORDED).identity
+    run = simulate(str(RECORDING), frames=1, ldf="thesis", feed="recorded", fidelity="fast")
+    assert run.identity == simulate(frames=1, ldf=LDF_FOLDER / "thesis.ldf", feed=Feed.RECORDED).identity
     for wrong, words in (
         ({"feed": "slow"}, "feed must be one of demand, recorded, cameras, not 'slow'"),
         ({"fidelity": "good"}, "fidelity must be one of fast, detailed, not 'good'"),

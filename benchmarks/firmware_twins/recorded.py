@@ -17,8 +17,8 @@ import numpy as np
 from benchmarks.bare import BareCore, run_bare
 from bfsim.api import Kernel
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
 from bfsim.run_inputs import calibration_of
+from bfsim.shipped import RECORDING
 from bfsim.verifying import Sampler
 from bfsim.verifying.sample import Argument, Sample
 from tinyphoon import tinyphoon
@@ -37,7 +37,7 @@ class Calls:
 @cache
 def recorded() -> Mapping[Kernel, Calls]:
     """Play the recording; return the calls of every kernel that a core ran."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         frames = list(reader.frames())
         firmware = tinyphoon.calibrated(calibration_of(reader))
     samplers: dict[str, Sampler] = {}

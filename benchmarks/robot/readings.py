@@ -24,7 +24,7 @@ from bfsim.api import Firmware
 from bfsim.recording import RecordingReader, RecordingWriter
 from bfsim.recording.planes import YuvPlanes
 from bfsim.report.tables import new_table
-from bfsim.run import PLACEMENTS
+from bfsim.shipped import LDF_FOLDER
 from bfsim.terminal import print_report
 from tinyphoon import thesis, tinyphoon
 from tinyphoon.stages.circle_detection import circle_detection
@@ -120,7 +120,7 @@ def write_black(recording: Path, black: Path) -> None:
 def write_code_in_l2(folder: Path) -> Path:
     """Write an LDF like thesis.ldf that has room for code in L2 only, and return it."""
     for name in ("thesis.ldf", "cm-bf561.ldfi", "core.ldfi"):
-        shutil.copy(PLACEMENTS / name, folder)
+        shutil.copy(LDF_FOLDER / name, folder)
     core = folder / "core.ldfi"
     text, line = core.read_text(), "INPUT_SECTIONS($OBJECTS(program))\n"
     assert text.count(line) == 2  # both memories of code in L1

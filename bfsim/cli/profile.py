@@ -92,9 +92,9 @@ def profile(
 
 def _require_stage(stage: str, firmware: str) -> None:
     """Raise ConfigError unless the firmware has a stage of that name."""
-    from bfsim.run import rows_of
+    from bfsim.loading import load_firmware
     from bfsim.trace import REST
 
-    known = [*(each.stage for each in rows_of(firmware)), REST]
+    known = [*(each.stage for each in load_firmware(firmware).firmware.rows), REST]
     if stage not in known:
         raise ConfigError(f"--stage must name one of {', '.join(known)}, not {shown(stage)}")

@@ -71,12 +71,12 @@ def run(
       bfsim run drive.mcap --record-work drive.work
       bfsim run drive.mcap --work drive.work --set clocks.cclk_hz=500e6
     """
+    from bfsim.loading import load_firmware
     from bfsim.report.as_json import json_chunks
     from bfsim.report.save import require_apart
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
-    from bfsim.run import has_view
     from bfsim.run_inputs import files_of_run
 
     read = files_of_run(what)
@@ -86,7 +86,7 @@ def run(
     if features and not json_path:
         raise ConfigError("--features must come with --json, which it adds to")
     require_told(target, html, is_json_only=json_path == STDOUT)
-    is_telling = bool(json_path) and not what["work"] and has_view(what["firmware"])
+    is_telling = bool(json_path and not what["work"] and load_firmware(what["firmware"]).firmware.view)
     if features and not is_telling:
         raise ConfigError(
             f"--features must go with firmware that has a view to tell what it sees, and {what['firmware']} has none"

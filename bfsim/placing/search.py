@@ -22,8 +22,8 @@ from bfsim.placing.placed import NEAR_CAMERA, Fill, Placed, PlacedPart, Trial
 from bfsim.placing.reasons import about, accesses_of, cost_ms, reason
 from bfsim.recording import RecordingReader
 from bfsim.report.budget import milliseconds
-from bfsim.run import BUILT_IN_RECORDING
 from bfsim.run_inputs import calibration_of, read_placement
+from bfsim.shipped import RECORDING
 from bfsim.trace import RunRecord
 
 ROUNDS = 4
@@ -72,7 +72,7 @@ def place(
     loaded = load_firmware(firmware)
     require_cores(loaded.firmware, spec)
     script = read_placement(ldf, spec, defines, include_dirs)
-    with RecordingReader(recording or BUILT_IN_RECORDING) as reader, loaded.own.named():
+    with RecordingReader(recording or RECORDING) as reader, loaded.own.named():
         size = FrameSize(reader.width, reader.height)
         symbols = symbols_of(
             loaded.firmware.calibrated(calibration_of(reader)), size, build_for(loaded, compiler)

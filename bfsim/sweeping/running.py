@@ -16,14 +16,16 @@ from typing import Any
 from bfsim.checking import arguments_of
 from bfsim.errors import BfsimError, ConfigError, RecordingError, WorkError
 from bfsim.identifying import recording_digest
+from bfsim.loading import load_firmware
 from bfsim.once import Known, remembering
+from bfsim.planning import planned
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.result_file import Result
 from bfsim.report.seen_json import SeenStore
 from bfsim.report.sweep.figures import sweep_figures
 from bfsim.report.warnings import warnings_of
 from bfsim.result import Run
-from bfsim.run import has_view, planned, simulate
+from bfsim.run import simulate
 from bfsim.trace import Identity, StallReason
 
 PACKAGE = Path(__file__).parent.parent
@@ -137,7 +139,7 @@ def _recorded(arguments: Arguments, work: Work | None) -> tuple[Run, Figures] | 
 def _simulated(arguments: Arguments) -> tuple[Run, Figures]:
     """Run the firmware."""
     with SeenStore(with_features=False) as store:
-        telling = store.add if has_view(arguments["firmware"]) else None
+        telling = store.add if load_firmware(arguments["firmware"]).firmware.view else None
         run = simulate(**arguments, on_seen=telling)
         return run, sweep_figures(Result(run, store, ())) if run.frames else {}
 

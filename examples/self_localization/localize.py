@@ -21,7 +21,8 @@ from sight import Eye, sight_of
 
 from bfsim.api import Script
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, simulate
+from bfsim.run import simulate
+from bfsim.shipped import RECORDING
 from tinyphoon import tinyphoon
 from tinyphoon.strategy_unit.decoding import Results, decode_results
 from tinyphoon.strategy_unit.messages import MessageType
@@ -121,9 +122,7 @@ def localize(eye: Eye, truth: Sequence[Pose], messages: Sequence[Results], seed:
 def main() -> None:
     """Print where the robot takes itself to be, frame by frame."""
     parser = argparse.ArgumentParser(description="Localize a robot by what its vision sensor reports.")
-    parser.add_argument(
-        "recording", nargs="?", type=Path, default=BUILT_IN_RECORDING, help="a rendered drive"
-    )
+    parser.add_argument("recording", nargs="?", type=Path, default=RECORDING, help="a rendered drive")
     parser.add_argument("--seed", type=int, default=2007, help="of the particles and of the wheels' errors")
     asked = parser.parse_args()
     steps = localize(*known_of(asked.recording), messages_of(asked.recording), asked.seed)

@@ -12,7 +12,7 @@ from PIL import Image
 from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from bfsim.recording.images import picture_of_file
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 
 OTHER = """
 import numpy as np
@@ -101,7 +101,7 @@ def test_a_mode_changes_what_colours_are_called(thirds: Path, tmp_path: Path) ->
     assert seen(thirds) == {"orange": 0.33, "blue": 0.33, "no colour": 0.33}
     assert seen(thirds, "--script", script) == {"orange": 0.33, "yellow": 0.33, "black": 0.33}
     script.write_text(json.dumps({"send": [{"after_frames": 2, "mode": {"edges": edges}}]}))
-    frames = [seen(BUILT_IN_RECORDING, "--script", script, "--frame", frame) for frame in (2, 3)]
+    frames = [seen(RECORDING, "--script", script, "--frame", frame) for frame in (2, 3)]
     assert frames[0]["no colour"] > 0
     assert "no colour" not in frames[1]
 
@@ -153,7 +153,7 @@ def test_another_firmware_has_other_colours(thirds: Path, other: Path, tmp_path:
 
 def test_firmware_that_fails_is_told_with_its_line(other: Path, tmp_path: Path) -> None:
     """And numbers of another shape than the picture's are refused."""
-    called = (BUILT_IN_RECORDING, "--firmware", f"{other}:halving")
+    called = (RECORDING, "--firmware", f"{other}:halving")
     assert f"failed with ValueError: no such colour ({other}:7)" in refused(*called, "--frame", 3)
     assert "must return numbers of uint8 and of shape (240, 320), not uint8 of (6, 320)" in refused(*called)
 

@@ -10,9 +10,7 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from bfsim.cli.main import main
-from bfsim.run import DEFAULT_LDF
-
-FOLDER = DEFAULT_LDF.parent
+from bfsim.shipped import LDF_FOLDER
 
 # a single core of another chip, as its default LDF begins
 BF533 = """
@@ -56,7 +54,7 @@ def test_shipped_ldfs_are_found_by_name_from_anywhere(
     """A file of that name in the current folder is meant before; a folder is not."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "l2").mkdir()
-    assert call(name, "--no-symbols").output == call(str(FOLDER / "l2.ldf"), "--no-symbols").output
+    assert call(name, "--no-symbols").output == call(str(LDF_FOLDER / "l2.ldf"), "--no-symbols").output
     (tmp_path / "l2").rmdir()
     (tmp_path / name).write_text(BF533)
     assert "no firmware: the LDF is for an ADSP-BF533" in call(name, "--no-symbols").output
@@ -65,7 +63,7 @@ def test_shipped_ldfs_are_found_by_name_from_anywhere(
 def test_shipped_parts_of_ldfs_are_included_from_anywhere(tmp_path: Path) -> None:
     """A placement of one's own is a few lines; a file of that name beside it is meant before."""
     own = tmp_path / "mine.ldf"
-    own.write_text((FOLDER / "thesis.ldf").read_text())
+    own.write_text((LDF_FOLDER / "thesis.ldf").read_text())
     done = call(str(own), "--no-symbols")
     assert done.exit_code == 0
     assert done.output.replace("mine.ldf", "thesis.ldf") == call("thesis", "--no-symbols").output
@@ -82,7 +80,7 @@ def test_an_unknown_name_is_told_the_known_ones() -> None:
 
 def test_findings_do_not_fail() -> None:
     """Lint is advice: exit code 0."""
-    done = call(str(FOLDER / "sdram.ldf"), "--no-symbols")
+    done = call(str(LDF_FOLDER / "sdram.ldf"), "--no-symbols")
     assert done.exit_code == 0
     assert "MEM_SDRAM_BANK2: table in SDRAM" in done.output
     assert "\nSymbols" not in done.output

@@ -15,7 +15,7 @@ from bfsim.linker import link
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.firmware import references
 from tests.firmware.blob_references import labelled, segments
 from tests.firmware.colour_pictures import (
@@ -110,7 +110,7 @@ def check(pictures: Sequence[Words], thresholds: BlobThresholds) -> list[Seen]:
 @pytest.fixture(scope="module")
 def shipped() -> list[tuple[Words, Words]]:
     """The opened images of the built-in recording, left and right."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         return [(opened(frame.left), opened(frame.right)) for frame in reader.frames()]
 
 

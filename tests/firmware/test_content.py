@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.quality.seen import Seen, see, see_recording
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.firmware.pictures import Bytes, grey_uyvy, random_uyvy, stripes
 from tests.firmware.whole_pictures import stereo
 
@@ -20,7 +20,7 @@ WIDTH, HEIGHT = 320, 240
 @pytest.fixture(scope="module")
 def shipped() -> list[Seen]:
     """The right picture of every frame of the built-in recording: core A's stages have the stereo in them, too."""
-    return see_recording(BUILT_IN_RECORDING, 8)[1::2]
+    return see_recording(RECORDING, 8)[1::2]
 
 
 def covered() -> Bytes:

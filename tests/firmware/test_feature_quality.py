@@ -8,13 +8,13 @@ from click.testing import CliRunner
 from benchmarks.feature_quality import main
 from benchmarks.quality import blobs, edges, lines
 from benchmarks.quality.seen import Seen, see_recording
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 
 
 @pytest.fixture(scope="module")
 def shipped() -> list[Seen]:
     """The first two stereo frames."""
-    return see_recording(BUILT_IN_RECORDING, 2)
+    return see_recording(RECORDING, 2)
 
 
 def test_edges_are_those_of_canny(shipped: list[Seen]) -> None:

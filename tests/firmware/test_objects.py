@@ -9,7 +9,8 @@ import pytest
 
 from benchmarks.scenes import place_of
 from benchmarks.seen_objects import Seen, see
-from bfsim.run import BUILT_IN_RECORDING, simulate
+from bfsim.run import simulate
+from bfsim.shipped import RECORDING
 from tinyphoon.stores.objects import (
     BY_DISPARITY,
     BY_FLOOR,
@@ -30,7 +31,7 @@ THESIS_MS = 1.0  # T Table 6.4
 @pytest.fixture(scope="module")
 def frames() -> list[Seen]:
     """All frames, as the firmware sees them."""
-    return see(BUILT_IN_RECORDING)
+    return see(RECORDING)
 
 
 def best(seen: Seen, shape: Shape) -> ReportedObject:
@@ -61,7 +62,7 @@ def test_the_ball(frames: list[Seen]) -> None:
 def test_the_ball_the_thesis_s_way() -> None:
     """In whole pixels and by size alone it stays below the thesis's 10 %."""
     plain = replace(INDOOR_FIELD, circles=PLAIN_CIRCLES, objects=replace(INDOOR_FIELD.objects, refined=False))
-    for seen in see(BUILT_IN_RECORDING, plain, frames=1):
+    for seen in see(RECORDING, plain, frames=1):
         ball = best(seen, Shape.BALL)
         assert ball.measures == BY_SIZE
         wrong_mm, far_mm = off(seen, "ball", ball)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
 from bfsim.run_inputs import calibration_of
+from bfsim.shipped import RECORDING
 from tests.firmware.object_rig import as_dicts
 from tests.firmware.test_areas import run
 from tests.firmware.whole_pictures import buffer
@@ -24,7 +24,7 @@ BOTH = SEEN_LEFT | SEEN_RIGHT
 
 def objects(*names: dict[str, Any]) -> list[dict[str, int]]:
     """The history after as many frames as there are modes, and one more."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         firmware = tinyphoon.calibrated(calibration_of(reader))
         frames = list(reader.frames(len(names) + 1))
     board, _ = run(frames, *names, firmware=firmware)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from bfsim.chip.bf561 import BF561
-from bfsim.run import DEFAULT_LDF, simulate
+from bfsim.run import simulate
+from bfsim.shipped import LDF_FOLDER
 from bfsim.trace import StallReason
 
-PLACEMENTS = DEFAULT_LDF.parent
 SEMAPHORES_OF_FIRST_FRAME = (
     3  # each core posts one and takes one; before it, core A posts that orders are taken
 )
@@ -22,7 +22,7 @@ def test_rows_in_l2_stall_for_every_read() -> None:
     """
     assert BF561.l2
     at_home = simulate(frames=1, profile="vdsp-O2")
-    moved = simulate(frames=1, ldf=PLACEMENTS / "l2.ldf", profile="vdsp-O2")
+    moved = simulate(frames=1, ldf=LDF_FOLDER / "l2.ldf", profile="vdsp-O2")
     assert moved.frames[0].results == at_home.frames[0].results
     memory_of = {each.buffer: each.memory for each in moved.buffers}
     for core, home in zip(moved.frames[0].cores, at_home.frames[0].cores, strict=True):
@@ -40,7 +40,7 @@ def test_rows_in_l2_stall_for_every_read() -> None:
 @pytest.mark.exhaustive
 def test_rows_in_sdram_stall_more_than_in_l2() -> None:
     """SDRAM is the slowest place, and its reasons are told apart: pages, and the bus that both cores want."""
-    l2, sdram = (simulate(frames=1, ldf=PLACEMENTS / name) for name in ("l2.ldf", "sdram.ldf"))
+    l2, sdram = (simulate(frames=1, ldf=LDF_FOLDER / name) for name in ("l2.ldf", "sdram.ldf"))
     assert sdram.frames[0].results == l2.frames[0].results
     assert sdram.frames[0].result_cclk > 2 * l2.frames[0].result_cclk
     met = {reason for core in sdram.frames[0].cores for each in core.stages for reason in each.stall_cclk}

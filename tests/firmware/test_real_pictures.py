@@ -10,7 +10,7 @@ from benchmarks.real import depth
 from benchmarks.real.sets import read_recording
 from benchmarks.real_pictures import see, sets_in
 from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 
 LOWER = 3
 """Rows by which the right camera looks too low; its table undoes it."""
@@ -18,7 +18,7 @@ LOWER = 3
 
 def test_a_recording_is_seen_as_rectified(tmp_path: Path) -> None:
     """The first frame of the built-in recording, its right picture some rows too high: as many edges as without, and as right."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         (frame,) = reader.frames(limit=1)
         geometry, size = reader.geometry, {"width": reader.width, "height": reader.height}
     rows, columns = np.indices((size["height"], size["width"]), np.int32)

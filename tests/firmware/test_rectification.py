@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 from bfsim.api import Calibration, FirmwareError, SourcePixels
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.firmware.lenses import bilinear, nearest, rectified, sighted, source_points
 from tests.firmware.pictures import random_uyvy
 from tests.firmware.whole_pictures import buffer, check_core, random_frames, run
@@ -120,7 +120,7 @@ def test_rectification_needs_few_cycles(width: int, height: int) -> None:
 
 def test_one_table_is_two_grey_levels_from_four_weighted_ones() -> None:
     """The luma of the built-in recording's first picture: mean absolute difference between the nearest pixel and the bilinear one."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         (frame,) = reader.frames(1)
         rows, columns = source_points(reader.width, reader.height, **CAMERA)
     sources = nearest(rows, columns)

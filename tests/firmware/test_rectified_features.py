@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from bfsim.api import SourcePixels
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from bfsim.trace import FrameRecord
 from tests.firmware import rectified_references as plain
 from tests.firmware.lenses import nearest, source_points
@@ -276,7 +276,7 @@ def by_stage(record: FrameRecord) -> dict[str, object]:
 
 def test_without_tables_it_is_the_built_in_firmware() -> None:
     """To the cycle and to the bit: the same records of the same frames, and the same memories."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         frames = list(reader.frames(2))
     plain_board, one = run(frames, tinyphoon)
     board, other = run(frames, rectified_features)

@@ -13,8 +13,8 @@ import pytest
 from bfsim.api import Core, Firmware
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
 from bfsim.run_inputs import calibration_of
+from bfsim.shipped import RECORDING
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.pictures import EXTREMES
 from tests.firmware.whole_pictures import (
@@ -43,7 +43,7 @@ BOTH = pytest.mark.parametrize("firmware", [tinyphoon, *exhaustive(fast)], ids=[
 @pytest.mark.parametrize(("firmware", "count"), [(tinyphoon, 2), *exhaustive((tinyphoon, 1), (fast, 2))])
 def test_built_in_recording(firmware: Firmware, count: int) -> None:
     """The first and the second frame of the soccer scene come out as in numpy, on both cores."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         check_last_frame(list(reader.frames(count)), firmware)
 
 

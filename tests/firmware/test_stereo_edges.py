@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from bfsim.api import FrameSize
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.firmware.line_rig import BareCore, size_of
 from tests.firmware.stereo_edge_references import EdgeLimits, edges_3d
 from tests.firmware.stereo_references import Edge, Rig
@@ -308,7 +308,7 @@ def check_board(frames, width: int, height: int) -> dict[str, int]:
 @pytest.mark.exhaustive
 def test_rendered_edges() -> None:
     """The second frame of the built-in recording."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         results = check_board(list(reader.frames(2)), reader.width, reader.height)
     assert results["edges_3d_A"] > 100
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from benchmarks.seen_stereo import see_stereo
 from bfsim.api import Calibration
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.firmware import stereo_references as references
 from tests.firmware.stereo_edge_references import partners_of
 from tests.firmware.stereo_references import Line3D, Rig, Words
@@ -223,7 +223,7 @@ def test_depths_that_contradict_each_other_are_refused() -> None:
 @pytest.mark.parametrize("mode", BOTH)
 def test_rendered_lines(mode: StereoLineThresholds) -> None:
     """On the board: the 3-D lines of a rendered scene are those of the lines that both cores left."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         frames = list(reader.frames(2))
     board, outcome = run(frames)
     results = dict(outcome.frames[-1].results)

@@ -12,7 +12,7 @@ import pytest
 from bfsim.api import Calibration, Core, Firmware, FrameSize
 from bfsim.machine.board import Board
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.shipped import RECORDING
 from tests.firmware.lenses import nearest, source_points
 from tests.firmware.pictures import EXTREMES, grey_uyvy
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
@@ -105,7 +105,7 @@ def test_pictures_of_any_size(width: int, height: int) -> None:
 @pytest.mark.exhaustive
 def test_the_built_in_recording() -> None:
     """Its second frame: the ball is in it."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         assert (
             check_same(list(reader.frames(2)), Calibration(size=FrameSize(reader.width, reader.height))) == 2
         )

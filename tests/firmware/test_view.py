@@ -13,8 +13,9 @@ import pytest
 from bfsim.api import Readout
 from bfsim.recording import RecordingReader
 from bfsim.report.digest import cycle_digest
-from bfsim.run import BUILT_IN_RECORDING, simulate
+from bfsim.run import simulate
 from bfsim.seen import SeenFrame, Solid
+from bfsim.shipped import RECORDING
 from tinyphoon.areas import Area
 from tinyphoon.fields import to_words
 from tinyphoon.stages.blob_detection import hues
@@ -50,7 +51,7 @@ def test_nobody_reads_memories_unless_asked(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_every_frame_is_seen_by_both_cameras(run: tuple[list[SeenFrame], Any]) -> None:
     """In order, with the recorded times and the pictures that were taken."""
-    with RecordingReader(BUILT_IN_RECORDING) as reader:
+    with RecordingReader(RECORDING) as reader:
         recorded = list(reader.frames(FRAMES))
     assert [each.index for each in run[0]] == [each.index for each in recorded]
     for frame, pair in zip(run[0], recorded, strict=True):

@@ -11,9 +11,8 @@ from bfsim.kernel.profile import DEFAULT
 from bfsim.mapping import map_memory
 from bfsim.report.ldf.lint import lint
 from bfsim.report.ldf.map import Kind, MemoryMap
-from bfsim.run import DEFAULT_LDF
+from bfsim.shipped import LDF_FOLDER
 
-FOLDER = DEFAULT_LDF.parent
 SIZES = [(160, 120), (320, 240), (640, 480)]
 KIB = 1024
 CACHE_BYTES = 16 * KIB
@@ -29,7 +28,7 @@ CLOSE = (
 def placed(name: str, width_px: int = 320, height_px: int = 240, profile: str = DEFAULT.name) -> MemoryMap:
     """The built-in firmware in one of the shipped placements."""
     return map_memory(
-        FOLDER / f"{name}.ldf", firmware="tinyphoon", board="cm-bf561", profile=profile,
+        LDF_FOLDER / f"{name}.ldf", firmware="tinyphoon", board="cm-bf561", profile=profile,
         width_px=width_px, height_px=height_px,
     )  # fmt: skip
 

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 from bfsim.linker import LinkerScript, parse_ldf
-from bfsim.run import PLACEMENTS
+from bfsim.shipped import LDF_FOLDER
 
 CODE = "INPUT_SECTIONS($OBJECTS(program))"
 BEYOND_L1 = "INPUT_SECTIONS($OBJECTS(noncache_code program))"
@@ -17,14 +17,14 @@ CACHED_CODE_IN_SDRAM = "#if !CACHES                    // what L1 has no room fo
 @cache
 def shipped(name: str) -> LinkerScript:
     """Return one of the shipped placements, read once."""
-    return parse_ldf(PLACEMENTS / name)
+    return parse_ldf(LDF_FOLDER / name)
 
 
 @cache
 def changed(name: str, *changes: tuple[str, str]) -> LinkerScript:
     """Return a shipped placement with parts of the text of core.ldfi replaced."""
     with tempfile.TemporaryDirectory() as folder:
-        for path in PLACEMENTS.iterdir():
+        for path in LDF_FOLDER.iterdir():
             text = path.read_text()
             if path.name == "core.ldfi":
                 for old, new in changes:

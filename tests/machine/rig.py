@@ -35,7 +35,7 @@ from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Main
 from bfsim.machine.simulation import END_OF_TIME, Simulation
 from bfsim.machine.symbols import symbols_of
-from bfsim.run import DEFAULT_LDF
+from bfsim.shipped import DEFAULT_LDFS
 from bfsim.trace import BoardRecord, CoreFrame, FrameRecord, StageCost, StallReason
 
 SIZE = FrameSize(16, 8)
@@ -100,7 +100,7 @@ def _core_buffers(size: FrameSize, number: int) -> Sequence[Buffer]:
 @cache
 def thesis_ldf() -> LinkerScript:
     """Return the thesis's placement, read once."""
-    return parse_ldf(DEFAULT_LDF)
+    return parse_ldf(DEFAULT_LDFS["ADSP-BF561"])
 
 
 def see_all(core: Core) -> Play:

@@ -13,7 +13,8 @@ from PIL import Image, ImageFilter
 from bfsim.cli.record import record
 from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables
 from bfsim.recording.exchange import ExchangeCheck
-from bfsim.run import BUILT_IN_RECORDING, simulate
+from bfsim.run import simulate
+from bfsim.shipped import RECORDING
 from bfsim.trace import WarningKind
 from tests.firmware.pictures import grey_uyvy
 
@@ -91,12 +92,12 @@ def test_an_import_says_it(tmp_path: Path) -> None:
 def test_a_run_says_it(tmp_path: Path) -> None:
     """As a warning; of the built-in recording as it is, nothing is said."""
     with (
-        RecordingReader(BUILT_IN_RECORDING) as reader,
+        RecordingReader(RECORDING) as reader,
         RecordingWriter(tmp_path / "a.mcap", width=reader.width, height=reader.height) as writer,
     ):
         for frame in reader.frames(limit=1):
             writer.add(frame.right, frame.left, frame.left_ns, frame.right_ns)
-    for recording, count in ((tmp_path / "a.mcap", 1), (BUILT_IN_RECORDING, 0)):
+    for recording, count in ((tmp_path / "a.mcap", 1), (RECORDING, 0)):
         run = simulate(recording, frames=1)
         told = [each for each in run.assumptions if "exchanged" in each.text]
         assert [each.kind for each in told] == [WarningKind.GEOMETRY] * count

@@ -126,13 +126,13 @@ def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any
 
     Ends the command if something interrupts it.
     """
+    from bfsim.loading import load_firmware
     from bfsim.report.result_file import result_of
     from bfsim.report.seen_json import SeenStore
-    from bfsim.run import has_view
 
     seen = stack.enter_context(SeenStore(with_features=False))
     watchers = watchers or Watchers()
-    if has_view(what["firmware"]):
+    if load_firmware(what["firmware"]).firmware.view:
         watchers.seen.append(seen.add)
     done = simulated(watchers=watchers, **what)
     exit_if_interrupted(done)

@@ -143,10 +143,10 @@ def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
     """
     if heat is None:
         return None
+    from bfsim.loading import load_firmware
     from bfsim.report.heat import stages_of
-    from bfsim.run import rows_of
 
-    rows = rows_of(firmware)
+    rows = load_firmware(firmware).firmware.rows
     try:
         return stages_of(rows, None if heat == ALL_STAGES else heat)
     except KeyError:

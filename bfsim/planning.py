@@ -1,0 +1,37 @@
+"""What a run would be, before it begins: everything that is given is read and checked, but the frames."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from bfsim.identifying import recording_digest
+from bfsim.run import simulate
+from bfsim.trace import Identity
+
+
+class _KnownError(Exception):
+    """Ends a run before its first frame, when all is known about it."""
+
+
+def planned(**what: Any) -> tuple[Identity, int]:
+    """Return what `simulate` would run, without the digest of the recording, and how many frames of it. Nothing runs.
+
+    Raises what `simulate` would before the first frame.
+    """
+    known = list[tuple[Identity, int]]()
+
+    def stop(identity: Identity, frames: int) -> None:
+        known.append((identity, frames))
+        raise _KnownError
+
+    with suppress(_KnownError):
+        simulate(before=stop, **what)
+    return known[0]
+
+
+def identified(**what: Any) -> tuple[Identity, int]:
+    """Return what `planned` does, with the digest of the recording, for which all frames are read."""
+    identity, frames = planned(**what)
+    return replace(identity, recording_digest=recording_digest(what.get("recording"), frames)), frames
