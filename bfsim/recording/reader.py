@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections import deque
 from collections.abc import Iterator, Mapping
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
-from google.protobuf.message import DecodeError
 from mcap.records import Message
 
 from bfsim.errors import RecordingError, cut, shown
@@ -24,6 +20,7 @@ from bfsim.recording.frames import (
     StereoGeometry,
     UyvyImage,
 )
+from bfsim.recording.messages import disparity_of, image_of, picture_of, truth_of
 
 if TYPE_CHECKING:
     from bfsim.recording.calibration_report import CalibrationReport
@@ -134,27 +131,30 @@ class RecordingReader:
         index = 0
         for channel, message in self._file.messages([*waiting, layout.TRUTH_TOPIC, layout.DISPARITY_TOPIC]):
             if channel.topic == layout.TRUTH_TOPIC:
-                truths[message.sequence] = self._decode_truth(message)
+                truths[message.sequence] = truth_of(
+                    message, self._place(channel.topic, "frame", message.sequence)
+                )
                 continue
             if channel.topic == layout.DISPARITY_TOPIC:
-                disparities[message.sequence] = self._decode_disparity(message)
+                where = self._place(channel.topic, "frame", message.sequence)
+                disparities[message.sequence] = disparity_of(message, self.width, self.height, where)
                 continue
-            place = f"({self.path}: {channel.topic}, image {index + len(waiting[channel.topic])})"
+            where = self._place(channel.topic, "image", index + len(waiting[channel.topic]))
             if message.log_time <= last_ns[channel.topic]:
-                raise RecordingError(f"time stamps must rise, but {message.log_time} ns comes twice {place}")
+                raise RecordingError(f"time stamps must rise, but {message.log_time} ns comes twice {where}")
             last_ns[channel.topic] = message.log_time
             waiting[channel.topic].append(message)
             ahead = len(waiting[channel.topic])
             if ahead > _AHEAD_PICTURES and ahead * len(message.data) > _AHEAD_BYTES:
                 raise RecordingError(
-                    f"left and right camera must be on one clock, but one is far ahead {place}"
+                    f"left and right camera must be on one clock, but one is far ahead {where}"
                 )
             if all(waiting.values()):
                 left, right = (queue.popleft() for queue in waiting.values())
                 yield StereoFrame(
                     index,
-                    self._decode_image(left, layout.LEFT_TOPIC, index),
-                    self._decode_image(right, layout.RIGHT_TOPIC, index),
+                    self._picture(left, layout.LEFT_TOPIC, index),
+                    self._picture(right, layout.RIGHT_TOPIC, index),
                     left.log_time,
                     right.log_time,
                     truths.pop(index, None),
@@ -162,38 +162,12 @@ class RecordingReader:
                 )
                 index += 1
 
-    def _decode_image(self, message: Message, topic: str, index: int) -> UyvyImage:
-        where = f"({self.path}: {topic}, image {index})"
-        image = _parse_image(message, where)
-        if (image.width, image.height) != (self.width, self.height):
-            raise RecordingError(
-                f"every image must have the size of the first, {self.width}x{self.height}, "
-                f"not {image.width}x{image.height} {where}"
-            )
-        rows = np.frombuffer(image.data, np.uint8).reshape(image.height, image.step)
-        return rows[:, : 2 * image.width]
+    def _picture(self, message: Message, topic: str, index: int) -> UyvyImage:
+        return picture_of(message, self.width, self.height, self._place(topic, "image", index))
 
-    def _decode_truth(self, message: Message) -> Mapping[str, Any]:
-        where = f"({self.path}: {layout.TRUTH_TOPIC}, frame {message.sequence})"
-        try:
-            truth = json.loads(message.data)
-        except (ValueError, RecursionError) as error:
-            raise RecordingError(f"ground truth must be JSON: {cut(str(error))} {where}") from None
-        if not isinstance(truth, dict):
-            raise RecordingError(f"ground truth must be a JSON object, not {type(truth).__name__} {where}")
-        return truth
-
-    def _decode_disparity(self, message: Message) -> DisparityImage:
-        where = f"({self.path}: {layout.DISPARITY_TOPIC}, frame {message.sequence})"
-        image = _parse_message(message, where)
-        found = (image.encoding, image.width, image.height, len(image.data))
-        wanted = (layout.DISPARITY_ENCODING, self.width, self.height, 4 * self.width * self.height)
-        if found != wanted:
-            raise RecordingError(
-                "disparity must have encoding, width, height and bytes of "
-                f"{', '.join(map(str, wanted))}, not {', '.join(map(str, found))} {where}"
-            )
-        return np.frombuffer(image.data, "<f4").reshape(self.height, self.width)
+    def _place(self, topic: str, what: str, index: int) -> str:
+        """Return the place of a message, for errors."""
+        return f"({self.path}: {topic}, {what} {index})"
 
     def _check_channels(self) -> None:
         topics = sorted(channel.topic for channel in self._file.summary.channels.values())
@@ -235,7 +209,7 @@ class RecordingReader:
             first = next(self._file.messages([topic]), None)
             if first is None:
                 raise RecordingError(f"{self.path}: recording must have images in {topic}, not none")
-            image = _parse_image(first[1], f"({self.path}: {topic}, image 0)")
+            image = image_of(first[1], self._place(topic, "image", 0))
             sizes.append((image.width, image.height))
         if sizes[0] != sizes[1]:
             (left_width, left_height), (right_width, right_height) = sizes
@@ -301,41 +275,3 @@ class RecordingReader:
         except RecordingError as error:
             raise RecordingError(f"{self.path}: {error}") from None
         return rectification
-
-
-def _parse_message(message: Message, where: str) -> RawImage:
-    try:
-        image: RawImage = RawImage.FromString(message.data)
-    except DecodeError:
-        raise RecordingError(
-            f"image must be a {layout.IMAGE_SCHEMA} message, not {len(message.data)} other bytes {where}"
-        ) from None
-    return image
-
-
-def _parse_image(message: Message, where: str) -> RawImage:
-    """Return the message as an image whose sizes fit each other and its data."""
-    image = _parse_message(message, where)
-    if image.encoding not in layout.IMAGE_ENCODINGS:
-        raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {shown(image.encoding)} {where}")
-    if image.width == 0 or image.height == 0 or image.width % 2:
-        raise RecordingError(
-            f"image width must be even (UYVY pixels come in pairs) and no side 0, "
-            f"not {image.width}x{image.height} {where}"
-        )
-    if len(image.data) > layout.LARGEST_PICTURE_BYTES:
-        raise RecordingError(
-            f"image must have at most {layout.LARGEST_PICTURE_BYTES >> 20} MiB, not {image.width}x{image.height} pixels "
-            f"in {len(image.data)} bytes {where}"
-        )
-    if image.step < 2 * image.width:
-        raise RecordingError(
-            f"UYVY image of width {image.width} must have rows of at least {2 * image.width} bytes, "
-            f"not {image.step} {where}"
-        )
-    if len(image.data) != image.step * image.height:
-        raise RecordingError(
-            f"image of {image.height} rows of {image.step} bytes must have {image.step * image.height} "
-            f"bytes, not {len(image.data)} {where}"
-        )
-    return image
