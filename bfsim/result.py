@@ -96,7 +96,7 @@ class Run(RunRecord):
         """Return the tables of the run by their names, each as lists by column: Polars, Arrow and others take them so.
 
         They are frames, results, stages, stalls, kernels, lines, owners, accesses, paths, buffers, traffic and spans;
-        `bfsim.report.columns` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
+        `bfsim.report.cells` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
         """
         from bfsim.report.columns import tables_of
 
