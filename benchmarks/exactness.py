@@ -34,8 +34,8 @@ from bfsim.verifying import Sampler
 from bfsim.verifying.played import simulated, translated
 from bfsim.verifying.sample import Argument, Sample
 from tests.kernel.modules import import_text
+from tests.kernel.plain import arrays_of
 from tests.kernel.programs import programs
-from tests.kernel.test_semantics import arrays_of
 
 Set = tuple[str, Sampler, ObjectCode]
 LEVELS = (GCC_O2, GCC_O0)

@@ -18,10 +18,9 @@ from bfsim.kernel import GCC_O2
 from bfsim.loading import load_firmware, load_kernel
 from bfsim.machine.memories import Row
 from bfsim.trace.assembly import Assembly
-from tests.test_kernel_from import SUMS
-from tests.test_run import FIRMWARE
+from tests.eyes import FIRMWARE
+from tests.sums import DATA, SUMS
 
-DATA = Path(__file__).parent / "blackfin" / "data"
 CALLS = 3
 
 

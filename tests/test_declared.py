@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from bfsim.api import f32, i8, i16, i32, kernel_from, u8, u16
 from bfsim.errors import KernelError
+from tests.sums import DATA
 
-FILE = Path(__file__).parent / "blackfin" / "data" / "prototypes.o"
+FILE = DATA / "prototypes.o"
 SUM = "int sum(const unsigned char *row, int n)"
 STEP = "void step(const short int *gains, struct state *state, void *scratch, float by, enum pace pace)"
 WIDE = "double wide(double x, int n)"

@@ -23,7 +23,7 @@ from click.testing import CliRunner, Result
 from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from bfsim.shipped import RECORDING
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 from tests.tiers import exhaustive
 
 

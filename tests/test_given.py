@@ -17,7 +17,7 @@ from bfsim.given import CELL, given_firmware
 from bfsim.loading import load_firmware
 from bfsim.machine.program import Firmware
 from bfsim.run import simulate
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 
 PACKAGE = {
     "__init__.py": "from fw_pack.parts import main, buffers\nfrom bfsim.api import BudgetRow, Firmware\n"

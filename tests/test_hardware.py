@@ -17,7 +17,7 @@ from bfsim.errors import ConfigError
 from bfsim.hardware import find_board, find_profile
 from bfsim.kernel.profile import DEFAULT
 from bfsim.run import simulate
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 
 MINE = """\
 from dataclasses import replace

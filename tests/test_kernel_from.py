@@ -25,20 +25,9 @@ from bfsim.kernel.objects import compiled
 from bfsim.kernel.objects.sources import file_lines
 from bfsim.loading import load_kernel
 from bfsim.machine.memories import Memories
+from tests.sums import DATA, SUMS, sums
 
-DATA = Path(__file__).parent / "blackfin" / "data"
-SUMS = f"""
-from bfsim.api import i32, kernel_from
-
-sums = kernel_from({str(DATA / "sums.o")!r}, "sums", row=u8[:], out=i32[:], n=i32, first=i32, result=i32)
-"""
-"""For the end of firmware of a test: a kernel that is object code."""
 ROW = np.arange(0, 96, 3, dtype=np.uint8)
-
-
-def sums(folder: Path = DATA, file: str = "sums.o") -> Kernel:
-    """The function of `sums.c`: of each place, the weighted sum of four elements from there on."""
-    return kernel_from(folder / file, "sums", row=u8[:], out=i32[:], n=i32, first=i32, result=i32)
 
 
 def expected(row: np.ndarray) -> np.ndarray:

@@ -33,9 +33,9 @@ from bfsim.seen import SeenFrame
 from bfsim.shipped import FIRMWARE, accuracy_on
 from bfsim.trace import StallReason
 from bfsim.verifying import Sampler, verify
+from tests.eyes import FIRMWARE as SMALL_FIRMWARE
 from tests.kernel import cost_kernels
 from tests.machine.owners import assert_owned
-from tests.test_run import FIRMWARE as SMALL_FIRMWARE
 from tests.tiers import exhaustive
 
 EXACT, CODE = DEFAULT.name, "GCC 12.2.0 -O2, timing adi"

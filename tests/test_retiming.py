@@ -23,7 +23,7 @@ from bfsim.machine.retiming.work_check import check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
 from bfsim.work_file import FORMAT, _read, _written
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 from tests.tiers import exhaustive
 
 FRAMES = 2

@@ -10,7 +10,7 @@ from bfsim import run
 from bfsim.errors import KernelError
 from bfsim.kernel import VDSP_O2
 from bfsim.kernel.build import Build
-from tests.test_run import FIRMWARE, record, run_eyes
+from tests.eyes import FIRMWARE, record, run_eyes
 
 CHANGES = (
     ("out: u8[:])", "out: u8[:], ahead: i32)"),

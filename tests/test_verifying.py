@@ -24,11 +24,11 @@ from bfsim.verifying.played import Calls, simulated
 from bfsim.verifying.player import FACTOR, checksum
 from bfsim.verifying.sample import Sample
 from bfsim.verifying.verify import compared
+from tests.eyes import FIRMWARE, record
 from tests.kernel import c_kernels
 from tests.kernel.host_c import COMPILER, needs_compiler
 from tests.kernel.test_c import drawn
-from tests.test_kernel_from import SUMS, sums
-from tests.test_run import FIRMWARE, record
+from tests.sums import SUMS, sums
 
 WITHOUT_OVERFLOW = ("last_of_loop", "moving_stop", "left_first", "sometimes", "floats", "choices", "unsigned")
 SANITIZED = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")

@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 import yaml
 
+from tests.eyes import FIRMWARE, record
 from tests.pages import ROOT, blocks_of
-from tests.test_run import FIRMWARE, record
 from tests.tiers import exhaustive
 
 FILE = ".github/workflows/frame-rate.yml"

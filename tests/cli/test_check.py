@@ -20,7 +20,7 @@ from bfsim.cli.main import main
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.report.check.history import append_history
 from bfsim.shipped import LDF_FOLDER
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 
 SLOWER = FIRMWARE.replace(
     "        out[x] = 0\n",

@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner
 
 from bfsim.cli.main import main
+from tests.eyes import FIRMWARE
 from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
-from tests.test_kernel_from import SUMS
-from tests.test_run import FIRMWARE
+from tests.sums import SUMS
 
 
 def ran(*arguments: object) -> tuple[int, str]:

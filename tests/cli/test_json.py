@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 
 RUNS = ["drive.mcap", "--firmware", "fw_eyes.py", "--frames", "1"]
 COMMANDS = {

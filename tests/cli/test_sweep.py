@@ -19,8 +19,8 @@ from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
 from bfsim.errors import ConfigError
+from tests.eyes import FIRMWARE, record
 from tests.sweeping.rig import BASE, FILE, Here, home_in, swept
-from tests.test_run import FIRMWARE, record
 
 HELD = FIRMWARE.replace(
     "def main(core):\n",

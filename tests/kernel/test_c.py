@@ -17,8 +17,8 @@ from bfsim.kernel.types import ArrayType, FloatType
 from tests.kernel import c_kernels
 from tests.kernel.host_c import call, compiled, copies, exported, needs_compiler
 from tests.kernel.modules import import_text
+from tests.kernel.plain import arrays_of
 from tests.kernel.programs import ARGUMENTS, programs
-from tests.kernel.test_semantics import arrays_of
 from tests.tiers import tried
 
 WRAPS = "-fwrapv"  # what is drawn overflows on purpose

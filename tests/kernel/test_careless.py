@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from bfsim.errors import KernelError
 from bfsim.kernel import Kernel
 from tests.kernel.modules import import_text
+from tests.kernel.plain import arrays_of, plain_run
 from tests.kernel.programs import ARGUMENTS, programs
-from tests.kernel.test_semantics import arrays_of, plain_run
 from tests.kernel.words import Undefined
 from tests.tiers import tried
 

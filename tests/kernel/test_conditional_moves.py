@@ -9,7 +9,7 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.isa import Op
 from tests.kernel.beside_gcc import check_estimate
-from tests.kernel.test_lowering import lowered
+from tests.kernel.lowered import lowered
 
 WRAPPED = """
 def f(a: i32[:], o: i32[:], n: i32, t: i32) -> i32:

@@ -15,9 +15,9 @@ from hypothesis import HealthCheck, given, settings
 
 from bfsim.kernel import GCC_O0, Kernel, instrument
 from tests.kernel.modules import import_text
+from tests.kernel.plain import arrays_of
 from tests.kernel.programs import ARGUMENTS, programs
 from tests.kernel.running import CALLING_VDSP
-from tests.kernel.test_semantics import arrays_of
 from tests.kernel.words import NAMES, Row, Word
 from tests.tiers import tried
 

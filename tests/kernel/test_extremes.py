@@ -10,9 +10,9 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel.isa import Op
 from tests.kernel.beside_gcc import arguments
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import import_text
 from tests.kernel.running import check_against_python, run
-from tests.kernel.test_lowering import lowered
 
 CLIP = """
 def clip(v: i32) -> i32:

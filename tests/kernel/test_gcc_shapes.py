@@ -10,7 +10,7 @@ import pytest
 from bfsim.kernel import GCC_O2
 from bfsim.kernel.isa import Op
 from bfsim.kernel.rules import Rule
-from tests.kernel.test_lowering import context, lowered
+from tests.kernel.lowered import context, lowered
 
 WINDOW = """
 def f(a: u8[:], out: u8[:], w: i32):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections import Counter as Tally
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,7 @@ import pytest
 
 from benchmarks.twins.lines import grow_segments
 from bfsim.errors import ConfigError
-from bfsim.kernel import GCC_O2, CompilerProfile, Kernel, profile_named
+from bfsim.kernel import GCC_O2, Kernel, profile_named
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import COSTS, Op
@@ -21,25 +20,9 @@ from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import combined
 from bfsim.kernel.lowering.schedule import issues
 from bfsim.kernel.rules import Rule
+from tests.kernel.lowered import context, lowered
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_VDSP, run
-
-
-def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally[Op]:
-    """Compile the only kernel of `text`, and count the operations of its blocks, each block once."""
-    kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
-    counts: Tally[Op] = Tally()
-    for counter in kernel.compile(profile).counters:
-        for each in counter.charges if counter.value is None else ():
-            counts[each.op] += each.times
-    return counts
-
-
-def context(text: str, folder: Path) -> Context:
-    """What the lowering knows about the only kernel of `text`."""
-    kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
-    (routine,) = read_module(optimised(kernel.function, GCC_O2))
-    return Context(routine, GCC_O2)
 
 
 @pytest.mark.parametrize(

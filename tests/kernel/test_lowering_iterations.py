@@ -12,9 +12,9 @@ from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
+from tests.kernel.lowered import context, lowered
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_GCC
-from tests.kernel.test_lowering import context, lowered
 
 WINDOW = """
 @kernel

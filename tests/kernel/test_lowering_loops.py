@@ -15,8 +15,8 @@ from bfsim.kernel.loops import COPIED, ControlFlow
 from bfsim.kernel.lowering.moves import _is_circular
 from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.rules import Rule
+from tests.kernel.lowered import context, lowered
 from tests.kernel.modules import import_text
-from tests.kernel.test_lowering import context, lowered
 
 
 def loops(body: str, head: str = "a: i32[:], n: i32", before: str = "s = 0") -> str:

@@ -20,9 +20,9 @@ from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.counters import Counter
 from tests.kernel.modules import import_text
+from tests.kernel.plain import arrays_of
 from tests.kernel.programs import programs
 from tests.kernel.running import CALLING_VDSP
-from tests.kernel.test_semantics import arrays_of
 from tests.tiers import tried
 
 ROOM = 1 << 16

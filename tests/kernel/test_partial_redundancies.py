@@ -9,8 +9,8 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.isa import Op
 from tests.kernel.beside_gcc import COUNT, LIMIT, arguments, check_estimate
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import import_text
-from tests.kernel.test_lowering import lowered
 
 BRANCHES = (Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN)
 LOOP = """

@@ -10,8 +10,8 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.isa import Op
 from tests.kernel.beside_gcc import arguments, check_estimate, check_meaning
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
-from tests.kernel.test_lowering import lowered
 
 WALK = """
 def f(a: {0}[:], n: i32) -> i32:

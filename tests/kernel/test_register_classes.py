@@ -12,8 +12,8 @@ from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
 from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
-from tests.kernel.test_lowering import lowered
 
 WORDS = """
 def f(a: i32[:], b: i32[:], c: i32[:], o: i32[:], n: i32) -> None:

@@ -12,8 +12,8 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.value_ranges import answer, value_range
 from tests.kernel.beside_gcc import arguments, check_estimate, check_meaning
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
-from tests.kernel.test_lowering import lowered
 
 LOOKED_UP = """
 def f(a: {0}[:], xs: i32[:], ys: i32[:], o: i16[:], n: i32) -> None:

@@ -2,35 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel
 from tests.kernel.modules import import_text
-from tests.kernel.programs import ARGUMENTS, ARRAYS, ELEMENTS, programs
-from tests.kernel.words import NAMES, Row, Word
+from tests.kernel.plain import arrays_of, plain_run
+from tests.kernel.programs import ARGUMENTS, programs
 from tests.tiers import tried
-
-
-def arrays_of(seed: int) -> dict[str, NDArray[Any]]:
-    random = np.random.default_rng(seed)
-    kinds = {name: np.dtype(f"{kind[0]}{int(kind[1:]) // 8}") for name, kind in ARRAYS.items()}
-    return {
-        name: random.integers(np.iinfo(kind).min, np.iinfo(kind).max, ELEMENTS, kind, endpoint=True)
-        for name, kind in kinds.items()
-    }
-
-
-def plain_run(text: str, arrays: dict[str, NDArray[Any]], x: int, y: int) -> int:
-    """Run `program` in plain Python on `arrays` and return its value."""
-    names = dict(NAMES)
-    exec(compile("from __future__ import annotations\n" + text, "<plain>", "exec"), names)
-    rows = [Row(each, name) for name, each in arrays.items()]
-    return int(names["program"](*rows, Word(x, signed=True), Word(y, signed=False)))
 
 
 @tried(10, 40)

@@ -9,9 +9,9 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel.isa import Op
 from tests.kernel.beside_gcc import arguments
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import import_text
 from tests.kernel.running import check_against_python
-from tests.kernel.test_lowering import lowered
 
 HELPERS = """
 @kernel

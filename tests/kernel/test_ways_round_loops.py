@@ -10,8 +10,8 @@ from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, tree
 from bfsim.kernel.isa import Op
 from bfsim.kernel.subloops import makes_subloop
 from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
-from tests.kernel.test_lowering import lowered
 
 SKIPPING = """
 def f(a: u8[:], o: u8[:], n: i32) -> i32:

@@ -14,7 +14,7 @@ from bfsim.trace import BoardRecord
 from tests.machine.made_boards import made_board
 from tests.machine.owners import assert_owned
 from tests.machine.rig import noise
-from tests.machine.test_timeline import EVERYTHING, LDFS, main_of
+from tests.machine.steps import EVERYTHING, LDFS, main_of
 from tests.machine.timelines import assert_flows, assert_orderly, assert_tiled, told
 from tests.report.profile_sums import assert_profile_adds_up
 from tests.report.test_profile_sums import run_from

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from bfsim.api import Core, Frame, i32, kernel_from
@@ -14,8 +13,9 @@ from tests.machine.kernels import spin
 from tests.machine.placements import changed
 from tests.machine.rig import Play, every_frame, run, stage_of
 from tests.machine.test_kernel_accesses import read_cclk
+from tests.sums import DATA
 
-SUMS = Path(__file__).parent.parent / "blackfin" / "data" / "sums.o"
+SUMS = DATA / "sums.o"
 sums = kernel_from(SUMS, "sums", row=i32[:], out=i32[:], n=i32, first=i32, result=i32)
 """Reads four bytes of `row` for each of n - 3 words that it stores in `out`, by a function of its own, in its line 9."""
 N = 16

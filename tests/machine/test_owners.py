@@ -21,7 +21,7 @@ from tests.machine.kernels import copy, first, spin
 from tests.machine.made_boards import in_work, play
 from tests.machine.owners import assert_owned
 from tests.machine.rig import WORDS, Play, cycles_of, every_frame
-from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
+from tests.machine.steps import LDFS, STEPS, Step, main_of
 from tests.tiers import exhaustive
 
 

@@ -13,7 +13,7 @@ from bfsim.spans import Place, Span, SpanKind
 from tests.machine.kernels import copy, spin
 from tests.machine.made_boards import made_board
 from tests.machine.rig import SIZE, STAGES, Play, cycles_of, every_frame, run
-from tests.machine.test_timeline import EVERYTHING, LDFS, handler, main_of
+from tests.machine.steps import EVERYTHING, LDFS, handler, main_of
 from tests.machine.timelines import told
 from tests.tiers import exhaustive
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from bfsim.api import Core, Frame, i32, kernel_from
 from tests.machine.rig import Play, every_frame, run
+from tests.sums import DATA
 
-FILE = Path(__file__).parent.parent / "blackfin" / "data" / "keeping.o"
+FILE = DATA / "keeping.o"
 begin = kernel_from(FILE, "begin", value=i32)
 add = kernel_from(FILE, "add", value=i32, result=i32)
 """Adds to a variable, which is 100 at first, and returns it."""

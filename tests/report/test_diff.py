@@ -23,8 +23,8 @@ from bfsim.report.diff.side import Line, Owner, Source, Stall
 from bfsim.report.diff.tables import diff_report, shown
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
+from tests.report.printed import printed
 from tests.report.records import IDENTITY, cost, frame, run_of
-from tests.report.test_tables import printed
 
 TEXT = ("@kernel\n", "def blur(row):\n", "    left = row[0]\n", "    row[1] = left\n")
 SDRAM = StallReason.SDRAM_PAGE_MISS

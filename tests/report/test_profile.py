@@ -18,8 +18,8 @@ from bfsim.report.profile.sentences import sentences_of
 from bfsim.report.profile.tables import VIEWS, profile_report
 from bfsim.report.profile.view import View
 from bfsim.trace import REST, BudgetRow, LineCost, OwnerCost, PathRecord, RunRecord, StallReason
+from tests.report.printed import printed, squeezed
 from tests.report.records import access, buffer, core_frame, cost, frame, kernel, run_of, traffic
-from tests.report.test_tables import printed, squeezed
 
 EDGES, REASON = "Edge detection", StallReason.L2_LATENCY
 

@@ -13,7 +13,7 @@ from bfsim.run import simulate
 from bfsim.trace import BoardRecord, BudgetRow, RunRecord
 from tests.machine.made_boards import play
 from tests.machine.rig import STAGES
-from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
+from tests.machine.steps import LDFS, STEPS, Step, main_of
 from tests.report.profile_sums import assert_profile_adds_up
 from tests.report.records import IDENTITY, run_of
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from rich.console import Console, RenderableType
 
 from bfsim.report.check.tables import check_report
 from bfsim.report.digest import cycle_digest
@@ -17,25 +15,8 @@ from bfsim.report.profile.tables import profile_report
 from bfsim.report.tables import run_report
 from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, RunWarning, StallReason, WarningKind
 from tests.report.check_rig import hold, measured
+from tests.report.printed import printed, row_of, squeezed
 from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
-
-
-def printed(report: RenderableType, width: int = 100) -> list[str]:
-    """The lines of a report as a file or a pipe gets them, without the blanks at their ends."""
-    console = Console(file=io.StringIO(), width=width, markup=False, emoji=False, highlight=False)
-    console.print(report)
-    assert isinstance(console.file, io.StringIO)
-    return [line.rstrip() for line in console.file.getvalue().splitlines()]
-
-
-def row_of(lines: list[str], begin: str) -> str:
-    """The first line that begins so."""
-    return next(line for line in lines if line.startswith(begin))
-
-
-def squeezed(line: str) -> str:
-    """A line of a table with single blanks, so that tests do not depend on column widths."""
-    return " ".join(line.split())
 
 
 def busy_run() -> RunRecord:

@@ -10,7 +10,7 @@ from typing import Any
 from bfsim.sweeping.running import Outcome, run_point
 from bfsim.sweeping.store import Store
 from bfsim.sweeping.sweep import Sweep, Workers
-from tests.test_run import FIRMWARE, record
+from tests.eyes import FIRMWARE, record
 
 EYES = 'firmware = "fw_eyes.py:eyes"\n'
 

@@ -12,8 +12,8 @@ import pytest
 from bfsim.errors import ConfigError
 from bfsim.sweeping import running
 from bfsim.sweeping.cluster import Cluster
+from tests.eyes import FIRMWARE
 from tests.sweeping.rig import BASE, Forgetful, home_in, planned, swept
-from tests.test_run import FIRMWARE
 
 pytestmark = pytest.mark.exhaustive
 

@@ -24,8 +24,8 @@ from bfsim.sweeping.rows import rows_of
 from bfsim.sweeping.running import Outcome, run_point
 from bfsim.sweeping.sweep import NOT_KEPT
 from bfsim.sweeping.workers import Pool
+from tests.eyes import FIRMWARE, record
 from tests.sweeping.rig import BASE, FILE, Forgetful, Here, home_in, planned, swept
-from tests.test_run import FIRMWARE, record
 
 NAMES = ["nRP=2 frames=1", "nRP=2 frames=2", "nRP=4 frames=1", "nRP=4 frames=2"]
 
