@@ -32,15 +32,17 @@ def arguments(kernel: Kernel) -> list[Any]:
     return found
 
 
-def check_estimate(text: str, cycles: int, near: float, folder: Path) -> None:
+def check_estimate(text: str, cycles: int, near: float, folder: Path, helpers: str = "") -> None:
     """Assert that the estimate of the kernel `f` is as near, a part of it, as said to the cycles of GCC's code."""
-    kernel = kernel_of(f"\n{text.lstrip()}", folder)
+    kernel = kernel_of(text, folder, helpers)
     assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
 
 
-def check_meaning(text: str, profile: CompilerProfile, folder: Path, counts: Sequence[int] = ()) -> None:
+def check_meaning(
+    text: str, profile: CompilerProfile, folder: Path, counts: Sequence[int] = (), helpers: str = ""
+) -> None:
     """Assert that the kernel `f` leaves what Python does; `counts` in turn are its numbers, or else those of `arguments`."""
-    kernel = kernel_of(f"\n{text.lstrip()}", folder)
+    kernel = kernel_of(text, folder, helpers)
     for count in counts or (None,):
         given = arguments(kernel)
         if count is not None:

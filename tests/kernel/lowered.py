@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections import Counter as Tally
 from pathlib import Path
 
-from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, CompilerProfile
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 
 
 def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally[Op]:
     """Compile the only kernel of `text`, and count the operations of its blocks, each block once."""
-    kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
     counts: Tally[Op] = Tally()
-    for counter in kernel.compile(profile).counters:
+    for counter in kernel_of(text, folder).compile(profile).counters:
         for each in counter.charges if counter.value is None else ():
             counts[each.op] += each.times
     return counts
@@ -25,6 +24,5 @@ def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally
 
 def context(text: str, folder: Path) -> Context:
     """What the lowering knows about the only kernel of `text`."""
-    kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
-    (routine,) = read_module(optimised(kernel.function, GCC_O2))
+    (routine,) = read_module(optimised(kernel_of(text, folder).function, GCC_O2))
     return Context(routine, GCC_O2)

@@ -31,7 +31,7 @@ def import_text(text: str, folder: Path, name: str | None = None) -> ModuleType:
     return module
 
 
-def kernel_of(text: str, folder: Path) -> Kernel:
-    """The kernel `f` that is written in `text`, without its decorator."""
-    found: Kernel = import_text(f"@kernel{text}", folder).f
+def kernel_of(text: str, folder: Path, helpers: str = "") -> Kernel:
+    """The kernel `f` that is written in `text`, without its decorator; `helpers` are kernels that it calls."""
+    found: Kernel = import_text(f"{helpers}@kernel\n{textwrap.dedent(text).strip()}\n", folder).f
     return found

@@ -11,7 +11,7 @@ from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.profile import PROFILES
 from bfsim.kernel.rules import Rule
 from tests.kernel.beside_gcc import arguments, check_estimate
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 
 MEDIAN = """
 def f(a: u8[:], b: u8[:], c: u8[:], o: u8[:], n: i32) -> None:
@@ -89,7 +89,7 @@ def test_what_depends_on_a_load_is_not_issued_with_it(
     """Two maxima behind their loads, and products of which each waits for the next load, take as long as without bundles."""
     monkeypatch.setitem(PROFILES, "alone", replace(GCC_O2, without=(Rule.BUNDLES,)))
     for text, shares in ((MAXIMUM, False), (SUM, False), (MEDIAN, True)):
-        kernel = import_text(f"@kernel\n{text.lstrip()}", tmp_path).f
+        kernel = kernel_of(text, tmp_path)
         found = [kernel.cost(*arguments(kernel), profile=name) for name in ("gcc-O2", "alone")]
         assert (found[0] < found[1]) is shares
 

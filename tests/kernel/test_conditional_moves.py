@@ -76,12 +76,12 @@ def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Pat
 def test_narrow_elements_have_registers_of_their_own(tmp_path: Path) -> None:
     """C converts both sides before it chooses what it stores: what is tested is wide, so the choice is not in its register."""
     for kind, moves in (("u8", 1), ("i32", 0)):
-        text = GATED.format("v if v > t else 0", kind).lstrip()
+        text = GATED.format("v if v > t else 0", kind)
         assert lowered(text, tmp_path)[Op.COND_MOVE] == moves, kind
 
 
 def test_it_is_gccs_alone(tmp_path: Path) -> None:
     """Nothing says that VisualDSP++ does so: there it is a conditional move."""
-    text = WRAPPED.lstrip()
+    text = WRAPPED
     assert lowered(text, tmp_path, VDSP_O2)[Op.COND_MOVE] == 1
     assert lowered(text, tmp_path, GCC_O2)[Op.COND_MOVE] == 0

@@ -7,14 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.isa import Op
-from tests.kernel.beside_gcc import arguments
+from tests.kernel.beside_gcc import check_estimate, check_meaning
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import import_text
-from tests.kernel.running import check_against_python, run
+from tests.kernel.running import run
 
 CLIP = """
+@kernel
 def clip(v: i32) -> i32:
     if v < 0:
         return 0
@@ -143,34 +144,22 @@ CASES = {
 }
 
 
-def kernel_of(name: str, folder: Path) -> Kernel:
-    """The kernel of a case, with the helper that it calls."""
-    text, _, _ = CASES[name]
-    helper = f"@kernel{CLIP}\n\n" if "clip(" in text else ""
-    found: Kernel = import_text(f"{helper}@kernel{text}", folder).f
-    return found
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; all but one estimate were off by 8 to 490 %."""
-    _, cycles, near = CASES[name]
-    kernel = kernel_of(name, tmp_path)
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
+    check_estimate(*CASES[name], tmp_path, CLIP)
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 @pytest.mark.parametrize("name", CASES)
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """What is costed is what runs: stores that became one, tests that are answered, comparisons that are narrow."""
-    kernel = kernel_of(name, tmp_path)
-    given = arguments(kernel)
-    check_against_python(kernel, given, profile)
+    check_meaning(CASES[name][0], profile, tmp_path, helpers=CLIP)
 
 
 def test_narrow_choices_are_gccs_alone(tmp_path: Path) -> None:
     """Nothing says that VisualDSP++ leaves the larger of two bytes a branch."""
-    text = CASES["the larger byte, added up"][0].lstrip()
+    text = CASES["the larger byte, added up"][0]
     assert lowered(text, tmp_path, VDSP_O2)[Op.DSP_ALU] == 1
     assert lowered(text, tmp_path, GCC_O2)[Op.DSP_ALU] == 0
 

@@ -21,7 +21,7 @@ from bfsim.kernel.lowering.predict import combined
 from bfsim.kernel.lowering.schedule import issues
 from bfsim.kernel.rules import Rule
 from tests.kernel.lowered import context, lowered
-from tests.kernel.modules import import_text
+from tests.kernel.modules import import_text, kernel_of
 from tests.kernel.running import CALLING_VDSP, run
 
 
@@ -48,7 +48,7 @@ def test_a_minimum_of_what_was_shifted_or_added_is_one(body: str, shifts: int, t
     found = lowered(text, tmp_path)
     assert found[Op.DSP_ALU] == (2 if "elif" in body else 1)
     assert (found[Op.SHIFT], found[Op.COMPARE]) == (shifts, 0)
-    kernel = import_text(f"@kernel\n{text}", tmp_path).f
+    kernel = kernel_of(text, tmp_path)
     for pair in ((0, 0), (3, 250), (250, 3), (255, 255), (9, 12), (60, 200)):
         assert run(kernel, np.array(pair, np.uint8)).value == kernel.python(list(pair))
 
@@ -102,7 +102,7 @@ def test_a_sum_with_a_constant_is_no_narrow_factor(tmp_path: Path) -> None:
     for added, sums in ((0, 1), (64, 2)):
         found = lowered(text.format(added), tmp_path)
         assert (found[Op.MUL32], found[Op.MUL16], found[Op.ALU]) == (1, 0, sums)
-        kernel = import_text(f"@kernel\n{text.format(added)}", tmp_path).f
+        kernel = kernel_of(text.format(added), tmp_path)
         for value in (0, 1, 127, 128, 255):
             out = np.zeros(1, np.int16)
             run(kernel, np.array([value], np.uint8), out)

@@ -16,7 +16,7 @@ from bfsim.kernel.lowering.moves import _is_circular
 from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.rules import Rule
 from tests.kernel.lowered import context, lowered
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 
 
 def loops(body: str, head: str = "a: i32[:], n: i32", before: str = "s = 0") -> str:
@@ -199,15 +199,13 @@ DIGITS = """def f(bits: u32, n: i32) -> i32:
 @pytest.mark.parametrize(("test", "copied"), [("(bits >> u32(k)) & 1 == 0", True), ("bits > 7", False)])
 def test_both_tests_of_a_loop_come_to_its_end(test: str, copied: bool, tmp_path: Path) -> None:
     """`while a and b` ends with both [GCC: ch2], so that no hardware loop ends where its count does; one that never changes goes before it."""
-    (routine,) = read_module(
-        optimised(import_text(f"@kernel\n{DIGITS.format(test)}", tmp_path).f.function, GCC_O2)
-    )
+    (routine,) = read_module(optimised(kernel_of(DIGITS.format(test), tmp_path).function, GCC_O2))
     assert any(block.label.endswith(COPIED) for block in routine.blocks) is copied
 
 
 def test_a_copied_test_counts_as_the_source_says(tmp_path: Path) -> None:
     """The rotated loop is what runs, too: the lowest bit that is set, or the limit."""
-    digits = import_text(f"@kernel\n{DIGITS.format('(bits >> u32(k)) & 1 == 0')}", tmp_path).f
+    digits = kernel_of(DIGITS.format("(bits >> u32(k)) & 1 == 0"), tmp_path)
     for bits in (0, 1, 8, 0x8000_0000):
         expected = min(20, (bits & -bits).bit_length() - 1 if bits else 32)
         code = digits.compile(GCC_O2)

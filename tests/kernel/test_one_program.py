@@ -19,7 +19,7 @@ from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.counters import Counter
-from tests.kernel.modules import import_text
+from tests.kernel.modules import import_text, kernel_of
 from tests.kernel.plain import arrays_of
 from tests.kernel.programs import programs
 from tests.kernel.running import CALLING_VDSP
@@ -218,7 +218,7 @@ O0_TEXTS = {
 def test_code_that_nobody_optimised_reads_what_gcc_reads(name: str, tmp_path: Path) -> None:
     """GCC's front end folds and repeats, and so does what is traced."""
     text, accesses = O0_TEXTS[name]
-    kernel = import_text(f"@kernel\n{text}", tmp_path).f
+    kernel = kernel_of(text, tmp_path)
     values = {"a": np.array([4, 7, 9, 1], np.int32), "row": np.zeros(4, np.int32)}
     assert Run(kernel, GCC_O0, values).traced == accesses
 

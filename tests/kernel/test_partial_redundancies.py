@@ -10,7 +10,7 @@ from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.isa import Op
 from tests.kernel.beside_gcc import COUNT, LIMIT, arguments, check_estimate
 from tests.kernel.lowered import lowered
-from tests.kernel.modules import import_text
+from tests.kernel.modules import kernel_of
 
 BRANCHES = (Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN)
 LOOP = """
@@ -64,23 +64,21 @@ def test_estimates_are_near_what_gcc_makes(text: str, cycles: int, tmp_path: Pat
 def test_what_is_chosen_for_something_else_stays(tmp_path: Path) -> None:
     """A minimum, a flag, and a choice between two numbers that both change something take no branch beside the loop's."""
     for value in ("a[i] + max(y, 0)", "a[i] + (1 if y > t else 0)", "a[i] + (1000 if y > t else 7)"):
-        plain = lowered(LOOP.format("a[i] + y").lstrip(), tmp_path)
-        chosen = lowered(LOOP.format(value).lstrip(), tmp_path)
+        plain = lowered(LOOP.format("a[i] + y"), tmp_path)
+        chosen = lowered(LOOP.format(value), tmp_path)
         assert [chosen[each] for each in BRANCHES] == [plain[each] for each in BRANCHES], value
 
 
 def test_it_is_gccs_alone(tmp_path: Path) -> None:
     """Nothing says that VisualDSP++ does so: there it is a conditional move."""
-    text = LOOP.format("a[i] ^ (0x1234 if y > t else 0)").lstrip()
+    text = LOOP.format("a[i] ^ (0x1234 if y > t else 0)")
     assert lowered(text, tmp_path, VDSP_O2)[Op.COND_MOVE] == 1
     assert lowered(text, tmp_path, GCC_O2)[Op.COND_MOVE] == 0
 
 
 def test_one_redundancy_makes_others(tmp_path: Path) -> None:
     """Of `v = y if ... else 0` nothing is left on the way on which v is 0, neither its product nor the sum; the results are the same."""
-    kernel = import_text(
-        f"@kernel\n{SUM.format('v = y if y > t else 0; s = s + v * 3').lstrip()}", tmp_path
-    ).f
+    kernel = kernel_of(SUM.format("v = y if y > t else 0; s = s + v * 3"), tmp_path)
     values = arguments(kernel)[0]
     kept = values[:COUNT][values[:COUNT] > LIMIT]
     assert kernel(values, COUNT, LIMIT) == 3 * int(kept.sum())

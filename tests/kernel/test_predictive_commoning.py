@@ -154,6 +154,6 @@ def test_what_gcc_loads_again_is_loaded_again(name: str, tmp_path: Path) -> None
 
 def test_a_loop_that_hands_two_values_on_is_no_hardware_loop(tmp_path: Path) -> None:
     """The last of them is copied on the way back, in a block of its own."""
-    text = CASES["two apart"][0].lstrip()
+    text = CASES["two apart"][0]
     assert lowered(text, tmp_path, GCC_O2)[Op.LOOP_SETUP] == 0
     assert lowered(text, tmp_path, VDSP_O2)[Op.LOOP_SETUP] == 1

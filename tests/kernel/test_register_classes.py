@@ -96,7 +96,7 @@ def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_
 
 def made(name: str, op: Op, folder: Path) -> tuple[int, int]:
     """How many of an operation a case takes by GCC's rules, and by VisualDSP++'s."""
-    text = CASES[name][0].lstrip()
+    text = CASES[name][0]
     return lowered(text, folder, GCC_O2)[op], lowered(text, folder, VDSP_O2)[op]
 
 

@@ -217,7 +217,7 @@ def test_the_second_step_of_a_line_is_asked_for_behind_the_first_alone(tmp_path:
 
 def test_values_are_handed_on_in_front_of_a_hardware_loop(tmp_path: Path) -> None:
     """Of several blocks; where there is one, or by VisualDSP++, of which nothing says so, the loop is none."""
-    several, one = (CASES[name][0].lstrip() for name in ("values handed on", "in one block"))
+    several, one = (CASES[name][0] for name in ("values handed on", "in one block"))
     assert lowered(several, tmp_path, GCC_O2)[Op.LOOP_SETUP] == 1
     assert lowered(several, tmp_path, VDSP_O2)[Op.LOOP_SETUP] == 0
     assert lowered(one, tmp_path, GCC_O2)[Op.LOOP_SETUP] == 0
@@ -225,6 +225,6 @@ def test_values_are_handed_on_in_front_of_a_hardware_loop(tmp_path: Path) -> Non
 
 def test_a_product_of_the_next_row_is_none(tmp_path: Path) -> None:
     """(y + 2) * w beside y * w is a sum."""
-    text = CASES["two rows apart"][0].lstrip()
+    text = CASES["two rows apart"][0]
     assert lowered(text, tmp_path, GCC_O2)[Op.MUL32] == 1
     assert lowered(text, tmp_path, VDSP_O2)[Op.MUL32] == 2

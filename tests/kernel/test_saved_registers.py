@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -10,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
-from tests.kernel.modules import import_text
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
+from tests.kernel.modules import kernel_of
 from tests.kernel.running import check_against_python
 
 BYTES, WORDS = np.arange(1, 65, dtype=np.uint8), np.arange(1, 65, dtype=np.int32)
@@ -127,23 +126,17 @@ CASES: dict[str, tuple[str, tuple[Any, ...], int, float]] = {
 }
 
 
-def kernel_of(name: str, folder: Path) -> Kernel:
-    """The kernel of a case."""
-    found: Kernel = import_text(f"@kernel{textwrap.dedent(CASES[name][0])}", folder).f
-    return found
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; five of the estimates were off by more than 45 %."""
-    _, given, cycles, near = CASES[name]
-    assert kernel_of(name, tmp_path).cost(*deepcopy(given), profile="gcc-O2") == pytest.approx(
-        cycles, rel=near
-    )
+    text, given, cycles, near = CASES[name]
+    estimate = kernel_of(text, tmp_path).cost(*deepcopy(given), profile="gcc-O2")
+    assert estimate == pytest.approx(cycles, rel=near)
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 @pytest.mark.parametrize("name", CASES)
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """What is computed elsewhere, and on joined ways, is what runs."""
-    check_against_python(kernel_of(name, tmp_path), deepcopy(CASES[name][1]), profile)
+    text, given, _, _ = CASES[name]
+    check_against_python(kernel_of(text, tmp_path), deepcopy(given), profile)

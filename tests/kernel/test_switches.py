@@ -177,7 +177,7 @@ def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_
 
 def text_of(name: str, folder: Path, *without: Rule) -> str:
     """Return the IR that is costed of a case."""
-    kernel = kernel_of(f"\n{CASES[name][0].lstrip()}", folder)
+    kernel = kernel_of(CASES[name][0], folder)
     return optimised(kernel.function, replace(GCC_O2, without=without))
 
 

@@ -6,12 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.isa import Op
-from tests.kernel.beside_gcc import arguments
+from tests.kernel.beside_gcc import check_estimate, check_meaning
 from tests.kernel.lowered import lowered
-from tests.kernel.modules import import_text
-from tests.kernel.running import check_against_python
 
 HELPERS = """
 @kernel
@@ -22,9 +20,6 @@ def near(v: i32, w: i32) -> i32:
 @kernel
 def is_digit(c: i32) -> i32:
     return 1 if 48 <= c <= 57 else 0
-
-
-@kernel
 """
 AROUND = """
 def f(a: u8[:], n: i32) -> i32:
@@ -92,30 +87,22 @@ OTHERS = {
 }
 
 
-def kernel_of(text: str, folder: Path) -> Kernel:
-    """The kernel of a case, with the helpers that it may call."""
-    found: Kernel = import_text(f"{HELPERS.strip()}{text}", folder).f
-    return found
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
     """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 61 %."""
-    text, cycles, near = CASES[name]
-    kernel = kernel_of(text, tmp_path)
-    assert kernel.cost(*arguments(kernel), profile="gcc-O2") == pytest.approx(cycles, rel=near)
+    check_estimate(*CASES[name], tmp_path, HELPERS)
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 @pytest.mark.parametrize("name", [*CASES, *OTHERS])
 def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
     """An iteration is skipped where nothing else happens in it, and no other one."""
-    kernel = kernel_of(CASES[name][0] if name in CASES else OTHERS[name], tmp_path)
-    check_against_python(kernel, arguments(kernel), profile)
+    text = CASES[name][0] if name in CASES else OTHERS[name]
+    check_meaning(text, profile, tmp_path, helpers=HELPERS)
 
 
 def test_the_loop_is_not_counted_any_more(tmp_path: Path) -> None:
     """Nothing says that VisualDSP++ gives up the hardware loop."""
-    text = CASES["the middle of a line"][0].lstrip()
+    text = CASES["the middle of a line"][0]
     assert lowered(text, tmp_path, GCC_O2)[Op.LOOP_SETUP] == 1
     assert lowered(text, tmp_path, VDSP_O2)[Op.LOOP_SETUP] == 2

@@ -175,13 +175,13 @@ def test_a_window_s_column_is_counted_beside_the_pointer(tmp_path: Path) -> None
     """The pointer less the row's address gives the column of a row that begins at 0: one operation where it is wanted, and no step."""
     whole = WINDOW.format(MOMENT).replace("range(x0, x0 + w - 4)", "range(w)")
     assert "range(w)" in whole
-    window = lowered(WINDOW.format(MOMENT).lstrip(), tmp_path, GCC_O2)
-    assert (window[Op.LOOP_SETUP], lowered(whole.lstrip(), tmp_path, GCC_O2)[Op.LOOP_SETUP]) == (1, 0)
+    window = lowered(WINDOW.format(MOMENT), tmp_path, GCC_O2)
+    assert (window[Op.LOOP_SETUP], lowered(whole, tmp_path, GCC_O2)[Op.LOOP_SETUP]) == (1, 0)
 
 
 def test_bits_that_are_counted_are_one_statement_of_a_header(tmp_path: Path) -> None:
     """So GCC makes both tests of that loop before it, all that the second one needs with them; with six statements more, the first one alone."""
     more = "".join(f"                d = (d ^ {each}) + 3\n" for each in "tmq")
     longer = MATCHED.replace("                if d >=", f"{more}                if d >=")
-    assert lowered(MATCHED.lstrip(), tmp_path, GCC_O2)[Op.EXTEND] == 2
-    assert lowered(longer.lstrip(), tmp_path, GCC_O2)[Op.EXTEND] == 1
+    assert lowered(MATCHED, tmp_path, GCC_O2)[Op.EXTEND] == 2
+    assert lowered(longer, tmp_path, GCC_O2)[Op.EXTEND] == 1
