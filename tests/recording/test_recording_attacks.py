@@ -146,6 +146,19 @@ def test_offsets_behind_the_end(tmp_path: Path, offset: int) -> None:
         read(path)
 
 
+@pytest.mark.parametrize("left_bytes", [1, 8])
+def test_an_attachment_in_the_last_bytes(tmp_path: Path, left_bytes: int) -> None:
+    """Not even its head has room there."""
+    good, name = chunk(pair(), nbytes=len(pair())), "rectification_left.npy"
+    path = write(tmp_path / "a.mcap", [good], index=attachment_index(name, 0))
+    offset = path.stat().st_size - left_bytes
+    write(path, [good], index=attachment_index(name, offset))
+    with pytest.raises(
+        RecordingError, match=f"{name}' at byte {offset} must be readable, but .* behind the end"
+    ):
+        read(path)
+
+
 @pytest.mark.parametrize("counts", [(0, 0), (1, 1), (5, 5)])
 def test_a_recording_without_pictures(tmp_path: Path, counts: tuple[int, int]) -> None:
     """Whatever it promises, and also where it holds some that it does not promise."""
