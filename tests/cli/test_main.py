@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 
 from bfsim import __version__
 from bfsim.cli.main import main
-from bfsim.cli.record import SOURCE_FORMATS
+from bfsim.cli.record.import_pictures import SOURCE_FORMATS
 from bfsim.recording import sources
 from tests.tiers import exhaustive
 

@@ -1,0 +1,145 @@
+"""The command `bfsim record import`: parse, call, print."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bfsim.cli.options.sizes import Size
+from bfsim.terminal import progress_bar
+
+if TYPE_CHECKING:
+    from bfsim.recording.sources import SourceFormat
+
+SOURCE_FORMATS = ("images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag")
+"""Those of bfsim.recording, which takes its time to import."""
+
+_SKIPPED_LISTED = 10
+
+
+@click.command(name="import", short_help="Make a recording from pictures.")
+@click.argument("output", type=click.Path(path_type=Path))
+@click.argument("sources", nargs=-1, required=True, metavar="SOURCE [SOURCE2]")
+@click.option(
+    "--side-by-side", is_flag=True, help="Each picture of SOURCE is the left and the right camera's."
+)
+@click.option("--mono", is_flag=True, help="The one camera of SOURCE feeds both sides.")
+@click.option(
+    "--format",
+    type=click.Choice(SOURCE_FORMATS),
+    help="What the sources are, if names do not tell.",
+)
+@click.option(
+    "--size", type=Size(), metavar="WxH", help="Size of the frames in raw UYVY, YUYV and I420 files."
+)
+@click.option(
+    "--resize",
+    type=Size(),
+    metavar="WxH",
+    help="Scale every picture, by a triangle filter; what sticks out of the aspect ratio is cut off.",
+)
+@click.option("--crop", type=Size(), metavar="WxH", help="Keep the middle of every picture, unscaled.")
+@click.option("--fps", type=float, help="Frames per second.  [default: the source's own, or 30]")
+@click.option(
+    "--topics",
+    nargs=2,
+    metavar="LEFT RIGHT",
+    help="Image topics of a bag.  [default: the two whose names differ by left and right]",
+)
+@click.option(
+    "--slop",
+    type=click.FloatRange(min=0),
+    metavar="MS",
+    help="How far the time stamps of two pictures of a bag may be apart.  [default: half a frame]",
+)
+@click.option(
+    "--geometry",
+    type=float,
+    nargs=4,
+    metavar="FOCAL BASELINE HEIGHT TILT",
+    help="Focal length in px of the recorded size, baseline (0 for one camera) and height over the floor in mm, degrees "
+    "the cameras look down.",
+)
+@click.option(
+    "--rectification",
+    nargs=2,
+    metavar="LEFT RIGHT",
+    help="Two .npy files of shape (2, height, width): for each pixel its source row and column, -1 for none.",
+)
+@click.option("--description", default="", help="Free text to keep with the recording.")
+@click.option("--force", is_flag=True, help="Overwrite OUTPUT if it exists.")
+def import_command(
+    output: Path,
+    sources: tuple[str, ...],
+    side_by_side: bool,
+    mono: bool,
+    format: SourceFormat | None,
+    size: tuple[int, int] | None,
+    resize: tuple[int, int] | None,
+    crop: tuple[int, int] | None,
+    fps: float | None,
+    topics: tuple[str, str] | None,
+    slop: float | None,
+    geometry: tuple[float, float, float, float] | None,
+    rectification: tuple[str, str] | None,
+    description: str,
+    force: bool,
+) -> None:
+    """Make the recording OUTPUT from pictures.
+
+    A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
+    (.uyvy, .yuyv, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera. A bag of ROS (.bag of
+    ROS 1, .mcap, .db3 or the folder of ROS 2) is one source with both: pictures are paired by their time stamps, and
+    camera_info becomes geometry and rectification. Needs rosbags: pip install "bfsim[ros]".
+    Images that cannot be read, those without a picture of the other camera by their names (left_07 goes with
+    right_07), and other files in a folder are skipped and listed.
+
+    \b
+    Examples:
+      bfsim record import run.mcap left/ right/ --fps 25
+      bfsim record import run.mcap frames/ --side-by-side
+      bfsim record import run.mcap left/ right/ --geometry 386 30.47 120 10
+      bfsim record import run.mcap left.uyvy right.uyvy --size 320x240
+      bfsim record import run.mcap drive.bag --topics /left/image_raw /right/image_raw
+      bfsim record import run.mcap phone.mp4 --mono --resize 320x240
+      bfsim record import run.mcap "match/*.jpg" --mono --resize 320x240 --geometry 260 0 480 12
+    """
+    from bfsim.recording import StereoGeometry
+    from bfsim.recording.importer import import_recording, load_rectification
+
+    with progress_bar("Importing") as progress:
+        summary = import_recording(
+            sources,
+            output,
+            format=format,
+            size=size,
+            resize=resize,
+            crop=crop,
+            side_by_side=side_by_side,
+            mono=mono,
+            fps=fps,
+            topics=topics,
+            slop_s=None if slop is None else slop / 1000,
+            geometry=StereoGeometry(*geometry) if geometry else None,
+            rectification=load_rectification(*rectification) if rectification else None,
+            description=description,
+            force=force,
+            progress=progress,
+        )
+    frames = f"{'mono' if mono else 'stereo'} frame{'s' if summary.frame_count != 1 else ''}"
+    click.echo(
+        f"{summary.path}: {summary.frame_count} {frames} of {summary.width}x{summary.height} "
+        f"at {float(summary.fps):g} per second, {summary.size_bytes / 1e6:.1f} MB"
+    )
+    if (resize or crop) and set(summary.source_sizes) != {(summary.width, summary.height)}:
+        sizes = ", ".join(f"{width}x{height}" for width, height in summary.source_sizes)
+        click.echo(f"{'Scaled by a triangle filter, and cut to shape,' if resize else 'Cut'} from {sizes}")
+    for note in summary.notes:
+        click.echo(note)
+    for reason, found in groupby(summary.skipped, key=lambda each: each.reason):
+        skipped = [each.name for each in found]
+        more = f" and {len(skipped) - _SKIPPED_LISTED} more" if len(skipped) > _SKIPPED_LISTED else ""
+        click.echo(f"Skipped: {', '.join(skipped[:_SKIPPED_LISTED])}{more}: {reason}")

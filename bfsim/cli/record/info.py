@@ -1,0 +1,53 @@
+"""The command `bfsim record info`: parse, call, print."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from bfsim.cli.options.json_file import json_option, require_json_place, tell
+from bfsim.cli.record.recorded import info_table
+from bfsim.errors import RecordingError
+from bfsim.terminal import print_report, progress_bar
+
+
+@click.command(name="info", short_help="Say what is in a recording.")
+@click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
+@json_option("what is in it")
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    help="Write the plot of the calibration's residuals to this PNG file.",
+)
+def info_command(path: Path, json_path: Path | None, plot: Path | None) -> None:
+    """Describe RECORDING. Reads all of it, so an answer also says that it is whole.
+
+    \b
+    Examples:
+      bfsim record info run.mcap
+      bfsim record info run.mcap --plot residuals.png
+      bfsim record info run.mcap --json
+    """
+    from bfsim.recording import RecordingReader
+    from bfsim.recording.info import describe_recording
+
+    require_json_place(json_path, (path, plot))
+    with RecordingReader(path) as reader, progress_bar("Reading") as progress:
+        info = describe_recording(reader, progress)
+        if plot:
+            _write(plot, reader.residual_plot())
+    tell(
+        json_path,
+        lambda: [json.dumps(asdict(info), default=str, indent=2), "\n"],
+        lambda: print_report(info_table(info)),
+    )
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise RecordingError(f"{path}: file must be writable: {error.strerror}") from None

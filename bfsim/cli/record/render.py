@@ -1,0 +1,130 @@
+"""The command `bfsim record render`: parse, call, print."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import fill
+
+import click
+
+from bfsim import shipped
+from bfsim.errors import shown
+from bfsim.terminal import progress_bar
+
+
+class _Distances(click.ParamType[tuple[float, ...]]):
+    name = "MM,MM"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        try:
+            return tuple(float(part) for part in value.split(","))
+        except ValueError:
+            self.fail(f"distances must be like 250,300,350, not {shown(value)}", param, ctx)
+
+
+_RENDER_HELP = f"""Render SCENE with exact ground truth to the recording OUTPUT.
+
+SCENE is one scene or several of bfsim.recording.scenes, by FILE.py:NAME or PACKAGE:NAME, or built in:
+
+\b
+{fill(", ".join(shipped.SCENES), 76, break_on_hyphens=False)}
+
+Several scenes go to the folder OUTPUT, each to a recording of its name. Needs mitsuba: pip install "bfsim[scenes]".
+
+\b
+Examples:
+  bfsim record render ball-with-seam ball.mcap
+  bfsim record render box-distances box.mcap --distances 250,500
+  bfsim record render soccer bent.mcap --distort -0.25 0.08 0 0 \\
+      --turn-right 1 -1 0.5 --chessboards boards/
+  bfsim record render my_scenes.py:night night.mcap
+"""
+
+
+@click.command(name="render", short_help="Render a scene with exact ground truth.", help=_RENDER_HELP)
+@click.argument("name", metavar="SCENE")
+@click.argument("output", type=click.Path(path_type=Path))
+@click.option("--frames", type=click.IntRange(min=1), help="Render only so many frames.")
+@click.option("--samples", type=click.IntRange(min=1), help="Light paths a pixel.  [default: the scene's]")
+@click.option(
+    "--distances",
+    type=_Distances(),
+    metavar="MM,MM,...",
+    help="A frame for each, of a scene that is made for distances.",
+)
+@click.option(
+    "--geometry",
+    type=float,
+    nargs=4,
+    metavar="FOCAL BASELINE HEIGHT TILT",
+    help="Other cameras: focal length in px, baseline and height in mm, degrees they look down.",
+)
+@click.option(
+    "--distort",
+    type=float,
+    nargs=4,
+    metavar="K1 K2 P1 P2",
+    help="Put lenses before both cameras: two radial and two tangential terms, as OpenCV counts them.",
+)
+@click.option(
+    "--turn-right",
+    type=float,
+    nargs=3,
+    metavar="X Y Z",
+    help="Turn the right camera, degrees round its right, down and forward.",
+)
+@click.option(
+    "--shift-right",
+    type=float,
+    nargs=3,
+    metavar="X Y Z",
+    help="Shift the right camera, mm to its right, down and forward.",
+)
+@click.option(
+    "--chessboards",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Also write chessboard pictures of these cameras, for `bfsim record calibrate`.",
+)
+@click.option("--force", is_flag=True, help="Overwrite OUTPUT if it exists.")
+def render_command(
+    name: str,
+    output: Path,
+    frames: int | None,
+    samples: int | None,
+    distances: tuple[float, ...] | None,
+    geometry: tuple[float, float, float, float] | None,
+    distort: tuple[float, float, float, float] | None,
+    turn_right: tuple[float, float, float] | None,
+    shift_right: tuple[float, float, float] | None,
+    chessboards: Path | None,
+    force: bool,
+) -> None:
+    """Render one scene, or several."""
+    from bfsim.recording import StereoGeometry, scenes
+    from bfsim.scenery import load_scenes
+
+    misfit = None
+    if distort or turn_right or shift_right:
+        zeros = (0.0, 0.0, 0.0)
+        lens = scenes.Lens(*distort) if distort else scenes.Lens()
+        misfit = scenes.Misfit(lens, turn_right or zeros, shift_right or zeros)
+    with progress_bar("Rendering") as progress:
+        paths = scenes.render(
+            load_scenes(name),
+            output,
+            frames=frames,
+            samples=samples,
+            distances_mm=distances,
+            geometry=StereoGeometry(*geometry) if geometry else None,
+            misfit=misfit,
+            chessboards=chessboards,
+            force=force,
+            progress=progress,
+        )
+    for path in paths:
+        click.echo(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+    if chessboards:
+        click.echo(f"{chessboards}: chessboard pictures of the same cameras")
