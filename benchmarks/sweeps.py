@@ -34,9 +34,10 @@ from bfsim.recording import RecordingReader, RecordingWriter
 from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
 from bfsim.sweeping.cluster import Cluster
+from bfsim.sweeping.planned import Planned
 from bfsim.sweeping.running import Outcome, Work, code_digest
 from bfsim.sweeping.store import Store
-from bfsim.sweeping.sweep import Planned, Sweep, Workers
+from bfsim.sweeping.sweep import Sweep, Workers
 from bfsim.sweeping.workers import Pool
 
 PERIOD_NS = 40_000_000

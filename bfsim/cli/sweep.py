@@ -21,8 +21,9 @@ from bfsim.terminal import print_report, progress_bar
 if TYPE_CHECKING:
     from bfsim.report.sweep.plot import Axes
     from bfsim.sweeping.pace import Pace
+    from bfsim.sweeping.planned import Planned
     from bfsim.sweeping.running import Outcome
-    from bfsim.sweeping.sweep import Planned, Sweep, Workers
+    from bfsim.sweeping.sweep import Sweep, Workers
 
 SUFFIX = ".sweep"
 PLOTTERS = ("altair", "vl_convert")

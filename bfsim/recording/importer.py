@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
@@ -282,18 +283,11 @@ def _stereo_pairs(
             else:
                 yield picture, picture
         return
-    rights = sources[1].pictures()
-    index = -1
-    for index, left in enumerate(sources[0].pictures()):
-        right = next(rights, None)
-        if right is None:
+    for count, (left, right) in enumerate(zip_longest(*(each.pictures() for each in sources))):
+        if left is None or right is None:
+            ended, other = sources if left is None else reversed(sources)
             raise RecordingError(
-                f"both cameras must have the same number of images, but {sources[1].name} ends after {index} "
-                f"and {sources[0].name} has more"
+                f"both cameras must have the same number of images, but {ended.name} ends after {count} "
+                f"and {other.name} has more"
             )
         yield left, right
-    if next(rights, None) is not None:
-        raise RecordingError(
-            f"both cameras must have the same number of images, but {sources[0].name} ends after {index + 1} "
-            f"and {sources[1].name} has more"
-        )

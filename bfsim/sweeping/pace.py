@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bfsim.sweeping.planned import Planned
 from bfsim.sweeping.running import Outcome
-from bfsim.sweeping.sweep import Planned
 
 
 class Pace:

@@ -11,8 +11,9 @@ from bfsim.fields import parsed
 from bfsim.report.check.settings import written
 from bfsim.report.sweep.figures import FRAME_RATE, SEEN
 from bfsim.report.sweep.table import Cell, Row
+from bfsim.sweeping.planned import Planned
 from bfsim.sweeping.running import Outcome
-from bfsim.sweeping.sweep import Planned, Sweep
+from bfsim.sweeping.sweep import Sweep
 
 NAMES = ("recording", "firmware", "board", "ldf")
 """Options that are also in the identity of a run, by the same name."""

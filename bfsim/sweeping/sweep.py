@@ -7,7 +7,7 @@ import uuid
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
@@ -18,6 +18,7 @@ from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
 from bfsim.signals import uninterrupted
 from bfsim.sweeping.file import Point, read_sweep
+from bfsim.sweeping.planned import Planned, planned_point
 from bfsim.sweeping.running import Outcome, Work, code_digest, digest_recording, plan_point, run_point
 from bfsim.sweeping.store import Store, key_of
 from bfsim.sweeping.works import Works
@@ -55,22 +56,6 @@ class Workers(Protocol):
         self, configuration: Configuration, folder: Path, code: str, work: Work | None
     ) -> Future[Outcome]:
         """Call `running.run_point` elsewhere. What it records is at the path of `work`, here, when it is done."""
-
-
-@dataclass(frozen=True, slots=True)
-class Planned:
-    """A point as it is known before it runs: all that its result depends on, and the `key` of that; or the `error` that it is."""
-
-    point: Point
-    identity: Identity | None = None
-    frames: int = 0
-    key: str = ""
-    error: str = ""
-
-    @property
-    def work(self) -> int:
-        """How much there is to simulate: pixels."""
-        return self.frames * self.identity.width_px * self.identity.height_px if self.identity else 0
 
 
 class Sweep:
@@ -118,7 +103,7 @@ class Sweep:
             workers,
         )
         self.planned = [
-            _planned(point, found[number], digests, recordings[number])
+            planned_point(point, found[number], digests, recordings[number])
             for number, point in enumerate(self.points)
         ]
         keys = {each.key for each in self.planned if each.key}
@@ -198,19 +183,6 @@ class Sweep:
             if digests[each]:
                 self.store.keep_recording_digest(*each, digests[each])
         return digests
-
-
-def _planned(
-    point: Point, known: tuple[Identity, int] | str, digests: dict[tuple[Path, int], str], recording: Path
-) -> Planned:
-    if isinstance(known, str):
-        return Planned(point, error=known)
-    identity, frames = known
-    digest = digests[recording, frames]
-    if not digest:
-        return Planned(point, error=f"{recording} must have {frames} frames that can be read")
-    identity = replace(identity, recording_digest=digest)
-    return Planned(point, identity, frames, key_of(identity, code_digest()))
 
 
 def _results(

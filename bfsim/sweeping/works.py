@@ -16,8 +16,8 @@ from bfsim.report.sweep.figures import SEEN
 from bfsim.sweeping.running import Figures, Outcome, Work, code_digest
 
 if TYPE_CHECKING:
+    from bfsim.sweeping.planned import Planned
     from bfsim.sweeping.store import Store
-    from bfsim.sweeping.sweep import Planned
 
 WORKS = "works"
 """Folder of the store: in it each sweep that runs has one of its own."""

@@ -1,0 +1,41 @@
+"""A point of a sweep as it is known before it runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from bfsim.sweeping.file import Point
+from bfsim.sweeping.running import code_digest
+from bfsim.sweeping.store import key_of
+from bfsim.trace import Identity
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """A point as it is known before it runs: all that its result depends on, and the `key` of that; or the `error` that it is."""
+
+    point: Point
+    identity: Identity | None = None
+    frames: int = 0
+    key: str = ""
+    error: str = ""
+
+    @property
+    def work(self) -> int:
+        """How much there is to simulate: pixels."""
+        return self.frames * self.identity.width_px * self.identity.height_px if self.identity else 0
+
+
+def planned_point(
+    point: Point, known: tuple[Identity, int] | str, digests: dict[tuple[Path, int], str], recording: Path
+) -> Planned:
+    """Return a point as it is planned: what is `known` of its run, or why there is none, and the digests of recordings."""
+    if isinstance(known, str):
+        return Planned(point, error=known)
+    identity, frames = known
+    digest = digests[recording, frames]
+    if not digest:
+        return Planned(point, error=f"{recording} must have {frames} frames that can be read")
+    identity = replace(identity, recording_digest=digest)
+    return Planned(point, identity, frames, key_of(identity, code_digest()))
