@@ -11,9 +11,10 @@ import re
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import IO
 
 if sys.platform != "win32":  # elsewhere no folder can be locked, and nothing is swept
     import fcntl
@@ -40,6 +41,30 @@ def draft_folder(where: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
         if lock is not None:
             os.close(lock)
+
+
+@contextmanager
+def growing_draft(path: Path, writing: Callable[[], AbstractContextManager[None]]) -> Iterator[IO[bytes]]:
+    """Yield a stream whose content takes its place at `path` on a clean exit of the `with` block; permissions are kept.
+
+    After an error or Ctrl-C nothing is left of it, and a file that was at `path` before is untouched. What the system
+    says against writing goes through `writing`.
+    """
+    with ExitStack() as stack:
+        with writing():
+            draft = stack.enter_context(draft_folder(path.parent)) / path.name
+            stream = draft.open("xb")
+        try:
+            yield stream
+            with writing():
+                stream.close()
+                if path.exists():
+                    shutil.copymode(path, draft)
+                draft.replace(path)
+        finally:
+            # a full disk refuses what is still buffered; the draft goes away all the same
+            with suppress(OSError):
+                stream.close()
 
 
 def sweep(where: Path) -> None:

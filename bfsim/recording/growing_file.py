@@ -3,35 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import IO
 
-from bfsim.drafts import draft_folder
+from bfsim.drafts import growing_draft
 from bfsim.errors import RecordingError
 
 
-@contextmanager
-def growing_file(path: Path) -> Iterator[IO[bytes]]:
+def growing_file(path: Path) -> AbstractContextManager[IO[bytes]]:
     """Yield a stream beside `path` that takes its place on a clean exit of the `with` block.
 
-    After an error or Ctrl-C nothing is left of it, and a file that was at `path` before is untouched. Raises
-    RecordingError where the system refuses.
+    Raises RecordingError where the system refuses.
     """
-    with ExitStack() as stack:
-        with writing(path):
-            draft = stack.enter_context(draft_folder(path.parent)) / path.name
-            stream = draft.open("xb")
-        try:
-            yield stream
-            with writing(path):
-                stream.close()
-                draft.replace(path)
-        finally:
-            with suppress(
-                OSError
-            ):  # a full disk refuses what is still buffered; the file goes away all the same
-                stream.close()
+    return growing_draft(path, partial(writing, path))
 
 
 @contextmanager

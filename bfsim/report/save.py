@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import IO
 
-from bfsim.drafts import draft_folder
+from bfsim.drafts import growing_draft
 from bfsim.errors import ConfigError
 
 if sys.platform != "win32":
@@ -68,27 +68,10 @@ def alone_in(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-@contextmanager
-def growing_file(path: Path) -> Iterator[IO[bytes]]:
+def growing_file(path: Path) -> AbstractContextManager[IO[bytes]]:
     """Yield a stream whose content takes its place at `path` on a clean exit of the `with` block, as that of `write_bytes`."""
     require_place(path)
-    target = _resolved(path)
-    with ExitStack() as stack:
-        with writing(path):
-            draft = stack.enter_context(draft_folder(target.parent)) / target.name
-            stream = draft.open("wb")
-        try:
-            yield stream
-            with writing(path):
-                stream.close()
-                if target.exists():
-                    shutil.copymode(target, draft)
-                draft.replace(target)
-        finally:
-            with suppress(
-                OSError
-            ):  # a full disk refuses what is still buffered; the draft goes away all the same
-                stream.close()
+    return growing_draft(_resolved(path), partial(writing, path))
 
 
 @contextmanager

@@ -87,17 +87,5 @@ rectified_features = replace(
 )
 """The features of the pictures as the cameras have them, rectified in place of the pictures (T §7.2)."""
 
-one_eye = Firmware(
-    mains={"A": one_core},
-    buffers=one_core_buffers,
-    camera="camera",
-    rows=ROWS,
-    reference=TABLE_6_4,
-    calibration=calibration_buffers,
-    spi=StrategyUnit,
-    view=view,
-    colours=picture_colours,
-    losses=LOSSES,
-    assumed_geometry=THESIS_GEOMETRY,
-)
+one_eye = replace(tinyphoon, mains={"A": one_core}, buffers=one_core_buffers)
 """The same stages for a board with one core and one camera, such as cm-bf533."""
