@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 
 from bfsim.errors import RecordingError
-from bfsim.recording.sources import PictureSource, guess_format
+from bfsim.recording.sources import RAW_FORMATS, PictureSource, SourceFormat, guess_format
 
 
 def check_call(
@@ -51,6 +53,27 @@ def check_call(
             raise RecordingError(
                 f"`{option}` must be above 0 and of even width, not {wanted_size[0]}x{wanted_size[1]}"
             )
+
+
+def check_options(
+    name: str,
+    formats: Sequence[SourceFormat | None],
+    *,
+    size: tuple[int, int] | None,
+    fps: Fraction | float | None,
+    topics: tuple[str, str] | None,
+    slop_s: float | None,
+) -> None:
+    """Raise RecordingError unless options that are for sources of one kind go with such a one; `name` is that of the first source."""
+    is_bag = "rosbag" in formats
+    if is_bag and fps is not None:
+        raise RecordingError(f"{name}: `--fps` must not be given, for a bag has time stamps")
+    if not is_bag and (topics is not None or slop_s is not None):
+        raise RecordingError(f"{name}: `--topics` and `--slop` must go with a bag of ROS")
+    if size is not None and not any(each in (*RAW_FORMATS, None) for each in formats):
+        raise RecordingError(
+            f"{name}: `--size` must go with raw frames, which have none of their own; `--resize` scales pictures"
+        )
 
 
 def _is_of(source: str, file: Path) -> bool:

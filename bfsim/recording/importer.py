@@ -16,30 +16,20 @@ from bfsim.file_content import read_bounded
 from bfsim.recording.camera_info import Rig, rig_of
 from bfsim.recording.exchange import ExchangeCheck
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.images import open_image_pair, open_images
-from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_pair
+from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_options, check_pair
 from bfsim.recording.layout import table_from_npy
+from bfsim.recording.opening import open_sources
 from bfsim.recording.planes import YuvPlanes, fit_matrix
-from bfsim.recording.raw import open_i420, open_uyvy, open_y4m, open_yuyv
 from bfsim.recording.rosbag import BagPictures, open_bag
-from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, Skipped, SourceFormat, guess_format
-from bfsim.recording.video import open_video
+from bfsim.recording.sources import PictureSource, Skipped, SourceFormat, guess_format
+from bfsim.recording.stamps import Stamps, frame_rate
 from bfsim.recording.writer import RecordingWriter
-
-DEFAULT_FPS = Fraction(30)
-"""Of sources that do not say: the VGA rate of the OmniVision sensors."""
 
 LARGEST_TABLE_MB = 256
 """Of a rectification table: 16 bytes a pixel at most."""
 
-FPS_PARTS = 1_000_000
-"""Frame rates are fractions with denominators up to this; it is the highest rate, too."""
-
 Progress = Callable[[int, int | None], None]
 """Called after each stereo frame with the frames done and, where known, the frames there are."""
-
-_FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
-_RAW_OPENERS = {"uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420}
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +72,18 @@ def import_recording(
     `mono` (one camera feeds both sides). `format` is guessed from the names. `size` is the (width, height) of
     raw frames; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
     its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
-    picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`). A bag of ROS is one source with both cameras' topics, which `topics` names and
-    `slop_s` pairs (see `open_bag`); its time stamps are kept, from the first picture on, and geometry and rectification are
-    those of its camera_info unless they are given. Of other sources the k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30, and an uneven
-    video's own times. An existing `output` needs `force`. Raises RecordingError, with the file and the frame.
+    picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`).
+
+    A bag of ROS is one source with both cameras' topics, which `topics` names and `slop_s` pairs (see `open_bag`); its
+    time stamps are kept, from the first picture on, and geometry and rectification are those of its camera_info unless
+    they are given. Of other sources the k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own
+    rate counts, or 30, and an uneven video's own times.
+
+    An existing `output` needs `force`. Raises RecordingError, with the file and the frame.
     """
     names = [os.fspath(source) for source in sources]
-    is_bag = any((format or guess_format(name)) == "rosbag" for name in names)
+    formats = [format or guess_format(name) for name in names]
+    is_bag = "rosbag" in formats
     check_call(
         names,
         Path(output),
@@ -99,20 +94,11 @@ def import_recording(
         is_bag=is_bag,
         force=force,
     )
+    check_options(names[0], formats, size=size, fps=fps, topics=topics, slop_s=slop_s)
     is_fitted = resize is not None or crop is not None
-    if is_bag and fps is not None:
-        raise RecordingError(f"{names[0]}: `--fps` must not be given, for a bag has time stamps")
-    if not is_bag and (topics is not None or slop_s is not None):
-        raise RecordingError(f"{names[0]}: `--topics` and `--slop` must go with a bag of ROS")
-    if size is not None and not any(
-        (format or guess_format(name)) in (*_RAW_OPENERS, None) for name in names
-    ):
-        raise RecordingError(
-            f"{names[0]}: `--size` must go with raw frames, which have none of their own; `--resize` scales pictures"
-        )
     bag = open_bag(names[0], topics, slop_s, single=side_by_side or mono, mixed=is_fitted) if is_bag else None
-    opened = [*bag.sources] if bag else _open_sources(names, format, size, mixed=is_fitted)
-    rate = _frame_rate(fps, opened)
+    opened = [*bag.sources] if bag else open_sources(names, format, size, mixed=is_fitted)
+    rate = frame_rate(fps, opened)
     count = check_pair(opened, side_by_side=side_by_side, is_fitted=is_fitted)
     picture_size = resize or crop or camera_size(opened[0], side_by_side)
     rig = Rig(geometry, rectification, ())
@@ -120,6 +106,7 @@ def import_recording(
         rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
     skipped = [each for source in opened for each in source.skipped]
     sizes = set()
+    stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
     exchange = ExchangeCheck(rig.tables)
     with RecordingWriter(
         output,
@@ -136,19 +123,10 @@ def import_recording(
                 skipped += dict.fromkeys(each for each in fitted if isinstance(each, Skipped))
                 continue
             sizes |= {side.size for side in sides if isinstance(side, YuvPlanes)}
-            even_ns = round(writer.frame_count * 1_000_000_000 / rate)
-            left_ns, right_ns = (
-                even_ns if each.times_ns is None or fps is not None else each.times_ns[index]
-                for each in (opened[0], opened[-1])
-            )
-            if bag is None and 2 * rate * abs(left_ns - right_ns) > 1_000_000_000:
-                raise RecordingError(
-                    f"{' and '.join(names)}: pictures {index} must be taken at once, not {abs(left_ns - right_ns) / 1e6:.0f} ms "
-                    "apart; `--fps` passes over their times"
-                )
+            stamps_ns = stamps.of(index, writer.frame_count)
             coded = left.to_uyvy(), right.to_uyvy()
             exchange.look_at(*coded)
-            writer.add(*coded, left_ns, right_ns)
+            writer.add(*coded, *stamps_ns)
             if progress is not None:
                 progress(index + 1, count)
         if not writer.frame_count and skipped:
@@ -229,46 +207,6 @@ def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[st
         bounds = np.iinfo(np.int32)
         tables.append(np.clip(table, bounds.min, bounds.max).astype(np.int32))
     return RectificationTables(*tables)
-
-
-def _open_sources(
-    names: list[str], format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
-) -> list[PictureSource]:
-    if len(names) == 2 and all((format or guess_format(name)) == "images" for name in names):
-        return open_image_pair(*names, mixed=mixed)
-    return [_open_source(name, format, size, mixed=mixed) for name in names]
-
-
-def _open_source(
-    name: str, format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
-) -> PictureSource:
-    chosen = format or guess_format(name)
-    if chosen is None:
-        kind = "is not there" if not Path(name).exists() else "has a name that does not tell its format"
-        raise RecordingError(
-            f"{name}: source must be a folder of images or a file of pictures, but it {kind} "
-            f"(`--format` {', '.join(SOURCE_FORMATS)})"
-        )
-    if chosen == "images":
-        return open_images(name, mixed=mixed)
-    if chosen in _FILE_OPENERS:
-        return _FILE_OPENERS[chosen](name)
-    if size is None or min(size) <= 0:
-        raise RecordingError(
-            f"{name}: raw {chosen.upper()} needs the size of its frames, such as `--size 320x240`"
-        )
-    return _RAW_OPENERS[chosen](name, size)
-
-
-def _frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> Fraction:
-    rates = {source.fps for source in sources if source.fps is not None and source.times_ns is None}
-    rates = rates or {sources[0].fps or DEFAULT_FPS}  # their times say whether pictures belong together
-    if fps is None and len(rates) > 1:
-        described = " and ".join(f"{float(rate):g}" for rate in sorted(rates))
-        raise RecordingError(f"both cameras must have one frame rate, not {described}; `--fps` sets it")
-    if fps is not None and not 1 <= fps * FPS_PARTS <= FPS_PARTS**2:
-        raise RecordingError(f"frame rate must be 0.000001 to 1000000 per second, not {fps}")
-    return Fraction(fps).limit_denominator(FPS_PARTS) if fps is not None else next(iter(rates), DEFAULT_FPS)
 
 
 def _stereo_pairs(

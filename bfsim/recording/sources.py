@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 SourceFormat = Literal["images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag"]
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
+RAW_FORMATS: tuple[SourceFormat, ...] = ("uyvy", "i420", "yuyv")
+"""Of these no file says how large its pictures are."""
 
 IMAGE_SUFFIXES = frozenset(
     {".bmp", ".gif", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"}

@@ -1,0 +1,47 @@
+"""Which reader opens a source of pictures, by its format or its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from bfsim.errors import RecordingError
+from bfsim.recording.images import open_image_pair, open_images
+from bfsim.recording.raw import open_i420, open_uyvy, open_y4m, open_yuyv
+from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, SourceFormat, guess_format
+from bfsim.recording.video import open_video
+
+_FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
+_RAW_OPENERS = {"uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420}
+
+
+def open_sources(
+    names: list[str], format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
+) -> list[PictureSource]:
+    """Open sources by their names; `format` is that of all, and `size` that of raw frames.
+
+    `mixed`: the pictures of a source may have several sizes.
+    """
+    if len(names) == 2 and all((format or guess_format(name)) == "images" for name in names):
+        return open_image_pair(*names, mixed=mixed)
+    return [_open_source(name, format, size, mixed=mixed) for name in names]
+
+
+def _open_source(
+    name: str, format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
+) -> PictureSource:
+    chosen = format or guess_format(name)
+    if chosen is None:
+        kind = "is not there" if not Path(name).exists() else "has a name that does not tell its format"
+        raise RecordingError(
+            f"{name}: source must be a folder of images or a file of pictures, but it {kind} "
+            f"(`--format` {', '.join(SOURCE_FORMATS)})"
+        )
+    if chosen == "images":
+        return open_images(name, mixed=mixed)
+    if chosen in _FILE_OPENERS:
+        return _FILE_OPENERS[chosen](name)
+    if size is None or min(size) <= 0:
+        raise RecordingError(
+            f"{name}: raw {chosen.upper()} needs the size of its frames, such as `--size 320x240`"
+        )
+    return _RAW_OPENERS[chosen](name, size)
