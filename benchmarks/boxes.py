@@ -1,6 +1,7 @@
 """How well boxes are placed: `python -m benchmarks.boxes RECORDING` with one of `tinyphoon.scenes.boxes:BOXES`.
 
-Each frame with where the box is, and how far off its middle is that the firmware reports: by its upright edges, or by the floor alone.
+Each frame with where the box is, and how far off its middle is that the firmware reports: by its upright edges, or by
+the floor alone.
 """
 
 from __future__ import annotations

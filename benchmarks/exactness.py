@@ -4,8 +4,9 @@
     python -m benchmarks.exactness twins          the kernels of `benchmarks/twins` and `benchmarks/firmware_twins`
     python -m benchmarks.exactness random 1000    so many random kernels
 
-Each set is compiled at -O2 and -O0 from the C that `bfsim export` writes; the hand-written C of the firmware's twins, too, in each of
-its variants. Needs a bfin-elf toolchain on PATH; takes a minute, a minute, and a minute for each 150 random kernels and level.
+Each set is compiled at -O2 and -O0 from the C that `bfsim export` writes; the hand-written C of the firmware's twins,
+too, in each of its variants. Needs a bfin-elf toolchain on PATH; takes a minute, a minute, and a minute for each 150
+random kernels and level.
 """
 
 from __future__ import annotations

@@ -2,9 +2,10 @@
 
     python -m benchmarks.instruction_set [SOURCES] [--seed N] [--sequences N] [--length N] [--record FILE]
 
-SOURCES is the unpacked source of GDB, of which sim/testsuite/bfin is used (Debian: gdb-source). Its programs are assembled, linked
-and run; how many pass is printed, and of the others why they do not. Then random sequences are run by both, and all registers are
-compared. Needs bfin-elf-as, -ld, -gcc and -run on PATH. Some 20 minutes on one core for the programs, 20 s for 1,000 sequences of 8.
+SOURCES is the unpacked source of GDB, of which sim/testsuite/bfin is used (Debian: gdb-source). Its programs are
+assembled, linked and run; how many pass is printed, and of the others why they do not. Then random sequences are run by
+both, and all registers are compared. Needs bfin-elf-as, -ld, -gcc and -run on PATH. Some 20 minutes on one core for the
+programs, 20 s for 1,000 sequences of 8.
 """
 
 from __future__ import annotations

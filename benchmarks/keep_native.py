@@ -2,8 +2,9 @@
 
     python -m benchmarks.keep_native
 
-It takes half a minute, and writes to `bfsim/kernel/kept`; what is there and no longer used is removed. After a change of a function with
-`@native` or `@native_entry`, or of a number that one uses, it must be run again, or every cold start takes that half minute.
+It takes half a minute, and writes to `bfsim/kernel/kept`; what is there and no longer used is removed. After a change
+of a function with `@native` or `@native_entry`, or of a number that one uses, it must be run again, or every cold start
+takes that half minute.
 """
 
 from __future__ import annotations

@@ -3,10 +3,10 @@
     python -m benchmarks.random_programs                    25 programs at -O0, -O2, -Os and -O3
     python -m benchmarks.random_programs --first 100 --programs 50
 
-Needs a bfin-elf toolchain with the simulator on PATH, csmith, and its header (Debian: csmith, libcsmith-dev). Each program is called as
-a kernel of `kernel_from` is, and by a program under the simulator; both give the checksum of all of its variables. Left out are
-programs that do not end in some seconds there, and those that need more stack than the scratchpad has. Where the simulator ends a
-program for an access that is not aligned, bfsim must, too.
+Needs a bfin-elf toolchain with the simulator on PATH, csmith, and its header (Debian: csmith, libcsmith-dev). Each
+program is called as a kernel of `kernel_from` is, and by a program under the simulator; both give the checksum of all
+of its variables. Left out are programs that do not end in some seconds there, and those that need more stack than the
+scratchpad has. Where the simulator ends a program for an access that is not aligned, bfsim must, too.
 """
 
 from __future__ import annotations

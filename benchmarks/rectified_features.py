@@ -1,9 +1,9 @@
 """Features rectified in place of pictures (T §7.2): what it saves, and how far off edges, lines and depths are then.
 
-`python -m benchmarks.rectified_features RECORDING...`: recordings of chessboards, whose corners OpenCV finds, with rectification tables
-by `bfsim record calibrate`; with `--distort` and `--turn-right`, as for `bfsim record render`, recordings rendered so, with tables that
-are exact but for whole pixels. Beside each other: pictures rectified, as `tinyphoon` does, and features. Needs OpenCV (`pip install -e
-".[opencv]"`).
+`python -m benchmarks.rectified_features RECORDING...`: recordings of chessboards, whose corners OpenCV finds, with
+rectification tables by `bfsim record calibrate`; with `--distort` and `--turn-right`, as for `bfsim record render`,
+recordings rendered so, with tables that are exact but for whole pixels. Beside each other: pictures rectified, as
+`tinyphoon` does, and features. Needs OpenCV (`pip install -e ".[opencv]"`).
 """
 
 from __future__ import annotations

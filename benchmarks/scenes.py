@@ -1,11 +1,11 @@
 """The scenes of T Figures 5.8 and 6.7 to 6.14: which objects the firmware finds, and how far off it has them.
 
-`python -m benchmarks.scenes [FOLDER] [--scene NAME]... [--overlays FOLDER]`: a folder of recordings of `bfsim record render
-thesis FOLDER`; without one they are rendered here, which needs mitsuba (`pip install -e ".[scenes]"`) and some minutes. What the thesis
-reports as failing is reported here as it comes out. A thing is found if an object of its kind of model lies its way; its
-place is that of the ball's centre, of the middle of the goal's mouth, and of the middle of the mark's nearest face. The
-balls of Figure 5.8 have many colours and sizes, and the model one of each. What was seen is drawn over the pictures of each
-scene, in a folder of its own.
+`python -m benchmarks.scenes [FOLDER] [--scene NAME]... [--overlays FOLDER]`: a folder of recordings of `bfsim record
+render thesis FOLDER`; without one they are rendered here, which needs mitsuba (`pip install -e ".[scenes]"`) and some
+minutes. What the thesis reports as failing is reported here as it comes out. A thing is found if an object of its kind
+of model lies its way; its place is that of the ball's centre, of the middle of the goal's mouth, and of the middle of
+the mark's nearest face. The balls of Figure 5.8 have many colours and sizes, and the model one of each. What was seen
+is drawn over the pictures of each scene, in a folder of its own.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 `python -m benchmarks.table_6_4 FOLDER`: a folder of recordings of `bfsim record render thesis FOLDER`.
 
-First nothing is fitted: the default is the board cm-bf561, and low and high are what the ranges of HARDWARE make of each row: the least and
-the most with any clocks that such modules are known to have been run with, and every latency at the end of its range. Then three
-numbers are fitted to the column of Figure 6.7 alone: the clocks, the way of a core's read to the SDRAM and back, and what it takes to
-open a row there. What they make of the other columns is a prediction.
+First nothing is fitted: the default is the board cm-bf561, and low and high are what the ranges of HARDWARE make of
+each row: the least and the most with any clocks that such modules are known to have been run with, and every latency at
+the end of its range. Then three numbers are fitted to the column of Figure 6.7 alone: the clocks, the way of a core's
+read to the SDRAM and back, and what it takes to open a row there. What they make of the other columns is a prediction.
 """
 
 from __future__ import annotations

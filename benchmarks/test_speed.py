@@ -1,8 +1,9 @@
 """How fast the simulator is. Run with `pytest benchmarks/test_speed.py --benchmark-columns=median,min,max`.
 
-Compare within one run only: `simulated` against `native` (what its kernels' machine code takes of it), as GCC's own code, which is
-what `bfsim run` has, and as estimated; `floor` (the estimated kernels called from Python on the same pixels, without counters, checks
-and SimPy); and cold against warm start. Timings are not asserted; the number of events is.
+Compare within one run only: `simulated` against `native` (what its kernels' machine code takes of it), as GCC's own
+code, which is what `bfsim run` has, and as estimated; `floor` (the estimated kernels called from Python on the same
+pixels, without counters, checks and SimPy); and cold against warm start. Timings are not asserted; the number of events
+is.
 """
 
 from __future__ import annotations

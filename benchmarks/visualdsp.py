@@ -2,9 +2,9 @@
 
     python -m benchmarks.visualdsp PROGRAM.dxe
 
-PROGRAM is any program of VisualDSP++ or CrossCore for the Blackfin that divides and uses floats; none comes with bfsim, but public
-repositories have some. Each routine is called with operands of all sizes, spread evenly over their exponents; what it returns must
-be right. Cycles are those of `gcc-adi`, the call included as in the manual.
+PROGRAM is any program of VisualDSP++ or CrossCore for the Blackfin that divides and uses floats; none comes with bfsim,
+but public repositories have some. Each routine is called with operands of all sizes, spread evenly over their
+exponents; what it returns must be right. Cycles are those of `gcc-adi`, the call included as in the manual.
 """
 
 from __future__ import annotations

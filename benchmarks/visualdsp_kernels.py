@@ -2,9 +2,9 @@
 
     python -m benchmarks.visualdsp_kernels PROGRAM.dxe
 
-PROGRAM is one that has stb_image.h in it (public: georgenardes/image_processing_on_DSP on GitHub, for an ADSP-BF533). The kernels here
-are these functions in Python, written before anybody had compared them. Both must leave the same; cycles are means over the calls,
-timed as `gcc-adi` times instructions.
+PROGRAM is one that has stb_image.h in it (public: georgenardes/image_processing_on_DSP on GitHub, for an ADSP-BF533).
+The kernels here are these functions in Python, written before anybody had compared them. Both must leave the same;
+cycles are means over the calls, timed as `gcc-adi` times instructions.
 """
 
 from __future__ import annotations

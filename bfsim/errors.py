@@ -1,7 +1,8 @@
 """The errors of bfsim: one class per kind of mistake, each a child of the built-in that a caller expects.
 
-A message says what must be, what was, and where. The command line prints it as one paragraph and
-exits with code 2. Values of any length stand in it as `shown` or `cut`. A missed deadline or a missed frame is a result and never an error.
+A message says what must be, what was, and where. The command line prints it as one paragraph and exits with code 2.
+Values of any length stand in it as `shown` or `cut`. A missed deadline or a missed frame is a result and never an
+error.
 """
 
 from __future__ import annotations

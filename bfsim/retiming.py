@@ -125,8 +125,8 @@ def playing_work(
 ) -> Iterator[None]:
     """Have the cores of `machine` play what was recorded, in place of the firmware, in the `with` block.
 
-    Raises WorkError for a file that is no whole recorded run, or one of another recording, firmware or compiler, or that cannot be
-    played on this machine.
+    Raises WorkError for a file that is no whole recorded run, or one of another recording, firmware or compiler, or
+    that cannot be played on this machine.
     """
     from bfsim.machine.retiming.replayed_core import played_again
     from bfsim.work_file import opened

@@ -1,7 +1,8 @@
 """The timeline of a run: flat records of what each core and device did, from one cycle to another.
 
-They are handed out while the run goes on (`bfsim.run.simulate(..., on_spans=...)`), so that a long run takes no more memory.
-Cycles are CCLK cycles from the start of the run. What a device does between two edges of the CCLK begins and ends at the next one.
+They are handed out while the run goes on (`bfsim.run.simulate(..., on_spans=...)`), so that a long run takes no more
+memory. Cycles are CCLK cycles from the start of the run. What a device does between two edges of the CCLK begins and
+ends at the next one.
 """
 
 from __future__ import annotations
@@ -55,10 +56,10 @@ class Place(NamedTuple):
 class Span(NamedTuple):
     """Something that went on from `begin_cclk` to `end_cclk` at `where`: a core, a DMA channel, a camera, a semaphore.
 
-    Spans of one track come in the order of time and never overlap. Of a core, issue + stall + idle = elapsed, and `stage`
-    is the row of the budget that it counts to; where in a call its stalls were is not known. `value` is the bytes of what was
-    moved, the level, or the index of the frame. `flow` is the same number in a transfer and in the wait that it ended, else 0. `place` is where in the
-    picture that the core looked at it was about, if that is known.
+    Spans of one track come in the order of time and never overlap. Of a core, issue + stall + idle = elapsed, and
+    `stage` is the row of the budget that it counts to; where in a call its stalls were is not known. `value` is the
+    bytes of what was moved, the level, or the index of the frame. `flow` is the same number in a transfer and in the
+    wait that it ended, else 0. `place` is where in the picture that the core looked at it was about, if that is known.
     """
 
     kind: SpanKind

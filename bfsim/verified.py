@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class VerifiedKernel:
     """One kernel: its calls in a frame, how many were played, and the cycles of a frame, estimated and measured.
 
-    `different`: how many of the calls that were played left other bits than the kernel here. `unequal`: of how many the translated
-    code took other cycles than the GNU simulator counts.
+    `different`: how many of the calls that were played left other bits than the kernel here. `unequal`: of how many the
+    translated code took other cycles than the GNU simulator counts.
     """
 
     kernel: str

@@ -1,7 +1,8 @@
 """The file of a recorded run: what its cores did, to be played again on other hardware. Opening it runs nothing.
 
-It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork`, compressed with Zstandard: a line of JSON and then
-the columns of its tables, each in the narrowest integers that hold it; `end.json`, written last, says what was known only then.
+It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork`, compressed with Zstandard: a line
+of JSON and then the columns of its tables, each in the narrowest integers that hold it; `end.json`, written last, says
+what was known only then.
 """
 
 from __future__ import annotations

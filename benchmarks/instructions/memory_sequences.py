@@ -5,10 +5,10 @@
     python -m benchmarks.instructions.memory_sequences --does add_and_shift      of one semantics only
     python -m benchmarks.instructions.memory_sequences 6 --record tests/blackfin/data/runs.json
 
-Needs a bfin-elf toolchain on PATH. The instructions are all but those of the DSP, which `instruction_set.py` compares, and those of control
-flow, for which `control.py` has programs; what is recorded has those too. The pointer of an access is set before it, to a small memory.
-Prints the shortest part of a sequence that shows a difference. Not compared: shifts by a register of 2^31 and more, where the simulator
-shifts by negative numbers, which C does not define.
+Needs a bfin-elf toolchain on PATH. The instructions are all but those of the DSP, which `instruction_set.py` compares,
+and those of control flow, for which `control.py` has programs; what is recorded has those too. The pointer of an access
+is set before it, to a small memory. Prints the shortest part of a sequence that shows a difference. Not compared:
+shifts by a register of 2^31 and more, where the simulator shifts by negative numbers, which C does not define.
 """
 
 from __future__ import annotations

@@ -3,9 +3,9 @@
     python -m benchmarks.instructions.printed tests/blackfin/data/text.json       records one encoding of each form
     python -m benchmarks.instructions.printed libgcc.a libc.a                      compares all instructions in archives
 
-Needs bfin-elf-objdump on PATH. Symbols and comments are left out: objdump's comments say what registers hold, by its own guess.
-Loops that begin 16 bytes behind LSETUP or more, or end 1,024 behind it or more, are not among those recorded: objdump prints them as
-lying before it.
+Needs bfin-elf-objdump on PATH. Symbols and comments are left out: objdump's comments say what registers hold, by its
+own guess. Loops that begin 16 bytes behind LSETUP or more, or end 1,024 behind it or more, are not among those
+recorded: objdump prints them as lying before it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The GNU simulator's own test programs: assembled, linked, and run by bfsim's decoder and translator.
 
-A program passes if it says "pass" and nothing else, and ends by itself, as under the simulator: by EXCPT 0, the simulator's system
-call, or HLT. Each runs in a process of its own, for a program may access memory that is not there.
+A program passes if it says "pass" and nothing else, and ends by itself, as under the simulator: by EXCPT 0, the
+simulator's system call, or HLT. Each runs in a process of its own, for a program may access memory that is not there.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Random sequences of instructions: made from the table itself, run by bfsim's translator.
 
-A sequence is straight code. It starts with registers set by chance, numbers at the edges of saturation among them, and may load from
-`SCRATCH`, of which every word is as `scratch_bytes` says.
+A sequence is straight code. It starts with registers set by chance, numbers at the edges of saturation among them, and
+may load from `SCRATCH`, of which every word is as `scratch_bytes` says.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """What is known exactly of a frame's rectified left picture: straight borders in it, and disparities.
 
-Of a rendered frame the scene tells both: the edges of its box that are visible, and the disparity of each pixel. Of a frame with
-a chessboard its corners do, found by OpenCV in the pictures as the cameras took them. A corner's place in the rectified picture is
-that of a plane through the places of the rectified pixels whose sources lie around it, so it is finer than a table's pixels. The borders of
-the squares are straight lines through the corners; and on a board, which is flat, the disparity is a plane, too.
+Of a rendered frame the scene tells both: the edges of its box that are visible, and the disparity of each pixel. Of a
+frame with a chessboard its corners do, found by OpenCV in the pictures as the cameras took them. A corner's place in
+the rectified picture is that of a plane through the places of the rectified pixels whose sources lie around it, so it
+is finer than a table's pixels. The borders of the squares are straight lines through the corners; and on a board, which
+is flat, the disparity is a plane, too.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """What else might explain T Table 6.4: other readings of the thesis, and other programs with the right sum.
 
-`python -m benchmarks.robot.readings FOLDER`: a folder of recordings of `bfsim record render thesis FOLDER`. Each is the firmware `thesis` with
-one step of another reading, or today's firmware with another compiler or placement, on the scene of Figure 6.7.
+`python -m benchmarks.robot.readings FOLDER`: a folder of recordings of `bfsim record render thesis FOLDER`. Each is the
+firmware `thesis` with one step of another reading, or today's firmware with another compiler or placement, on the scene
+of Figure 6.7.
 """
 
 from __future__ import annotations

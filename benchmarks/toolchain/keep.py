@@ -2,8 +2,9 @@
 
     python -m benchmarks.toolchain.keep
 
-It needs GCC 12.2.0 for the Blackfin on the PATH, and writes to `bfsim/compiling/kept`; what is there and no longer used is removed.
-After a change of a kernel of the built-in firmware it must be run again, or `bfsim verify` needs a compiler.
+It needs GCC 12.2.0 for the Blackfin on the PATH, and writes to `bfsim/compiling/kept`; what is there and no longer used
+is removed. After a change of a kernel of the built-in firmware it must be run again, or `bfsim verify` needs a
+compiler.
 """
 
 from __future__ import annotations

@@ -80,7 +80,8 @@ def find_code(
 ) -> KernelCode:
     """Find the code of a kernel: with all those of `firmware` if it is one of them, or by itself. It is timed as `profile` has it.
 
-    Raises ConfigError where there is neither kept code nor a compiler, and KernelError where the code has no function for the kernel.
+    Raises ConfigError where there is neither kept code nor a compiler, and KernelError where the code has no function
+    for the kernel.
     """
     timing = timing_of(profile)
     if kernel.object_code is not None:

@@ -292,9 +292,9 @@ class BoardSpec:
     """A board: the chip with the board's memories, how it is clocked, its SDRAM and its cameras.
 
     `pll` is None where no setting of it makes these `clocks`. `cameras`: what PPI0, PPI1 and so on look at.
-    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period_transfers` and `mdma_period_transfers`: fields
-    of DMA_TC_PER, transfers in one direction, and of one MDMA stream, before the other has its turn; 0 switches the
-    rule off.
+    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period_transfers` and
+    `mdma_period_transfers`: fields of DMA_TC_PER, transfers in one direction, and of one MDMA stream, before the other
+    has its turn; 0 switches the rule off.
     """
 
     name: str

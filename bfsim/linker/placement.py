@@ -207,7 +207,8 @@ class _Linker:
     def _of_other_files(self, symbol: Symbol) -> str:
         """Return the end of an error: the first statement that names the symbol's section, of other files; or nothing.
 
-        The wizard of VisualDSP++ writes such LDFs for a project with sub-projects, whose output are the libraries sml2.dlb and sml3.dlb.
+        The wizard of VisualDSP++ writes such LDFs for a project with sub-projects, whose output are the libraries
+        sml2.dlb and sml3.dlb.
         """
         for statement, source in self._inputs_for(symbol):
             if source.files and source.takes_section(symbol) and not source.takes_file(symbol):

@@ -62,9 +62,10 @@ class Fill:
 class Placed:
     """The best placement that was run. `identity` is that of the first run; `start` names the LDF whose memories they are.
 
-    `linked`: whether that LDF had room for the firmware; else the first run had what it had no room for elsewhere. `camera_ms`:
-    the time between two pictures, below which no placement comes; `..._busy_ms` as in a trial. `best`: number of the trial, None if the first run was not
-    beaten. `ldf` is the text of the placement, empty where nothing is better than what was given.
+    `linked`: whether that LDF had room for the firmware; else the first run had what it had no room for elsewhere.
+    `camera_ms`: the time between two pictures, below which no placement comes; `..._busy_ms` as in a trial. `best`:
+    number of the trial, None if the first run was not beaten. `ldf` is the text of the placement, empty where nothing
+    is better than what was given.
     """
 
     identity: Identity

@@ -129,9 +129,9 @@ def calibrate(
 
     The folder `chessboards` holds pictures left* and right* (or folders left and right), of which those with the same
     rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
-    board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of another size are scaled as an import with
-    `--resize` scales them. `focal_px` is the focal
-    length to rectify to; without it, the mean of the left camera's. Raises RecordingError.
+    board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of
+    another size are scaled as an import with `--resize` scales them. `focal_px` is the focal length to rectify to;
+    without it, the mean of the left camera's. Raises RecordingError.
     """
     model = _MODELS[lens]()
     if min(corners) < 3 or square_mm <= 0:

@@ -135,8 +135,9 @@ def _names_of(found: list[Path]) -> str:
     return f": {cut(', '.join(names))}" if names else ""
 
 
-def _natural_key(path: Path) -> list[tuple[int, str]]:
-    return [(int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", str(path))]
+def _natural_key(path: Path) -> list[int | str]:
+    """Return words and numbers in turn: 2 comes before 10."""
+    return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", str(path))]
 
 
 def load_image(path: Path) -> Image.Image:

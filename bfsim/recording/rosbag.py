@@ -47,8 +47,8 @@ def open_bag(
 
     Of `topics`, left and right, pictures are paired that are each other's nearest within `slop_s`, or half a frame
     period; the others are skipped. Without `topics` there must be one pair of image topics whose names differ by left
-    and right. `single`: there must be one image topic, or `topics` name it twice. Without `mixed` all pictures of a topic must be of
-    one size. Raises RecordingError.
+    and right. `single`: there must be one image topic, or `topics` name it twice. Without `mixed` all pictures of a
+    topic must be of one size. Raises RecordingError.
     """
     bag = BagFile(Path(name))
     found = {each.name: each for each in bag.topics()}

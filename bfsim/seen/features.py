@@ -35,7 +35,8 @@ class SeenEdges:
     """The edges of a picture, one element of each array per edge.
 
     `x_px`, `y_px`: the pixel. `gradients`: how strong, in the firmware's units. `directions`: of the gradient, as the
-    firmware has it, 256 to a full turn from the x axis towards the y axis. `lost`: how many more there would have been with room for them.
+    firmware has it, 256 to a full turn from the x axis towards the y axis. `lost`: how many more there would have been
+    with room for them.
     """
 
     x_px: NDArray[np.int32]

@@ -25,16 +25,16 @@ WORKS = "works"
 LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 27 ms to run, 37 ms to record and 8 ms to play (20 and 200 frames, whole commands,
-means of three): n points that are left gain from n = (37 - 8) / (27 - 8), 1.5, on.
+With all that kernels work on in L1 a frame more takes 27 ms to run, 37 ms to record and 8 ms to play (20 and 200
+frames, whole commands, means of three): n points that are left gain from n = (37 - 8) / (27 - 8), 1.5, on.
 """
 
 MOST_WAITS = 0.02
 """Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
 
-At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames, when runs were slower) a frame more took 1.6
-times as long to record, and 0.6 times as long to play, as to run: that gains little, if anything. What lies between
-is not measured [assumed]: where it is wrong a sweep takes longer. Its figures are the same.
+At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames, when runs were slower)
+a frame more took 1.6 times as long to record, and 0.6 times as long to play, as to run: that gains little, if anything.
+What lies between is not measured [assumed]: where it is wrong a sweep takes longer. Its figures are the same.
 """
 
 

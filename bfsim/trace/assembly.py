@@ -18,9 +18,10 @@ class SourceText:
 class AssemblyInstruction:
     """An instruction, or several that are issued together: `text` has one of them each.
 
-    `source`: the line that it was made of, None where none is known. `cclk`: cycles of one execution without waits; `taken_cclk`: of a
-    branch that is taken, None of others. `stall_cclk`: how long it waits, at the worst, for the register `waits_for`. `starts_block`:
-    control may come to it from elsewhere. `executions`, `taken` and `total_cclk` are those of a run, None without one.
+    `source`: the line that it was made of, None where none is known. `cclk`: cycles of one execution without waits;
+    `taken_cclk`: of a branch that is taken, None of others. `stall_cclk`: how long it waits, at the worst, for the
+    register `waits_for`. `starts_block`: control may come to it from elsewhere. `executions`, `taken` and `total_cclk`
+    are those of a run, None without one.
     """
 
     address: int
@@ -42,10 +43,11 @@ class AssemblyInstruction:
 class AssemblyLoop:
     """A loop, whose instructions lie between the addresses `first` and `last`.
 
-    `least_cclk` and `most_cclk`: one turn on the cheapest and the dearest way, loops in it once and without what it calls. Of the dearest:
-    `issue_cclk` to issue its instructions, `jump_cclk` more for its jumps and branches, `stall_cclk` for registers that it waits
-    for. `chain_cclk`: the registers of `chain` depend on each other from turn to turn and take so long, whatever is issued beside
-    them. `bound`: what bounds it. `turns` and `total_cclk` are those of a run, None without one.
+    `least_cclk` and `most_cclk`: one turn on the cheapest and the dearest way, loops in it once and without what it
+    calls. Of the dearest: `issue_cclk` to issue its instructions, `jump_cclk` more for its jumps and branches,
+    `stall_cclk` for registers that it waits for. `chain_cclk`: the registers of `chain` depend on each other from turn
+    to turn and take so long, whatever is issued beside them. `bound`: what bounds it. `turns` and `total_cclk` are
+    those of a run, None without one.
     """
 
     first: int

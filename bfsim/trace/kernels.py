@@ -32,10 +32,10 @@ class LineCost:
 class KernelRecord:
     """All calls of one kernel (or of a kernel called by it) by one core in one stage, over all frames, without its callees.
 
-    `symbol` tells kernels of one name apart. `file` and `LineCost.line` say where the source is; `text` holds its lines, the
-    first one being `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; where code lies outside L1, the kernel's
-    first line has the waits for it. `object_cclk` are those of its issue cycles that instructions of object code took; the others are
-    estimated.
+    `symbol` tells kernels of one name apart. `file` and `LineCost.line` say where the source is; `text` holds its
+    lines, the first one being `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; where code lies
+    outside L1, the kernel's first line has the waits for it. `object_cclk` are those of its issue cycles that
+    instructions of object code took; the others are estimated.
     """
 
     core: str

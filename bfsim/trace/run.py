@@ -98,10 +98,11 @@ class RunWarning:
 class BoardRecord:
     """What a board leaves behind when the recording is over, or the user stopped it. `missed` are the recording's frames that came while the firmware was busy.
 
-    `messages` went over peripherals; `device_notes` are what the devices there had to say at the end, by peripheral. `interrupts` were
-    taken, by core and source. `object_share` is the part of the kernels' issue cycles that instructions of object code took.
-    When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished; `interrupted_at` is the line of
-    the firmware that was at work then, as ` (file:line)`, if one was.
+    `messages` went over peripherals; `device_notes` are what the devices there had to say at the end, by peripheral.
+    `interrupts` were taken, by core and source. `object_share` is the part of the kernels' issue cycles that
+    instructions of object code took. When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame
+    that was not finished; `interrupted_at` is the line of the firmware that was at work then, as ` (file:line)`, if one
+    was.
     """
 
     frames: tuple[FrameRecord, ...]
@@ -125,10 +126,10 @@ class BoardRecord:
 class RunRecord(BoardRecord):
     """One run: what its board left behind, and what ran there. `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
 
-    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
-    `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
-    that does not ask. `assumptions` are warnings of what was not given and had to be assumed, or was given and seems wrong; `losses` say in words what those published
-    numbers count that the firmware lost.
+    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference. `geometry` says
+    where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware that does
+    not ask. `assumptions` are warnings of what was not given and had to be assumed, or was given and seems wrong;
+    `losses` say in words what those published numbers count that the firmware lost.
     """
 
     identity: Identity

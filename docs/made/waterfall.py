@@ -1,7 +1,8 @@
 """Draw what each improvement of the built-in firmware is worth: `python docs/made/waterfall.py`, after a change of any cycle.
 
-From the robot's frame (T Table 6.4) over the steps that the thesis describes to the built-in ones and the fast ones, one exchanged
-after the other: each bar is one change. Makes `docs/images/waterfall.png`, and the table below it in `docs/tinyphoon.md`.
+From the robot's frame (T Table 6.4) over the steps that the thesis describes to the built-in ones and the fast ones,
+one exchanged after the other: each bar is one change. Makes `docs/images/waterfall.png`, and the table below it in
+`docs/tinyphoon.md`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The drive: `bfsim record render examples/self_localization/drive.py:DRIVE drive.mcap` (some minutes; needs mitsuba).
 
-A robot drives from its own half to the blue goal in an S, at the speed of the thesis's game (0.15 m/s, T §7.1) and at the rate that
-it had (5 pictures a second): 40 stereo frames, 8 seconds. It turns so far that it sees the goal, then a post of it, then none, and then
-the goal again.
+A robot drives from its own half to the blue goal in an S, at the speed of the thesis's game (0.15 m/s, T §7.1) and at
+the rate that it had (5 pictures a second): 40 stereo frames, 8 seconds. It turns so far that it sees the goal, then a
+post of it, then none, and then the goal again.
 """
 
 from __future__ import annotations

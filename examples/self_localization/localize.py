@@ -1,8 +1,8 @@
 """Where is the robot? `python localize.py RECORDING`: plays a drive, and localizes the robot by what the vision sensor reports.
 
-The vision sensor is the built-in firmware on the simulated board; its messages are taken where the robot takes them, at the other end
-of the SPI. The wheels are simulated: the recording's true way, with an error that is drawn from a seed. Without RECORDING it is the
-built-in one.
+The vision sensor is the built-in firmware on the simulated board; its messages are taken where the robot takes them, at
+the other end of the SPI. The wheels are simulated: the recording's true way, with an error that is drawn from a seed.
+Without RECORDING it is the built-in one.
 """
 
 from __future__ import annotations

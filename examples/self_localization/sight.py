@@ -76,8 +76,8 @@ class Sight:
 def sight_of(results: Results, eye: Eye) -> Sight:
     """Return what a message tells of posts, bottom line and 3-D lines.
 
-    The bearing of a post is known well, and not how far away it is (T §6.5). Lines on the floor are placed by their pixels and the floor,
-    which is more exact than their disparity; that tells which lines are on the floor.
+    The bearing of a post is known well, and not how far away it is (T §6.5). Lines on the floor are placed by their
+    pixels and the floor, which is more exact than their disparity; that tells which lines are on the floor.
     """
     posts, goal_lines = [], []
     for line in results.lines:

@@ -77,9 +77,10 @@ class Difference:
     A baseline has cycles of all of its frames together: beside one, all frames are compared, with lines, and those of another
     number of frames, `measured_frames`, in proportion.
 
-    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and last the waits (FOLLOWS). They have source lines only where both runs
-    have the same frames (`has_lines`), since lines are counted over a whole run. `before_ms` and `after_ms` are of a frame on
-    average, at the core clocks `before_hz` and `after_hz`. `results` are the firmware's published numbers, summed over the frames.
+    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and last the waits (FOLLOWS). They
+    have source lines only where both runs have the same frames (`has_lines`), since lines are counted over a whole run.
+    `before_ms` and `after_ms` are of a frame on average, at the core clocks `before_hz` and `after_hz`. `results` are
+    the firmware's published numbers, summed over the frames.
     """
 
     configuration: tuple[Change, ...]

@@ -34,9 +34,9 @@ _NAME = re.compile(r"frame-\d+\.png")
 class OverlayWriter:
     """Context manager that draws frames for a folder, or for a file *.gif, *.webp, *.apng or *.mp4.
 
-    All is drawn beside `path` and put in its place on a clean exit of the `with` block; after an error or Ctrl-C nothing
-    is left. `layers` are what is drawn. An earlier overlay is replaced, and anything else in the folder refused: ConfigError, as for a place that
-    cannot be written.
+    All is drawn beside `path` and put in its place on a clean exit of the `with` block; after an error or Ctrl-C
+    nothing is left. `layers` are what is drawn. An earlier overlay is replaced, and anything else in the folder
+    refused: ConfigError, as for a place that cannot be written.
     """
 
     def __init__(self, path: Path, layers: Collection[str] = LAYERS) -> None:

@@ -29,7 +29,8 @@ def overlay_of(
 ) -> Image.Image:
     """Return the sheet of a frame, RGB, with some `layers` drawn: the same size for frames of pictures of one size.
 
-    A picture is about `panel_width` pixels wide, but a slim one at most twice as high; one alone is as wide as the legend. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
+    A picture is about `panel_width` pixels wide, but a slim one at most twice as high; one alone is as wide as the
+    legend. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
     """
     frame, scale = only(frame, layers), depths_of(frame)
     wanted_px = panel_width if len(frame.cameras) > 1 else LEGEND_WIDTH
