@@ -119,6 +119,16 @@ def every_frame(body: Callable[..., Generator[Any, Any, Any]]) -> Main:
     return main
 
 
+def through_rings(core: Core, frame: Frame, kernel: Kernel) -> Play:
+    """Have a kernel make a line of `image` of each line of the picture, on its way from one ring to another."""
+    ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
+    for _ in range(frame.height):
+        source, target = (yield from ring.line()), (yield from out.row())
+        yield core.run(kernel, source, target)
+        out.send()
+    yield from out.flush()
+
+
 def board_of(
     program: Firmware,
     size: FrameSize = SIZE,

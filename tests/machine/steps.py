@@ -11,7 +11,7 @@ from bfsim.api import Core, Frame
 from bfsim.machine.program import Main
 from tests.machine.kernels import copy, fill, spin, total
 from tests.machine.placements import code_in, shipped
-from tests.machine.rig import STAGES, Play, every_frame
+from tests.machine.rig import STAGES, Play, every_frame, through_rings
 
 LDFS = {name: shipped(f"{name}.ldf") for name in ("thesis", "l2", "sdram", "cache")} | {
     "code in SDRAM": code_in("SDRAM")
@@ -23,12 +23,7 @@ Step = tuple[str, int]
 
 def in_and_out(core: Core, frame: Frame, number: int) -> Play:
     """Fetch lines, copy them, and send them back."""
-    ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
-    for _ in range(frame.height):
-        source, target = (yield from ring.line()), (yield from out.row())
-        yield core.run(copy, source, target)
-        out.send()
-    yield from out.flush()
+    yield from through_rings(core, frame, copy)
 
 
 def locked(core: Core, frame: Frame, number: int) -> Play:

@@ -32,18 +32,14 @@ from tests.machine.rig import (
     of_core,
     run,
     see_all,
+    through_rings,
 )
 
 
 def in_and_out(core: Core, frame: Frame) -> Play:
     """A stage as firmware has them: lines in, a kernel a line, lines out."""
     with core.stage(STAGES[0]):
-        ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
-        for _ in range(frame.height):
-            source, target = (yield from ring.line()), (yield from out.row())
-            yield core.run(copy, source, target)
-            out.send()
-        yield from out.flush()
+        yield from through_rings(core, frame, copy)
 
 
 def test_frames_are_reported_as_soon_as_both_cores_are_done() -> None:

@@ -15,7 +15,18 @@ from bfsim.chip.bf561 import BF561
 from bfsim.errors import FirmwareError
 from bfsim.trace import StallReason
 from tests.machine.kernels import copy, first, negate, spin
-from tests.machine.rig import SIZE, Bench, Picture, Play, every_frame, load, noise, run, stage_of
+from tests.machine.rig import (
+    SIZE,
+    Bench,
+    Picture,
+    Play,
+    every_frame,
+    load,
+    noise,
+    run,
+    stage_of,
+    through_rings,
+)
 
 LINE_BYTES = 2 * SIZE.width_px
 EVENTS = BF561.events
@@ -50,12 +61,7 @@ def test_a_picture_goes_through_two_rings_and_a_kernel() -> None:
     results = []
 
     def invert(core: Core, frame: Frame) -> Play:
-        ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
-        for _ in range(frame.height):
-            source, target = (yield from ring.line()), (yield from out.row())
-            yield core.run(negate, source, target)
-            out.send()
-        yield from out.flush()
+        yield from through_rings(core, frame, negate)
         results.append(np.stack([row.array for row in core.rows("image")]))
 
     outcome = run(every_frame(invert))
@@ -180,12 +186,7 @@ def test_what_was_flushed_can_be_read_back() -> None:
     sums = []
 
     def there_and_back(core: Core, frame: Frame) -> Play:
-        ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
-        for _ in range(frame.height):
-            source, target = (yield from ring.line()), (yield from out.row())
-            yield core.run(copy, source, target)
-            out.send()
-        yield from out.flush()
+        yield from through_rings(core, frame, copy)
         ring = core.input_ring(core.rows("image"), "in_ring")
         for _ in range(frame.height):
             sums.append((yield core.run(first, (yield from ring.line()))))

@@ -15,7 +15,7 @@ from rich.console import Console
 from bfsim.errors import ConfigError
 from bfsim.report.sweep.front import front, sign_of
 from bfsim.report.sweep.plot import plot_svg
-from bfsim.report.sweep.screen import ONE_FRAME, Shown, failures, lines_of, sweep_report
+from bfsim.report.sweep.screen import ONE_FRAME, Shown, best_table, failures, lines_of, sweep_report
 from bfsim.report.sweep.table import columns_of, csv_of, write_parquet
 
 PLACES = st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), max_size=20)
@@ -120,6 +120,16 @@ def test_the_rate_of_one_frame_is_explained(frames: tuple[int, int], is_said: bo
     console = Console(width=110, file=StringIO(), record=True)
     console.print(sweep_report(points, [Path("table.csv")], kept=0, top=5))
     assert (ONE_FRAME in console.export_text()) == is_said
+
+
+@pytest.mark.parametrize(("top", "said"), [(1, "1 more are in the table; --top N shows N."), (2, "")])
+def test_what_has_no_room_in_the_list_is_counted(top: int, said: str) -> None:
+    """Where all are listed nothing is said."""
+    columns = ("frame_rate Hz", "frame.median ms", "frame.max ms", "latency.median ms", "on_chip B", "missed")
+    row = {**dict.fromkeys(columns, 1), "error": "", "warnings": "", "frames": 2}
+    lines = lines_of([Shown(f"point {each}", "a", row) for each in range(2)])
+    *_, notes = best_table(lines, top)
+    assert str(notes).partition("\n")[2] == said
 
 
 def test_failures_are_told_once_each() -> None:
