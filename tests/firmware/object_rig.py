@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
@@ -32,13 +31,6 @@ WORDS = {
 def geometry_words(geometry: StereoGeometry = THESIS) -> np.ndarray:
     """The buffer `geometry`."""
     return np.array(geometry_buffer(geometry).values, np.int32)
-
-
-def limit_words(**changes: Any) -> np.ndarray:
-    """The buffer `object_limits`."""
-    from dataclasses import replace
-
-    return np.array(replace(THRESHOLDS, **changes).limits, np.int32)
 
 
 def models_of(*models: ObjectModel) -> np.ndarray:

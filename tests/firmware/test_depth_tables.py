@@ -16,8 +16,8 @@ from bfsim.recording.scenes import render
 from bfsim.run_inputs import calibration_of
 from tinyphoon.scenes.distances import BOX_DISTANCES
 
-LEFT_MM, RIGHT_MM = 15.0, -15.0
-"""Where the cameras are across."""
+LEFT_MM = 15.0
+"""Where the left camera is across."""
 
 
 def truth(distance_mm: float) -> dict:

@@ -18,7 +18,7 @@ from bfsim.kernel.profile import GCC_O0
 from tests.kernel.conftest import ImportText
 from tests.kernel.programs import programs
 
-TAKEN_CCLK, NOT_TAKEN_CCLK, JUMP_CCLK, CALL_CCLK, DIVISION_CCLK = 9, 1, 5, 5, 196
+TAKEN_CCLK, NOT_TAKEN_CCLK, CALL_CCLK, DIVISION_CCLK = 9, 1, 5, 196
 ENTRY, EXIT = [Op.LINK, Op.STORE32, Op.STORE32, Op.STORE32], [Op.IMM, Op.UNLINK, Op.RETURN]
 HEAD = """
 @kernel

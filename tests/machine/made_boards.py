@@ -76,11 +76,6 @@ def play(
     return board.run(iter(noise(frames, board.size) if isinstance(frames, int) else frames))
 
 
-def with_chip(**changes: Any) -> BoardSpec:
-    """Return the CM-BF561 with another chip."""
-    return replace(CM_BF561, chip=replace(CHIP, **changes))
-
-
 def assert_accounted(outcome: BoardRecord) -> None:
     """issue + stall + idle = elapsed for every core and frame, and each frame begins where the one before ended."""
     for frame in outcome.frames:
