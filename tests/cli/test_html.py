@@ -19,8 +19,8 @@ from bfsim.report.html.pictures import Pictures
 from bfsim.shipped import accuracy_on
 from tests.browser import PATIENCE_S, Browser, browsing, needs_chromium
 from tests.pages import ROOT
+from tests.report.evil import evil_run
 from tests.report.pages_by_hand import page_of
-from tests.report.test_html import evil_run
 from tests.seen_frames import frame as seen_frame
 
 

@@ -11,6 +11,7 @@ from bfsim.recording import StereoGeometry
 from tinyphoon.geometry import geometry_buffer
 from tinyphoon.stores import objects as object_store
 from tinyphoon.stores.circles import CIRCLE_WORDS
+from tinyphoon.stores.lines import LINE_WORDS
 from tinyphoon.stores.objects import OBJECT_WORDS
 from tinyphoon.stores.rectangles import RECTANGLE_WORDS
 from tinyphoon.strategy.models import MODELS, ObjectModel, model_words
@@ -45,6 +46,14 @@ def blob_words(*blobs: Mapping[str, int]) -> np.ndarray:
         for b in blobs
     ]
     return np.array(rows or [(0,) * 8], np.uint32).ravel()
+
+
+def line_words(lines: Sequence[Sequence[int]]) -> np.ndarray:
+    """The buffer `lines`."""
+    table = np.zeros((max(len(lines), 1), LINE_WORDS), np.int16)
+    for row, ends in zip(table, lines, strict=False):
+        row[:4] = ends
+    return table.ravel()
 
 
 def records(words: int, *rows: Sequence[int]) -> np.ndarray:

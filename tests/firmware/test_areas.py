@@ -2,47 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bfsim.api import Calibration, Firmware, FrameSize
-from bfsim.chip.boards import CM_BF561
+from bfsim.api import Calibration, Firmware
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
-from bfsim.linker import link
 from bfsim.machine.board import Board
 from bfsim.machine.cameras.settling import settled
 from bfsim.machine.cameras.skipping import skipped
-from bfsim.machine.symbols import symbols_of
-from bfsim.recording import StereoFrame
 from bfsim.trace import BoardRecord
 from tests.firmware.lenses import rectified, sighted
+from tests.firmware.ordered_modes import run
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
-from tests.machine.placements import shipped
 from tests.tiers import exhaustive
 from tinyphoon import fast, tinyphoon
 from tinyphoon.areas import Area, area_in, principal_shift
-from tinyphoon.strategy_unit.unit import StrategyUnit
-
-
-def run(
-    frames: Sequence[StereoFrame],
-    *names: dict[str, Any],
-    firmware: Firmware = tinyphoon,
-    ldf: str = "thesis.ldf",
-) -> tuple[Board, BoardRecord]:
-    """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one; the first one is in force from the start."""
-    height, double_width = frames[0].left.shape
-    size = FrameSize(double_width // 2, height)
-    link_map = link(shipped(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
-    send = [{"after_frames": number, "mode": each} for number, each in enumerate(names)]
-    board = Board(CM_BF561, firmware, size, link_map, devices={"SPI": StrategyUnit({"send": send})})
-    return board, board.run(iter(frames))
 
 
 def part(uyvy: Bytes, area: tuple[int, int, int, int]) -> Bytes:

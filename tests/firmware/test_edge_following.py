@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.firmware.test_stereo_edges import LIKE, NEAR, found
+from tests.firmware.stereo_edge_rig import LIKE, NEAR, found
 
 
 def test_who_follows_takes_the_very_disparity_rather_than_one_beside() -> None:

@@ -22,11 +22,11 @@ from tests.firmware.object_rig import (
     blob_words,
     circle_words,
     geometry_words,
+    line_words,
     models_of,
     object_words,
     rectangle_words,
 )
-from tests.firmware.test_rectangles import line_words
 from tinyphoon.stages.object_detection import ObjectThresholds
 from tinyphoon.stages.object_sight import place_for, see_objects
 from tinyphoon.stores.objects import (

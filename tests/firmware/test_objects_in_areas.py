@@ -11,7 +11,7 @@ from bfsim.recording import RecordingReader
 from bfsim.run_inputs import calibration_of
 from bfsim.shipped import RECORDING
 from tests.firmware.object_rig import as_dicts
-from tests.firmware.test_areas import run
+from tests.firmware.ordered_modes import run
 from tests.firmware.whole_pictures import buffer
 from tests.tiers import exhaustive
 from tinyphoon import tinyphoon

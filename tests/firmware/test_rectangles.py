@@ -10,14 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.firmware import object_references as references
-from tests.firmware.object_rig import blob_words
+from tests.firmware.object_rig import blob_words, line_words
 from tinyphoon.stages.rectangle_detection import (
     find_all_borders,
     find_borders,
     open_rectangles,
     rectangle_buffers,
 )
-from tinyphoon.stores.lines import LINE_WORDS
 from tinyphoon.stores.rectangles import (
     NO_LINE,
     RECTANGLE_CAPACITY,
@@ -39,14 +38,6 @@ BOX = {"colours": BLUE, "pixels": 2400, "left": 100, "right": 180, "top": 60, "b
 # Round the box, the bright side inside: down its left, to the right below it, up its right, to the left above it.
 LEFT, BOTTOM = (1592, 960, 1592, 1600), (1600, 1608, 2880, 1608)
 RIGHT, TOP = (2888, 1600, 2888, 960), (2880, 952, 1600, 952)
-
-
-def line_words(lines: Sequence[Sequence[int]]) -> np.ndarray:
-    """The buffer `lines`."""
-    table = np.zeros((max(len(lines), 1), LINE_WORDS), np.int16)
-    for row, ends in zip(table, lines, strict=False):
-        row[:4] = ends
-    return table.ravel()
 
 
 def find(

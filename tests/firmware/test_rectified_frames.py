@@ -9,8 +9,8 @@ from bfsim.api import Calibration
 from bfsim.machine.board import Board
 from tests.firmware import rectified_references as plain
 from tests.firmware.lenses import nearest, rectified, source_points
+from tests.firmware.ordered_modes import run
 from tests.firmware.pictures import grey_uyvy, random_uyvy
-from tests.firmware.test_areas import run
 from tests.firmware.whole_pictures import buffer, random_frames, stereo
 from tests.tiers import exhaustive
 from tinyphoon import rectified_features

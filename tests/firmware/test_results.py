@@ -11,8 +11,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
-from tests.firmware.object_rig import models_of, object_words, rectangle_words
-from tests.firmware.test_rectangles import line_words
+from tests.firmware.object_rig import line_words, models_of, object_words, rectangle_words
 from tinyphoon.exchange import load_word, store_word
 from tinyphoon.stores.lines3d import EDGE3D_WORDS, LINE3D_WORDS
 from tinyphoon.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY

@@ -16,8 +16,8 @@ from bfsim.recording import RecordingReader
 from bfsim.shipped import RECORDING
 from tests.firmware import stereo_references as references
 from tests.firmware.stereo_edge_references import partners_of
+from tests.firmware.stereo_edge_rig import limits_of, rows_of
 from tests.firmware.stereo_references import Line3D, Rig, Words
-from tests.firmware.test_stereo_edges import limits_of, rows_of
 from tests.firmware.whole_pictures import buffer, run
 from tinyphoon.arithmetic import angle8
 from tinyphoon.geometry import GEOMETRY_WORDS, disparity_at

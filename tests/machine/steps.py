@@ -16,8 +16,6 @@ from tests.machine.rig import STAGES, Play, every_frame, through_rings
 LDFS = {name: shipped(f"{name}.ldf") for name in ("thesis", "l2", "sdram", "cache")} | {
     "code in SDRAM": code_in("SDRAM")
 }
-
-
 Step = tuple[str, int]
 
 
@@ -82,8 +80,6 @@ THINGS: dict[str, Callable[[Core, Frame, int], Play]] = {
     "send": send_one,
 }
 """What firmware does."""
-
-
 STEPS = st.lists(st.tuples(st.sampled_from(list(THINGS)), st.integers(0, 300)), max_size=12)
 
 

@@ -13,13 +13,7 @@ from bfsim.trace import StallReason
 from tests.machine.kernels import spin, total
 from tests.machine.made_boards import CHIP, in_work, made_board
 from tests.machine.rig import Play, cycles_of, every_frame, noise, see_all
-from tests.machine.steps import (
-    LDFS,
-    STEPS,
-    Step,
-    handler,
-    main_of,
-)
+from tests.machine.steps import LDFS, STEPS, Step, handler, main_of
 from tests.machine.timelines import assert_flows, assert_orderly, assert_tiled, told
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from html.parser import HTMLParser
 from io import BytesIO
 
 import numpy as np
@@ -20,33 +19,12 @@ from bfsim.report.html.pictures import Pictures, webp_of
 from bfsim.report.html.sources import dearest_sources
 from bfsim.report.target import Target
 from bfsim.spans import Span, SpanKind
-from bfsim.trace import (
-    REST,
-    BudgetRow,
-    FrameRecord,
-    LineCost,
-    RunRecord,
-    RunWarning,
-    StallReason,
-    WarningKind,
-)
+from bfsim.trace import REST, BudgetRow, FrameRecord, LineCost, RunRecord, StallReason
+from tests.report.evil import EVIL, Elements, evil_run
 from tests.report.pages_by_hand import page_of
-from tests.report.records import (
-    access,
-    buffer,
-    core_frame,
-    cost,
-    edge_run,
-    frame,
-    kernel,
-    run_of,
-    runs,
-    traffic,
-)
+from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, runs
 from tests.seen_frames import frame as seen_frame
 from tests.tiers import tried
-
-EVIL = "<script>pwned=1</script><img src=x onerror=pwned=1>'\"&{{7*7}}"
 
 
 def values_of(spec: charts.Spec) -> list[dict[str, float]]:
@@ -207,54 +185,6 @@ def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.Mo
         text = page_of(run, pictures, Target(1), gantts)
     assert 7_000_000 < len(text.encode()) < 8_000_000
     assert text.count("data:image/webp") == 2 * frames.MOST
-
-
-class Elements(HTMLParser):
-    """Counts the elements of a page, and keeps its words."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.names: list[str] = []
-        self.addresses: list[str] = []
-        self.words = ""
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.names.append(tag)
-        self.addresses += [value or "" for name, value in attrs if name in {"src", "href", "srcset", "data"}]
-
-    def handle_data(self, data: str) -> None:
-        self.words += data
-
-
-def evil_run() -> RunRecord:
-    """A run in which everything that has a name has an evil one."""
-    run = run_of(
-        [
-            replace(
-                frame(0, core_frame("A", 0, cost(EVIL, 5, {StallReason.SEMAPHORE: 3}), cost(REST, 1))),
-                results={EVIL: 3},
-                remarks=(EVIL,),
-            )
-        ],
-        missed=(3,),
-    )
-    names = dict.fromkeys(("recording", "firmware", "board", "ldf", "compiler", "bfsim_version"), EVIL)
-    return replace(
-        run,
-        identity=replace(run.identity, **names),
-        firmware_place=EVIL,
-        ldf_place=EVIL,
-        geometry=EVIL,
-        device_notes={"SPI": (EVIL,)},
-        assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text=EVIL),),
-        reference=replace(run.reference, name=EVIL, about=EVIL),
-        kernels=(kernel(EVIL, EVIL, LineCost(line=10, executions=1, issue_cclk=1, stall_cclk={}), text=(EVIL,), file=EVIL),),
-        buffers=(buffer(EVIL, EVIL),),
-        accesses=(access(EVIL, EVIL, EVIL, 3, 4),),
-        traffic=(replace(traffic(EVIL, EVIL, 5), buffer=EVIL),),
-        interrupts={EVIL: 2},
-    )  # fmt: skip
 
 
 def test_names_are_words_and_no_markup() -> None:

@@ -8,7 +8,7 @@ from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, FrameChange, Kind, SeenChange
 from bfsim.report.html.diff_page import FRAMES, DiffPage, PagedSide
 from bfsim.report.html.pictures import Pictures
-from tests.report.test_html import EVIL, Elements
+from tests.report.evil import EVIL, Elements
 from tests.seen_frames import frame as seen_frame
 
 
