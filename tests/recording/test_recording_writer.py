@@ -28,6 +28,14 @@ def write(path: Path) -> Path:
     return path
 
 
+def test_a_recording_that_is_replaced_keeps_its_permissions(tmp_path: Path) -> None:
+    """As every other file that is written over."""
+    path = write(tmp_path / "a.mcap")
+    path.chmod(0o640)
+    write(path)
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
 def test_error_leaves_nothing(tmp_path: Path) -> None:
     """After an error or Ctrl-C in the middle the folder is as it was, the older recording untouched."""
     path = write(tmp_path / "a.mcap")
