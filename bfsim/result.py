@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console, RenderableType
 
 from bfsim.errors import ConfigError, shown
+from bfsim.report.run_tables import run_report
 from bfsim.report.screen import screen, verdict
-from bfsim.report.tables import run_report
 from bfsim.report.target import Target, target_of
 from bfsim.spans import Span
 from bfsim.trace import RunRecord

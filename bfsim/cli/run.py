@@ -73,10 +73,10 @@ def run(
     """
     from bfsim.loading import load_firmware
     from bfsim.report.as_json import json_chunks
+    from bfsim.report.run_tables import run_report
     from bfsim.report.save import require_apart
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
-    from bfsim.report.tables import run_report
     from bfsim.run_inputs import files_of_run
 
     read = files_of_run(what)

@@ -21,8 +21,9 @@ from bfsim.report.budget import (
     latency_cclk,
     milliseconds,
 )
+from bfsim.report.run_tables import missed, named
 from bfsim.report.start_up import of_one_frame, start_up_cclk, without_start_up
-from bfsim.report.tables import missed, named, new_table, notes_table, percent, stacked
+from bfsim.report.tables import new_table, notes_table, percent, stacked
 from bfsim.report.target import Target, target_words
 from bfsim.report.warnings import warnings_of
 from bfsim.report.what_ran import what_ran

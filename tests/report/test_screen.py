@@ -13,9 +13,9 @@ from rich.console import Console, RenderableType
 from bfsim.report.bound import Cause, bound_of
 from bfsim.report.budget import budget_of
 from bfsim.report.profile.tables import profile_report
+from bfsim.report.run_tables import run_report
 from bfsim.report.screen import screen
 from bfsim.report.start_up import start_up_cclk, without_start_up
-from bfsim.report.tables import run_report
 from bfsim.report.waits import busy_cclk
 from bfsim.shipped import ACCURACY
 from bfsim.trace import REST, CoreFrame, RunRecord, RunWarning, StallReason, WarningKind

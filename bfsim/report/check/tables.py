@@ -15,8 +15,9 @@ from bfsim.report.check.figures import Unit
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
 from bfsim.report.diff.sentences import why
 from bfsim.report.diff.tables import contribution_table, scope, seen_lines
+from bfsim.report.run_tables import warning_table
 from bfsim.report.start_up import of_one_frame
-from bfsim.report.tables import new_table, stacked, warning_table
+from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import milliseconds_of, size
 
 

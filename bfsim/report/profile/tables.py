@@ -15,7 +15,8 @@ from bfsim.report.profile.kernel_tables import kernel_tables, line_tables
 from bfsim.report.profile.reason_tables import reason_tables
 from bfsim.report.profile.sentences import sentences_of
 from bfsim.report.profile.view import View
-from bfsim.report.tables import notes_table, stacked, warning_table
+from bfsim.report.run_tables import warning_table
+from bfsim.report.tables import notes_table, stacked
 from bfsim.report.target import Target, target_words
 from bfsim.report.what_ran import what_ran
 from bfsim.trace import RunRecord

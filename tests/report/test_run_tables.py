@@ -12,7 +12,7 @@ import pytest
 from bfsim.report.check.tables import check_report
 from bfsim.report.digest import cycle_digest
 from bfsim.report.profile.tables import profile_report
-from bfsim.report.tables import run_report
+from bfsim.report.run_tables import run_report
 from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, RunWarning, StallReason, WarningKind
 from tests.report.check_rig import hold, measured
 from tests.report.printed import printed, row_of, squeezed
