@@ -16,6 +16,15 @@ from bfsim.report.units import others_row
 def buffer_tables(view: View) -> Iterator[Table]:
     """Yield the buffers that were waited for most or moved most, then the buses."""
     buffers = buffers_of(view.run, view.core, view.stage)
+    yield _access_table(view, buffers)
+    moved = _move_table(view, buffers)
+    if moved.row_count:
+        yield moved
+    yield from traffic_tables(view)
+
+
+def _access_table(view: View, buffers: Sequence[BufferProfile]) -> Table:
+    """Return who accessed buffers, and what was waited for them, most first."""
     title = view.title("buffer")
     table = new_table(title, "Buffer", "Memory", "Reads", "Writes", "Cached%", "ms", "%", "Waits")
     table.columns[1].justify = table.columns[-1].justify = "left"
@@ -31,30 +40,26 @@ def buffer_tables(view: View) -> Iterator[Table]:
             "" if hits is None else percent(hits, 1),
             view.ms(each.stalled_cclk),
             view.share(each.stalled_cclk),
-            max(each.stall_cclk, key=lambda reason: each.stall_cclk[reason]).value
-            if each.stalled_cclk
-            else "",
+            _longest_wait(each) if each.stalled_cclk else "",
         )
     _add_the_rest(table, view, accessed)
-    yield table
-    moved = new_table(
-        "Buffers on the buses, all masters",
-        "Buffer",
-        "By cores",
-        "By DMA",
-        "Page hits",
-        "misses",
-        "conflicts",
-    )
-    on_bus = sorted(buffers, key=lambda each: -each.core_bytes - each.dma_bytes)
-    for each in on_bus[: view.top]:
+    return table
+
+
+def _longest_wait(buffer: BufferProfile) -> str:
+    return max(buffer.stall_cclk, key=lambda reason: buffer.stall_cclk[reason]).value
+
+
+def _move_table(view: View, buffers: Sequence[BufferProfile]) -> Table:
+    """Return what was moved over the buses for buffers, most first."""
+    pages = "Page hits", "misses", "conflicts"
+    table = new_table("Buffers on the buses, all masters", "Buffer", "By cores", "By DMA", *pages)
+    for each in sorted(buffers, key=lambda each: -each.core_bytes - each.dma_bytes)[: view.top]:
         if each.core_bytes or each.dma_bytes:
-            pages = (each.page_hits, each.page_misses, each.page_conflicts)
             moves = decimal(each.core_bytes), decimal(each.dma_bytes)
-            moved.add_row(each.buffer, *moves, *(f"{count:,}" for count in pages))
-    if moved.row_count:
-        yield moved
-    yield from traffic_tables(view)
+            counts = each.page_hits, each.page_misses, each.page_conflicts
+            table.add_row(each.buffer, *moves, *(f"{count:,}" for count in counts))
+    return table
 
 
 def _add_the_rest(table: Table, view: View, buffers: Sequence[BufferProfile]) -> None:
