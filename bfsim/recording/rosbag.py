@@ -1,8 +1,7 @@
-"""Pictures from bags of ROS 1 and ROS 2: which topics, which pictures belong together, and what camera_info says."""
+"""Pictures from bags of ROS 1 and ROS 2: which of them belong together, and what camera_info says."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -11,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from bfsim.errors import RecordingError, cut
+from bfsim.errors import RecordingError
 from bfsim.recording.bag_file import BagFile, Topic
+from bfsim.recording.bag_topics import pair_of_topics, single_topic
 from bfsim.recording.camera_info import CAMERA_INFO, CameraInfo
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.ros_images import IMAGE_TYPES, planes_of
@@ -22,8 +22,6 @@ from bfsim.recording.time_pairs import Times, nearest_pairs, period_ns, rising
 DEFAULT_PERIOD_NS = 1e9 / 30
 """Of bags with a single picture: the rate of the sensors that bfsim knows."""
 _FPS_PARTS = 1_000
-_SIDES = re.compile(r"(?<![a-z])(left|right)(?![a-z])", re.IGNORECASE)
-_OTHER_SIDE = {"left": "right", "right": "left"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +50,7 @@ def open_bag(
     """
     bag = BagFile(Path(name))
     found = {each.name: each for each in bag.topics()}
-    chosen = _single(name, found, topics) if single else _pair(name, found, topics)
+    chosen = single_topic(name, found, topics) if single else pair_of_topics(name, found, topics)
     times, clock = _times(bag, chosen)
     usable = [rising(each) for each in times]
     rising_ns = [each[numbers] for each, numbers in zip(times, usable, strict=True)]
@@ -82,72 +80,6 @@ def open_bag(
     infos = [_camera_info(bag, topic, found) for topic in chosen]
     notes = (clock, *(note for _, note in infos))
     return BagPictures(sources, tuple(info for info, _ in infos), tuple(dict.fromkeys(filter(None, notes))))
-
-
-# ---- which topics
-
-
-def _single(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
-    if topics is not None:
-        if topics[0] != topics[1]:
-            raise RecordingError(
-                f"{name}: `--topics` must name the one topic twice, not {' and '.join(topics)}"
-            )
-        return (_picture_topic(name, found, topics[0]),)
-    images = [each for each in found.values() if each.kind in IMAGE_TYPES]
-    if len(images) != 1:
-        raise RecordingError(f"{name}: `--topics` must name the camera's topic, twice, of {_listed(found)}")
-    return (_picture_topic(name, found, images[0].name),)
-
-
-def _pair(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
-    if topics is None:
-        lefts = [
-            each for each in found.values() if each.kind in IMAGE_TYPES and _other_side(each.name, "left")
-        ]
-        pairs = [(each.name, other) for each in lefts if (other := _other_side(each.name, "left")) in found]
-        pairs = [each for each in pairs if found[each[1]].kind in IMAGE_TYPES]
-        if len(pairs) != 1:
-            of_one = "; `--mono` takes the one camera for both sides" if _count_of_images(found) == 1 else ""
-            raise RecordingError(
-                f"{name}: `--topics LEFT RIGHT` must name two image topics, of {_listed(found)}{of_one}"
-            )
-        topics = pairs[0]
-    return tuple(_picture_topic(name, found, each) for each in topics)
-
-
-def _count_of_images(found: dict[str, Topic]) -> int:
-    return sum(each.kind in IMAGE_TYPES for each in found.values())
-
-
-def _other_side(topic: str, side: str) -> str:
-    """Return the name of the other camera's topic, or nothing if the name does not say that it is that side's."""
-    sides = {each.lower() for each in _SIDES.findall(topic)}
-    return _SIDES.sub(lambda found: _like(found[0], _OTHER_SIDE[side]), topic) if sides == {side} else ""
-
-
-def _like(model: str, word: str) -> str:
-    return word.upper() if model.isupper() else word.capitalize() if model[0].isupper() else word
-
-
-def _picture_topic(name: str, found: dict[str, Topic], wanted: str) -> Topic:
-    topic = found.get(wanted)
-    if topic is None:
-        raise RecordingError(f"{name}: topic {cut(wanted)} must be in the bag, which has {_listed(found)}")
-    if topic.kind not in IMAGE_TYPES:
-        raise RecordingError(
-            f"{name}: topic {topic.name} must have sensor_msgs/Image or sensor_msgs/CompressedImage, not "
-            f"{topic.kind.replace('/msg/', '/')}"
-        )
-    if not topic.count:
-        raise RecordingError(f"{name}: topic {topic.name} must have pictures, but has none")
-    return topic
-
-
-def _listed(found: dict[str, Topic]) -> str:
-    images = [each for each in found.values() if each.kind in IMAGE_TYPES]
-    others = [each for each in found.values() if each.kind not in IMAGE_TYPES]
-    return "; ".join(cut(str(each)) for each in (*images, *others)) or "none"
 
 
 # ---- when
