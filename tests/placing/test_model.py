@@ -2,32 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from bfsim.chip.boards import BOARDS
-from bfsim.linker import Symbol
-from bfsim.machine.code import SECTION, object_file
+from bfsim.machine.code import SECTION
 from bfsim.placing.latencies import CONFLICTS, FULL, Latencies
 from bfsim.placing.measured import Accesses, Measured
 from bfsim.placing.model import Model, Part
 from bfsim.placing.stretches import Level
-from bfsim.run import read_placement
+from tests.placing.made_models import BOARD, model
 
-BOARD = BOARDS["cm-bf561"]
 L2_READ_CCLK, L2_NEXT_CCLK = 9, 2
 SYNC, CL, RP_RCD = 5, BOARD.sdram.nCL, BOARD.sdram.nRP + BOARD.sdram.nRCD
 CCLK_A_SCLK = 5  # 600 and 120 MHz
-
-
-def model(ldf: str, *symbols: tuple[str, str, int, str | None]) -> Model:
-    """A firmware of a few symbols: name, section, bytes and processor."""
-    found = [
-        Symbol(name, section, nbytes, processor=processor, object_file=object_file(name))
-        for name, section, nbytes, processor in symbols
-    ]
-    return Model(BOARD, read_placement(Path(ldf), BOARD, {}, ()), found)
 
 
 def levels(placed: Model, part: Part, measured: Measured | None = None) -> list[Level]:
