@@ -208,6 +208,10 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
         ("MEMORY { M { START 0 } }", r"test\.ldf:1:20: expected '\(', not '0'"),
         ("MEMORY {", r"test\.ldf:1:9: expected ';', '}' or a name, not the end of the file"),
         (
+            "$A = x",  # which must not be told of '(' and ']', with which no object list goes on
+            r"1:7: expected ',', ';', '\[', '{', a quoted name, an object file or an object list such as \$OBJECTS, not the end",
+        ),
+        (
             "MEMORY { M { START(0) END(1) } } ?",
             r"test\.ldf:1:34: expected .* or the end of the file, not '\?'",
         ),

@@ -22,9 +22,18 @@ from bfsim.report.diff.sentences import clock, code, reason, verdict, work
 from bfsim.report.diff.side import Line, Owner, Source, Stall
 from bfsim.report.diff.tables import diff_report, shown
 from bfsim.report.result_file import Result, result_of
-from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
+from bfsim.trace import (
+    REST,
+    CoreFrame,
+    FrameRecord,
+    KernelRecord,
+    LineCost,
+    OwnerCost,
+    RunRecord,
+    StallReason,
+)
 from tests.report.printed import printed
-from tests.report.records import IDENTITY, cost, frame, run_of
+from tests.report.records import IDENTITY, core_frame, cost, frame, run_of
 
 TEXT = ("@kernel\n", "def blur(row):\n", "    left = row[0]\n", "    row[1] = left\n")
 SDRAM = StallReason.SDRAM_PAGE_MISS
@@ -465,6 +474,27 @@ def test_many_files_are_told_as_the_first_few_and_a_number() -> None:
         assert "far/5.py and 34 others" in text
         assert "far/6.py" not in text
     assert "far/39.py" in diff_json(found)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [([4, 1], [4, 1], []), ([4, 1], [1, 4], [("balls", "5", "5")]), ([4, 1], [4, 2], [("balls", "5", "6")])],
+)
+def test_results_are_compared_frame_by_frame(
+    before: list[int], after: list[int], told: list[tuple[str, str, str]]
+) -> None:
+    """Totals are what is shown; they may be the same where the frames are not."""
+    frames = [frame(index, core_frame("A", 100 * index, cost(REST, 9))) for index in range(2)]
+    sides = [
+        result_of(
+            run_of(
+                [replace(each, results={"balls": count}) for each, count in zip(frames, counts, strict=True)]
+            ),
+            {},
+        )
+        for counts in (before, after)
+    ]
+    assert [(each.what, each.before, each.after) for each in difference_of(*sides).results] == told
 
 
 def test_markdown_has_what_the_screen_has() -> None:
