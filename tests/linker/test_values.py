@@ -175,6 +175,17 @@ def test_a_reserve_expands_over_what_is_free(parse: Parse, b_nbytes: int, start:
     assert linked.segments[0].used_bytes == 8 + 32 + b_nbytes
 
 
+def test_reserves_that_expand_keep_off_each_other(parse: Parse) -> None:
+    """The heap goes to the largest stretch, behind the stack; the stack gets what the heap has left."""
+    text = one_section(
+        "INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a)) RESERVE(heap, n = 32, 4) RESERVE(stack, m = 48, 4)"
+        "RESERVE_EXPAND(heap, n, 0, 4) RESERVE_EXPAND(stack, m, 0, 4)"
+    )
+    linked = link(parse(text), [symbol("a", "a", 8)])
+    found = {each.name: (each.start - L1_A, each.nbytes) for each in linked.reserves}
+    assert found == {"heap": (88, 168), "stack": (8, 80)}
+
+
 def test_a_reserve_without_length_takes_the_rest(parse: Parse) -> None:
     """Up to the next fixed reserve, and at least its minimum; a fixed reserve's symbols have values too."""
     text = one_section(
