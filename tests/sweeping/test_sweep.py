@@ -16,12 +16,13 @@ from typing import Any
 import pytest
 
 from bfsim.errors import ConfigError
+from bfsim.report.sweep.figures import FRAME_RATE, SEEN
 from bfsim.report.sweep.table import columns_of
 from bfsim.result import Run
 from bfsim.run import simulate
 from bfsim.shipped import LDF_FOLDER
 from bfsim.sweeping.rows import rows_of
-from bfsim.sweeping.running import Outcome, run_point
+from bfsim.sweeping.running import Figures, Outcome, run_point
 from bfsim.sweeping.sweep import NOT_KEPT
 from bfsim.sweeping.workers import Pool
 from tests.eyes import FIRMWARE, record
@@ -145,6 +146,16 @@ def test_rows_say_what_a_point_is(tmp_path: Path) -> None:
     assert columns["recording"] == ["drive.mcap"] * 4
     assert [bool(each) for each in columns["error"]] == [False, True, False, True]
     assert [each and each > 0 for each in columns["frame_rate Hz"]] == [True, None, True, None]
+
+
+def test_what_was_seen_in_one_point_was_seen_0_times_in_others(tmp_path: Path) -> None:
+    """In those that are done; of the others nobody knows."""
+    sweep = planned(home_in(tmp_path, f"{BASE}[axes]\nset.clocks.cclk_hz = [600e6, 500e6, 400e6]\n"))
+    ball, rate = f"{SEEN}ball", {FRAME_RATE: 5}
+    figures: list[Figures] = [{**rate, ball: 2}, rate]
+    for each, found in zip(sweep.planned, figures, strict=False):
+        sweep.outcomes[each.key] = Outcome(figures=found)
+    assert columns_of(rows_of(sweep))[ball] == [2, 0, None]
 
 
 @pytest.mark.exhaustive
