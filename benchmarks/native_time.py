@@ -10,9 +10,8 @@ from time import thread_time_ns
 from typing import Any
 from unittest.mock import patch
 
-from bfsim.kernel.objects.calls import ObjectCall
-from bfsim.kernel.prepared_call import PreparedCall
 from bfsim.machine.bus.woven_bus import WovenBus
+from bfsim.machine.calls.call_cache import KnownCall
 
 
 @dataclass(slots=True)
@@ -54,19 +53,19 @@ def own_ns() -> float:
 def native_time(kernels: Stopwatch, weave: Stopwatch) -> Iterator[None]:
     """Take the time of kernels and of the weave, in boards that are made inside."""
     with (
-        patch.object(PreparedCall, "__init__", _after(PreparedCall, "run", kernels)),
-        patch.object(ObjectCall, "__init__", _after(ObjectCall, "run", kernels)),
+        patch.object(KnownCall, "__init__", _after(KnownCall, "run", kernels, words=0)),  # Python runs them
         patch.object(WovenBus, "__init__", _after(WovenBus, "_advance", weave)),
     ):
         yield
 
 
-def _after(kind: type, function: str, stopwatch: Stopwatch) -> Callable[..., None]:
-    """Return what makes an object of `kind`, whose `function` then has its time taken."""
+def _after(kind: type, function: str, stopwatch: Stopwatch, **values: int) -> Callable[..., None]:
+    """Return what makes an object of `kind`, whose `function` then has its time taken, with other `values`."""
     make: Any = kind.__init__
 
     def made(self: Any, *arguments: Any, **named: Any) -> None:
         make(self, *arguments, **named)
-        setattr(self, function, stopwatch.on(getattr(self, function)))
+        for name, value in {function: stopwatch.on(getattr(self, function)), **values}.items():
+            object.__setattr__(self, name, value)  # some are frozen
 
     return made
