@@ -1,4 +1,4 @@
-"""What a run takes from nowhere but bfsim, or doubts: a geometry that nobody gave, cameras that seem exchanged, clocks that no PLL makes."""
+"""What a run takes from nowhere but bfsim, or doubts: a geometry that nobody gave, cameras that seem exchanged or not rectified, clocks that no PLL makes."""
 
 from __future__ import annotations
 

@@ -64,8 +64,8 @@ def place(
             least, most = (middle, most) if fits(middle) else (least, middle)
         largest = _scaled(size, least)
         raise LinkError(
-            f"{error}; pictures of {size} need more memory than there is, and the largest of this shape that this firmware "
-            f"takes with this LDF are {largest}: `bfsim record import --resize {largest}` scales them"
+            f"pictures of {size} need more memory than there is: the largest of this shape that this firmware takes with this "
+            f"LDF are {largest}, and `bfsim record import --resize {largest}` scales them; {error}"
         ) from error
 
 

@@ -30,7 +30,7 @@ from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import devices_of, makers_of
 from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import require_cores
-from bfsim.recording.exchange import ExchangeCheck
+from bfsim.recording.stereo_check import StereoCheck
 from bfsim.result import Run
 from bfsim.retiming import retimed
 from bfsim.room import place
@@ -166,7 +166,7 @@ def simulate(
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
         source = DigestedFrames(reader, total)
-        exchange = ExchangeCheck(reader.rectification)
+        check = StereoCheck(reader.rectification)
         identity = identity_of(
             found_board,
             loaded,
@@ -205,13 +205,13 @@ def simulate(
             has_pictures=bool(on_seen),
             has_timeline=bool(on_spans),
         ):
-            left = machine.run(exchange.watch(source), count, show if on_seen else None, on_time, on_spans)
+            left = machine.run(check.watch(source), count, show if on_seen else None, on_time, on_spans)
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
     assumptions = (
         *assumed_geometry(program, calibration),
-        *doubted_cameras(exchange.warnings),
+        *doubted_cameras(check.warnings),
         *assumed_clocks(spec),
     )
     geometry = geometry_in_words(program, calibration)

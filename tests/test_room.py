@@ -33,7 +33,9 @@ def test_the_largest_pictures_that_have_room_are_the_largest(width: int, height:
     """Those that are 4 pixels wider have none. They were looked for among 64 of the shape, and up to 1.5 % wider ones had."""
     with pytest.raises(LinkError, match="the largest of this shape that this firmware takes") as error:
         placed(width, height)
-    said = re.search(r"are (\d+)x(\d+): `bfsim record import --resize \1x\2` scales them", str(error.value))
+    said = re.search(
+        r"are (\d+)x(\d+), and `bfsim record import --resize \1x\2` scales them", str(error.value)
+    )
     assert said is not None
     widest, highest = int(said[1]), int(said[2])
     assert highest == height * widest // width // 2 * 2

@@ -215,7 +215,7 @@ def test_pictures_too_large_for_the_rings_are_a_link_error(home: Path) -> None:
     with pytest.raises(LinkError, match="ring.*L1_data_a|L1_data_a.*ring") as refused:
         run_eyes(recording)
     largest = re.search(
-        r"of 12000x2 need more memory .* takes with this LDF are (\d+)x2: ", str(refused.value)
+        r"of 12000x2 need more memory .* takes with this LDF are (\d+)x2, and ", str(refused.value)
     )
     assert largest
     width = int(largest[1])

@@ -84,6 +84,8 @@ class BagFile:
             raise RecordingError(
                 f'{self.path}: reading bags needs the package rosbags; install it with: pip install "bfsim[ros]"'
             ) from None
+        if not self.path.exists():
+            raise RecordingError(f"{self.path}: bag must be a file or a folder, but is not there")
         reader: Callable[[Path], Any] = rosbag1.Reader if self.is_ros1 else rosbag2.Reader
         try:
             with reader(self.path) as bag:
@@ -91,7 +93,7 @@ class BagFile:
         except RecordingError:
             raise
         except Exception as error:  # noqa: BLE001  # the same
-            said = cut(str(error)) or type(error).__name__
+            said = cut(str(error)).rstrip(".") or type(error).__name__
             raise RecordingError(
                 f"{self.path}: bag must be whole and of ROS: {said}{self._advice()}"
             ) from None

@@ -14,6 +14,7 @@ _OTHER_SIDE = {"left": "right", "right": "left"}
 
 def single_topic(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
     """Return the one topic of pictures, which `topics` name twice if they are given. Raises RecordingError."""
+    _require_images(name, found)
     if topics is not None:
         if topics[0] != topics[1]:
             raise RecordingError(
@@ -28,6 +29,7 @@ def single_topic(name: str, found: dict[str, Topic], topics: tuple[str, str] | N
 
 def pair_of_topics(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
     """Return the left and the right camera's topic: `topics`, or the only two whose names differ by that. Raises RecordingError."""
+    _require_images(name, found)
     if topics is None:
         lefts = [
             each for each in found.values() if each.kind in IMAGE_TYPES and _other_side(each.name, "left")
@@ -41,6 +43,13 @@ def pair_of_topics(name: str, found: dict[str, Topic], topics: tuple[str, str] |
             )
         topics = pairs[0]
     return tuple(_picture_topic(name, found, each) for each in topics)
+
+
+def _require_images(name: str, found: dict[str, Topic]) -> None:
+    if not _count_of_images(found):
+        raise RecordingError(
+            f"{name}: bag must have a topic of sensor_msgs/Image or sensor_msgs/CompressedImage, not {_listed(found)}"
+        )
 
 
 def _count_of_images(found: dict[str, Topic]) -> int:

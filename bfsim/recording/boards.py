@@ -11,14 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.images import images_and_others, load_image
-from bfsim.recording.pairs import pairs_of
+from bfsim.recording.images import images_among, images_and_others, load_image
+from bfsim.recording.pairs import SIDES, pairs_of, side_of
 from bfsim.recording.planes import Plane, YuvPlanes, fit_matrix
 from bfsim.recording.sources import Skipped
 
 Corners = NDArray[np.float32]
-
-SIDES = ("left", "right")
 
 # Corners are refined in a window of half this part of the least distance of two, at most so many pixels, until they
 # move less, or so often. [assumed; OpenCV's tutorial has 11 px and 0.001 px]
@@ -39,8 +37,8 @@ def find_views(
 ) -> tuple[list[BoardView], list[Skipped]]:
     """Return the boards seen in the pictures of `size` (width, height) of a folder, and the pictures that show none.
 
-    With `mono` every picture is one of the only camera. Without, pictures left* and right* (or those of the folders
-    left and right) go together by what follows in their names, or by their order if the names have nothing in common.
+    With `mono` every picture is one of the only camera. Without, pictures whose names say left and right (or those of the
+    folders whose names do) go together by the rest of their names, or by their order if the names have nothing in common.
     With `resize`, corners of pictures of other sizes are found there, where they are sharpest, and are brought to where an
     import that scales the pictures has them. Raises RecordingError.
     """
@@ -72,7 +70,22 @@ def _together(folder: Path, *, mono: bool) -> tuple[list[tuple[Path, ...]], list
 
 
 def _pictures_of(folder: Path, side: str) -> tuple[list[Path], list[Skipped]]:
-    return images_and_others(str(folder / side if (folder / side).is_dir() else folder / f"{side}*"))
+    """Return a camera's images in a folder, and the files beside them: of the folder in it that is that side's, if there is one."""
+    if not folder.is_dir():
+        raise RecordingError(
+            f"{folder}: chessboard pictures must be in a folder, but there is none of that name"
+        )
+    named = [each for each in folder.iterdir() if side_of(each.stem) == side]
+    folders = [each for each in named if each.is_dir()]
+    if len(folders) == 1:
+        return images_and_others(str(folders[0]))
+    images, others = images_among(named)
+    if not images:
+        raise RecordingError(
+            f"{folder}: folder must have pictures of a chessboard by both cameras, such as left_01.png and right_01.png, or folders "
+            f"left and right of them, but no image in it has a name that says {side}; `--mono` takes those of one camera"
+        )
+    return images, others
 
 
 def _grey(path: Path, size: tuple[int, int], *, resize: bool) -> tuple[Plane, NDArray[np.float64]]:

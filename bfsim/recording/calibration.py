@@ -127,7 +127,7 @@ def calibrate(
 ) -> StereoCalibration:
     """Calibrate cameras with pictures of `size` (width, height) of a board with `corners` (across, down) inner corners.
 
-    The folder `chessboards` holds pictures left* and right* (or folders left and right), of which those with the same
+    The folder `chessboards` holds pictures, or folders of them, whose names say left and right; those with the same
     rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
     board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of
     another size are scaled as an import with `--resize` scales them. `focal_px` is the focal length to rectify to;

@@ -166,7 +166,7 @@ class McapContainer:
             start = f"one that starts with {head!r}" if head else "an empty one"
             raise RecordingError(
                 f"{self.path}: recording must be an MCAP file, not {start}; "
-                "`bfsim record import` makes a recording from images, raw frames or video"
+                "`bfsim record import` makes a recording from images, raw frames, a video or a bag"
             )
         self._stream.seek(max(0, self.size_bytes - _TAIL_BYTES))
         tail = self._stream.read()

@@ -1,17 +1,24 @@
 """Whether left and right pictures are exchanged: then what both show lies further right in the right one, which nothing can.
 
 Bands of rows are compared along their columns. Places count where the pictures have contrast and agree at one shift alone.
-That is no stereo matching: it says on which side most of the picture is, and nothing of depths.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.recording.frames import RectificationTables, StereoFrame, UyvyImage
+if TYPE_CHECKING:
+    from bfsim.recording.planes import Plane
+
+
+EXCHANGED = (
+    "left and right pictures seem to be exchanged: at {percent} % of the places compared, things stand further right in "
+    "the right picture, and so have no depth; the left camera comes first in `bfsim record import`; where it did, "
+    "the cameras squint, and `bfsim record calibrate` rectifies their pictures"
+)
 
 Signals = NDArray[np.float32]
 """Rise of the luma from column to column in bands of rows, (bands, columns)."""
@@ -23,53 +30,13 @@ WINDOW = 9
 LEAST_CONTRAST = 24  # grey levels, up and down, in a window [assumed]
 SAME_PEAK = 2  # columns to each side of the best shift that are one with it
 
-ENOUGH_PLACES, MOST_FRAMES = 100, 8
-"""As many frames are looked at as it takes."""
 
-FEWEST_PLACES, EXCHANGED_SHARE = 16, 0.75
-"""Of fewer places nothing is said. Of right pairs up to 7 % of the places lie so, of chessboards, that look alike, half."""
-
-
-class ExchangeCheck:
-    """Looks at the first stereo frames that pass, as rectified by `tables`, and counts on which side things are."""
-
-    def __init__(self, tables: RectificationTables | None = None) -> None:
-        self._tables = tables
-        self._frames = self._places = self._exchanged = 0
-
-    def watch(self, frames: Iterable[StereoFrame]) -> Iterator[StereoFrame]:
-        """Pass frames on."""
-        for frame in frames:
-            self.look_at(frame.left, frame.right)
-            yield frame
-
-    def look_at(self, left: UyvyImage, right: UyvyImage) -> None:
-        """Count the places of a frame, unless there are enough."""
-        if self._frames == MOST_FRAMES or self._places >= ENOUGH_PLACES:
-            return
-        self._frames += 1
-        lumas = [each[:, 1::2] for each in (left, right)]
-        if self._tables:
-            tables = (self._tables.left, self._tables.right)
-            lumas = [luma[rows, columns] for luma, (rows, columns) in zip(lumas, tables, strict=True)]
-        shifts = _shifts(*map(_signals, lumas))
-        self._places += len(shifts)
-        self._exchanged += int((shifts < 0).sum())
-
-    @property
-    def warnings(self) -> Iterator[str]:
-        """What to tell the user; nothing where left and right seem to be right."""
-        if self._places < FEWEST_PLACES or self._exchanged < EXCHANGED_SHARE * self._places:
-            return
-        percent = 100 * self._exchanged // self._places
-        yield (
-            f"left and right pictures seem to be exchanged: at {percent} % of the places compared, things stand further right in "
-            "the right picture, and so have no depth; the left camera comes first in `bfsim record import`; where it did, "
-            "the cameras squint, and `bfsim record calibrate` rectifies their pictures"
-        )
+def exchanged_places(left: Plane, right: Plane) -> NDArray[np.bool_]:
+    """Return of each place that is certain whether things stand further right there in the right picture."""
+    return np.asarray(_shifts(*map(_signals, (left, right))) < 0)
 
 
-def _signals(luma: NDArray[np.uint8]) -> Signals:
+def _signals(luma: Plane) -> Signals:
     height, width = luma.shape
     across = max(width // COLUMNS, 1)
     down = ROWS_OF_BAND * across

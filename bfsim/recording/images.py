@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+import struct
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
 
@@ -99,15 +100,24 @@ def images_and_others(source: str) -> tuple[list[Path], list[Skipped]]:
         raise RecordingError(
             f"{source}: source must be a file, a folder or a pattern of image files, but is not there"
         )
-    # A link that leads nowhere is a picture that cannot be read, and not none.
-    files = sorted((each for each in found if each.is_file() or _is_broken_link(each)), key=_natural_key)
-    images = [file for file in files if _is_image(file)]
+    images, others = images_among(found)
     if not images:
+        deeper = next(
+            (each for each in sorted(found) if each.is_dir() and any(map(_is_image, each.iterdir()))), None
+        )
         raise RecordingError(
             f"{source}: source must hold images ({', '.join(sorted(IMAGE_SUFFIXES))}), "
-            f"but none of its {len(found)} files is one{_names_of(found)}"
+            f"but none of its {len(found)} files is one{_names_of(found)}{f'; {deeper} holds some' if deeper else ''}"
         )
-    return images, [Skipped(file.name, "no image by its name") for file in files if not _is_image(file)]
+    return images, others
+
+
+def images_among(paths: Iterable[Path]) -> tuple[list[Path], list[Skipped]]:
+    """Return the image files in natural order of their names, and the other files."""
+    # A link that leads nowhere is a picture that cannot be read, and not none.
+    files = sorted((each for each in paths if each.is_file() or _is_broken_link(each)), key=_natural_key)
+    others = [Skipped(file.name, "no image by its name") for file in files if not _is_image(file)]
+    return [file for file in files if _is_image(file)], others
 
 
 def _matching(pattern: Path) -> list[Path]:
@@ -152,6 +162,7 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
     """Return the image in a file, of all formats or of these, as `load_image`. RecordingError does not name the file."""
     try:
         with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what Pillow could do all the same
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(file, formats=formats) as image:
                 # A phone may keep a smaller copy of the picture behind it (MPO).
@@ -162,9 +173,12 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
     except UnidentifiedImageError:
         kinds = " or ".join(formats) if formats else "an image that Pillow reads"
         raise RecordingError(f"file must be {kinds}, not something else") from None
-    # Pillow's decoders report damage with any of these.
+    # Pillow's decoders report damage with any of these, and stumble over it with those below.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
         raise RecordingError(f"image must be readable: {error}") from None
+    except (LookupError, TypeError, AttributeError, ArithmeticError, struct.error) as error:
+        stumble = f"{type(error).__name__}: {cut(str(error))}"
+        raise RecordingError(f"image must be whole, but Pillow stops in it ({stumble})") from None
     if count > 1:
         raise RecordingError(
             f"image must be one picture, not {count}; `--format video` reads GIF and animated PNG, and "

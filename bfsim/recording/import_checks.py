@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
 from bfsim.errors import RecordingError
 from bfsim.recording.sources import RAW_FORMATS, PictureSource, SourceFormat, guess_format
+
+_PATTERN = '"left*.jpg"'
 
 
 def check_call(
@@ -44,7 +47,7 @@ def check_call(
         raise RecordingError(
             f"sources must be {wanted}, not {len(names)}: two (left, right), "
             "or one with `--side-by-side` or `--mono`, or a bag of ROS; the pictures of a camera are a folder, or a pattern in "
-            'quotes, such as "left*.jpg"'
+            f"quotes, such as {_both_in(names[0]) or _PATTERN}"
         )
     if resize is not None and crop is not None:
         raise RecordingError("pictures must be fitted with `--resize` or `--crop`, not both")
@@ -82,6 +85,21 @@ def _is_of(source: str, file: Path) -> bool:
     if (path / "metadata.yaml").exists():
         return path.samefile(file.parent)
     return path.exists() and path.samefile(file)
+
+
+def _both_in(source: str) -> str:
+    """Return a folder's pictures of the left and of the right camera as two sources, if names in it say left and right."""
+    folder = Path(source)
+    inside = sorted(folder.iterdir()) if folder.is_dir() else []
+    sources = []
+    for side in ("left", "right"):
+        named = re.compile(side, re.IGNORECASE)
+        path = next((each for each in inside if named.search(each.name)), None)
+        if path is None:
+            return ""
+        (word, *_) = named.findall(path.name)
+        sources.append(str(path) if path.is_dir() else f'"{folder}/*{word}*"')
+    return " ".join(sources)
 
 
 def check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: bool) -> int | None:

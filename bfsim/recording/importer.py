@@ -14,7 +14,6 @@ import numpy as np
 from bfsim.errors import RecordingError
 from bfsim.file_content import read_bounded
 from bfsim.recording.camera_info import Rig, rig_of
-from bfsim.recording.exchange import ExchangeCheck
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_options, check_pair
 from bfsim.recording.layout import table_from_npy
@@ -23,6 +22,7 @@ from bfsim.recording.planes import YuvPlanes, fit_matrix
 from bfsim.recording.rosbag import BagPictures, open_bag
 from bfsim.recording.sources import PictureSource, Skipped, SourceFormat, guess_format
 from bfsim.recording.stamps import Stamps, frame_rate
+from bfsim.recording.stereo_check import StereoCheck
 from bfsim.recording.writer import RecordingWriter
 
 LARGEST_TABLE_MB = 256
@@ -107,7 +107,7 @@ def import_recording(
     skipped = [each for source in opened for each in source.skipped]
     sizes = set()
     stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
-    exchange = ExchangeCheck(rig.tables)
+    check = StereoCheck(rig.tables)
     with RecordingWriter(
         output,
         width=picture_size[0],
@@ -125,7 +125,7 @@ def import_recording(
             sizes |= {side.size for side in sides if isinstance(side, YuvPlanes)}
             stamps_ns = stamps.of(index, writer.frame_count)
             coded = left.to_uyvy(), right.to_uyvy()
-            exchange.look_at(*coded)
+            check.look_at(*coded)
             writer.add(*coded, *stamps_ns)
             if progress is not None:
                 progress(index + 1, count)
@@ -146,7 +146,7 @@ def import_recording(
             *(bag.notes if bag else ()),
             *(note for source in opened for note in source.notes if fps is None),
             *rig.notes,
-            *(f"Warning: {each}" for each in exchange.warnings),
+            *(f"Warning: {each}" for each in check.warnings),
         ),
     )
 

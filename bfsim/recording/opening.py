@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from bfsim.errors import RecordingError
+from bfsim.recording.bayer import BAYER_PATTERNS
 from bfsim.recording.images import open_image_pair, open_images
-from bfsim.recording.raw import open_i420, open_uyvy, open_y4m, open_yuyv
+from bfsim.recording.raw import open_bayer, open_grey, open_i420, open_nv12, open_uyvy, open_y4m, open_yuyv
 from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, SourceFormat, guess_format
 from bfsim.recording.video import open_video
 
 _FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
-_RAW_OPENERS = {"uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420}
+_RAW_OPENERS: dict[SourceFormat, Callable[[str, tuple[int, int]], PictureSource]] = {
+    "uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420, "nv12": open_nv12, "grey": open_grey,
+    **{each: partial(open_bayer, pattern=each) for each in BAYER_PATTERNS},
+}  # fmt: skip
 
 
 def open_sources(

@@ -9,10 +9,18 @@ from pathlib import Path
 from bfsim.errors import RecordingError
 from bfsim.recording.sources import Skipped
 
-_SIDE = re.compile(r"left|right|(?<![a-z])[lr](?![a-z])", re.IGNORECASE)
-"""What of a name says which camera it is: left, right, or l and r by themselves."""
+SIDES = ("left", "right")
+
+_SIDE = re.compile(r"(?i:left|right|(?<![a-z])[lr](?![a-z]))|(?<=[a-z])[LR](?![A-Za-z])")
+"""What of a name says which camera it is: left, right, l and r by themselves, or L and R behind a word, as in imageL7."""
 
 Pair = tuple[Path, Path]
+
+
+def side_of(name: str) -> str | None:
+    """Return left or right if a name says that it is that camera's, and only that."""
+    found = {each[0].lower() for each in _SIDE.findall(name)}
+    return next((side for side in SIDES if found == {side[0]}), None)
 
 
 def pairs_of(lefts: Sequence[Path], rights: Sequence[Path], what: str) -> tuple[list[Pair], list[Skipped]]:

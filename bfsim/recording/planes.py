@@ -87,6 +87,12 @@ class YuvPlanes:
         return cls(yuyv[:, 0::2], yuyv[:, 1::4], yuyv[:, 3::4])
 
     @classmethod
+    def from_grey(cls, y: Plane) -> YuvPlanes:
+        """The planes of a picture without colour."""
+        grey = np.full_like(y, 128)
+        return cls(y, grey, grey)
+
+    @classmethod
     def from_image(cls, image: Image.Image) -> YuvPlanes:
         """The planes (4:4:4) of an image of 8 bits a channel."""
         rgb = np.asarray(image.convert("RGB"), np.int32)

@@ -1,4 +1,4 @@
-"""Pictures from files without a container: raw UYVY, YUYV and I420 frames back to back, and YUV4MPEG2 (.y4m).
+"""Pictures from files without a container: raw frames back to back, as cameras send them, and YUV4MPEG2 (.y4m).
 
 Their bytes are kept as they are. Only a y4m file that says XCOLORRANGE=LIMITED is stretched to full range.
 YUV4MPEG2: the MJPEG Tools' yuv4mpeg(5) manual page, with FFmpeg's X parameters.
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
+from bfsim.recording.bayer import BayerPattern, planes_of_bayer
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.sources import PictureSource
 
@@ -51,8 +52,7 @@ class _Layout:
         luma_bytes = self.width * self.height
         y = pixels[:luma_bytes].reshape(self.height, self.width)
         if self.subsampling == (0, 0):
-            grey = np.full((self.height, self.width), 128, np.uint8)
-            return YuvPlanes(y, grey, grey)
+            return YuvPlanes.from_grey(y)
         u, v = pixels[luma_bytes:].reshape(2, *self.chroma_shape)
         return YuvPlanes(y, u, v)
 
@@ -83,11 +83,47 @@ def _open_packed(
 
 def open_i420(source: str, size: tuple[int, int]) -> PictureSource:
     """Raw I420 frames (planes Y, U, V; colour halved both ways) of `size` (width, height) in pixels."""
+    frame = _quartered(source, "I420", size)
+    return _open_raw(source, "I420", size, frame.frame_bytes, frame.planes)
+
+
+def open_nv12(source: str, size: tuple[int, int]) -> PictureSource:
+    """Raw NV12 frames (a plane Y, one of U and V by turns; colour halved both ways) of `size` (width, height) in pixels."""
+    frame = _quartered(source, "NV12", size)
+
+    def planes(data: bytes) -> YuvPlanes:
+        pixels = np.frombuffer(data, np.uint8)
+        luma, chroma = np.split(pixels, [frame.width * frame.height])
+        pairs = chroma.reshape(*frame.chroma_shape, 2)
+        return YuvPlanes(luma.reshape(frame.height, frame.width), pairs[..., 0], pairs[..., 1])
+
+    return _open_raw(source, "NV12", size, frame.frame_bytes, planes)
+
+
+def open_grey(source: str, size: tuple[int, int]) -> PictureSource:
+    """Raw grey frames, a byte a pixel, of `size` (width, height) in pixels."""
+    frame = _Layout(*size, (0, 0))
+    return _open_raw(source, "grey", size, frame.frame_bytes, frame.planes)
+
+
+def open_bayer(source: str, size: tuple[int, int], pattern: BayerPattern) -> PictureSource:
+    """Raw frames of a sensor with filters before its pixels, a byte a pixel, of `size` (width, height) in pixels."""
+    width, height = size
+
+    def planes(data: bytes) -> YuvPlanes:
+        return planes_of_bayer(np.frombuffer(data, np.uint8).reshape(height, width), pattern)
+
+    return _open_raw(source, pattern, size, width * height, planes)
+
+
+def _quartered(source: str, name: str, size: tuple[int, int]) -> _Layout:
+    """Return the layout of frames whose planes of colour are half as wide and high."""
     width, height = size
     if width % 2 or height % 2:
-        raise RecordingError(f"{source}: width and height of I420 frames must be even, not {width}x{height}")
-    frame = _Layout(width, height, (2, 2))
-    return _open_raw(source, "I420", size, frame.frame_bytes, frame.planes)
+        raise RecordingError(
+            f"{source}: width and height of {name} frames must be even, not {width}x{height}"
+        )
+    return _Layout(width, height, (2, 2))
 
 
 def _open_raw(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from bfsim.errors import RecordingError, shown
-from bfsim.recording.camera_models import load_opencv
+from bfsim.recording.bayer import BAYER_PATTERNS, planes_of_bayer
 from bfsim.recording.images import decoded
 from bfsim.recording.layout import LARGEST_PICTURE_BYTES
 from bfsim.recording.planes import YuvPlanes
@@ -23,11 +23,9 @@ _COLOURS = {"rgb8": "RGB", "bgr8": "BGR", "rgba8": "RGBA", "bgra8": "BGRA"}
 _YUV = {"yuv422": "UYVY", "uyvy": "UYVY", "yuv422_yuy2": "YUYV", "yuyv": "YUYV"}
 """Order of the bytes of two pixels: sensor_msgs/image_encodings."""
 _GREY = ("mono8", "8UC1")
-_BAYER = {"bayer_rggb8": "BG", "bayer_bggr8": "RG", "bayer_gbrg8": "GR", "bayer_grbg8": "GB"}
-"""OpenCV's names: the second row's second and third pixel, where ROS has the first row's first two."""
-ENCODINGS = (*_GREY, *_COLOURS, *_YUV, *_BAYER)
-_PIXEL_BYTES = {**dict.fromkeys(_GREY, 1), **{each: len(order) for each, order in _COLOURS.items()},
-                **dict.fromkeys(_YUV, 2), **dict.fromkeys(_BAYER, 1)}  # fmt: skip
+ENCODINGS = (*_GREY, *_COLOURS, *_YUV, *BAYER_PATTERNS)
+_PIXEL_BYTES: dict[str, int] = {**dict.fromkeys(_GREY, 1), **{each: len(order) for each, order in _COLOURS.items()},
+                **dict.fromkeys(_YUV, 2), **dict.fromkeys(BAYER_PATTERNS, 1)}  # fmt: skip
 
 
 def planes_of(message: Any, kind: str) -> YuvPlanes:
@@ -42,16 +40,13 @@ def planes_of(message: Any, kind: str) -> YuvPlanes:
         raise RecordingError(f"encoding must be one of {', '.join(ENCODINGS)}, not {shown(encoding)}")
     pixels = _pixels(message, _PIXEL_BYTES[encoding])
     if encoding in _GREY:
-        grey = np.full((height, width), 128, np.uint8)
-        return YuvPlanes(pixels, grey, grey)
+        return YuvPlanes.from_grey(pixels)
     if encoding in _COLOURS:
         places = [_COLOURS[encoding].index(each) for each in "RGB"]
         colours = pixels.reshape(height, width, -1)[..., places]
         return YuvPlanes.from_image(Image.fromarray(np.ascontiguousarray(colours)))
-    if encoding in _BAYER:
-        cv2 = load_opencv("to take the colours of a Bayer pattern apart")
-        code = getattr(cv2, f"COLOR_Bayer{_BAYER[encoding]}2RGB")
-        return YuvPlanes.from_image(Image.fromarray(cv2.cvtColor(np.ascontiguousarray(pixels), code)))
+    if encoding in BAYER_PATTERNS:
+        return planes_of_bayer(pixels, encoding)
     if width % 2:
         raise RecordingError(f"{encoding} must have an even width, not {width}")
     return YuvPlanes.from_yuyv(pixels) if _YUV[encoding] == "YUYV" else YuvPlanes.from_uyvy(pixels)

@@ -11,22 +11,26 @@ from typing import TYPE_CHECKING, Literal, get_args
 if TYPE_CHECKING:
     from bfsim.recording.planes import YuvPlanes
 
-SourceFormat = Literal["images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag"]
+SourceFormat = Literal[
+    "images", "uyvy", "i420", "yuyv", "nv12", "grey", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8",
+    "y4m", "video", "rosbag",
+]  # fmt: skip
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
-RAW_FORMATS: tuple[SourceFormat, ...] = ("uyvy", "i420", "yuyv")
+RAW_FORMATS = tuple(each for each in SOURCE_FORMATS if each not in ("images", "y4m", "video", "rosbag"))
 """Of these no file says how large its pictures are."""
 
-IMAGE_SUFFIXES = frozenset(
-    {".bmp", ".gif", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"}
-)
+IMAGE_SUFFIXES = frozenset({
+    ".bmp", ".gif", ".jfif", ".jpe", ".jpeg", ".jpg", ".pgm", ".png", ".pnm", ".ppm", ".tif", ".tiff", ".webp",
+})  # fmt: skip
 
 _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ".uyvy": "uyvy", ".422": "uyvy",
     ".yuyv": "yuyv", ".yuy2": "yuyv",
     ".i420": "i420", ".yuv": "i420", ".yuv420": "i420",
+    ".nv12": "nv12", ".grey": "grey", ".gray": "grey", ".y8": "grey",
     ".y4m": "y4m",
-    ".apng": "video", ".avi": "video", ".gif": "video", ".m4v": "video", ".mkv": "video", ".mov": "video", ".mp4": "video", ".mpg": "video",
-    ".mpeg": "video", ".ogv": "video", ".ts": "video", ".webm": "video", ".wmv": "video",
+    ".apng": "video", ".avi": "video", ".gif": "video", ".m4v": "video", ".mjpeg": "video", ".mjpg": "video", ".mkv": "video", ".mov": "video",
+    ".mp4": "video", ".mpg": "video", ".mpeg": "video", ".ogv": "video", ".ts": "video", ".webm": "video", ".wmv": "video",
     ".bag": "rosbag", ".db3": "rosbag", ".mcap": "rosbag",
 }  # fmt: skip
 

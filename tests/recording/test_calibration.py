@@ -444,7 +444,21 @@ class TestBadPictures:
 
     def test_none(self, tmp_path: Path) -> None:
         pytest.importorskip("cv2")
-        assert "left*: source must hold images" in self.refusal(tmp_path)
+        assert "no image in it has a name that says left; `--mono` takes" in self.refusal(tmp_path)
+        assert "nowhere: chessboard pictures must be in a folder" in self.refusal(tmp_path / "nowhere")
+
+    @pytest.mark.parametrize(
+        "names", ["{Side}/{side}1", "stereo{Side}/image{S}1", "image{S}1", "1_{s}", "cam{Side}1"]
+    )
+    def test_names_say_which_camera(self, tmp_path: Path, names: str) -> None:
+        """In whatever way: both pictures are found, and both show no board."""
+        pytest.importorskip("cv2")
+        for side in ("left", "right"):
+            name = names.format(side=side, Side=side.capitalize(), s=side[0], S=side[0].upper())
+            path = tmp_path / f"{name}.png"
+            path.parent.mkdir(exist_ok=True)
+            Image.new("L", SIZE, 80).save(path)
+        assert self.refusal(tmp_path).count("no whole chessboard of ") == 2
 
     @pytest.mark.exhaustive
     def test_no_board(self, pictures: Path) -> None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import RecordingError
-from bfsim.recording.pairs import pairs_of
+from bfsim.recording.pairs import pairs_of, side_of
 
 
 def paths(folder: str, *names: object) -> list[Path]:
@@ -19,7 +19,14 @@ def paths(folder: str, *names: object) -> list[Path]:
 
 @pytest.mark.parametrize(
     ("left", "right"),
-    [("left_07", "right_07"), ("7", "7"), ("L7", "r7"), ("im7_left", "im7_right"), ("cam-l-7", "cam-r-7")],
+    [
+        ("left_07", "right_07"),
+        ("7", "7"),
+        ("L7", "r7"),
+        ("im7_left", "im7_right"),
+        ("cam-l-7", "cam-r-7"),
+        ("imageL7", "imageR7"),
+    ],
 )
 def test_names_tell_pairs(left: str, right: str) -> None:
     """Without what says the camera; also beside pictures that have none, which are listed with their folder."""
@@ -33,6 +40,18 @@ def test_a_letter_within_a_word_is_no_camera() -> None:
     """`roller` and `oe` are not the same, and neither are numbers."""
     with pytest.raises(RecordingError, match="pictures must have names that tell the pairs.*not 1 and 2"):
         pairs_of(paths("a", "roller"), paths("b", "oe", "oe2"), "pictures")
+
+
+@pytest.mark.parametrize(
+    ("name", "side"),
+    [
+        ("left_07", "left"), ("imgRight7", "right"), ("STEREO_LEFT", "left"), ("bowling_r", "right"), ("imageL7", "left"),
+        ("roller", None), ("07", None), ("left_of_the_right", None), ("IMAGEL7", None),
+    ],
+)  # fmt: skip
+def test_a_name_says_left_or_right_or_neither(name: str, side: str | None) -> None:
+    """Letters of other words say nothing, and neither do both sides."""
+    assert side_of(name) == side
 
 
 def test_names_with_nothing_in_common_go_by_order() -> None:

@@ -90,6 +90,37 @@ def test_resize_and_force(folder: Path) -> None:
         assert (reader.width, reader.height) == (4, 2)
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--resize", "16x6"), "Scaled by a triangle filter from 64x24\n"),
+        (
+            ("--resize", "16x12"),
+            "Scaled by a triangle filter from 64x24; 50 % of each is cut off, `--resize 16x6` keeps all\n",
+        ),
+        (("--crop", "32x12"), "Cut from 64x24; 75 % of each is cut off, `--resize 32x12` keeps all\n"),
+    ],
+)
+def test_what_is_cut_off_is_told(tmp_path: Path, options: tuple[str, str], said: str) -> None:
+    """How much, and the size that keeps the whole picture."""
+    Image.new("RGB", (64, 24)).save(tmp_path / "wide.png")
+    assert said in run("import", tmp_path / "a.mcap", tmp_path / "wide.png", "--mono", *options).output
+
+
+def test_many_sizes_and_skipped_files_are_short(tmp_path: Path) -> None:
+    """Ten of each, and how many more; a reason is told once."""
+    for k in range(12):
+        Image.new("L", (8 + 2 * k, 4)).save(tmp_path / f"{k}a.png")
+        (tmp_path / f"{k}b.png").write_text("no image")
+    lines = run("import", tmp_path / "a.mcap", tmp_path, "--mono", "--resize", "4x2").output.splitlines()
+    sizes = ", ".join(f"{8 + 2 * k}x4" for k in range(10))
+    names = ", ".join(f"{k}b.png" for k in range(10))
+    assert lines[1:] == [
+        f"Scaled by a triangle filter from {sizes} and 2 more; up to 73 % of a picture is cut off",
+        f"Skipped: {names} and 2 more: file must be an image that Pillow reads, not something else",
+    ]
+
+
 @pytest.mark.parametrize("size", ["320", "320x", "0x240", "320x-1", "axb"])
 def test_size_that_is_none(folder: Path, size: str) -> None:
     """A size in another form is a usage error that shows the right one."""

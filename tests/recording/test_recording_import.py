@@ -161,6 +161,48 @@ def test_raw_i420(tmp_path: Path) -> None:
     np.testing.assert_array_equal(frame.left[:, 2::4], v.repeat(2, axis=0))
 
 
+def test_raw_nv12_is_i420_with_u_and_v_by_turns(tmp_path: Path) -> None:
+    """As encoders and boards have it."""
+    y, u, v = noise((4, 8)), noise((2, 4), 1), noise((2, 4), 2)
+    (tmp_path / "a.nv12").write_bytes(2 * (y.tobytes() + np.stack([u, v], axis=-1).tobytes()))
+    import_recording([tmp_path / "a.nv12"], tmp_path / "a.mcap", mono=True, size=(8, 4))
+    frames = frames_of(tmp_path / "a.mcap")
+    assert len(frames) == 2
+    np.testing.assert_array_equal(frames[1].left[:, 1::2], y)
+    np.testing.assert_array_equal(frames[1].left[:, 0::4], u.repeat(2, axis=0))
+    np.testing.assert_array_equal(frames[1].left[:, 2::4], v.repeat(2, axis=0))
+
+
+def test_raw_grey_has_no_colour(tmp_path: Path) -> None:
+    """A byte a pixel, kept as it is."""
+    y = noise((2, 3, 8))
+    (tmp_path / "a.y8").write_bytes(y.tobytes())
+    import_recording([tmp_path / "a.y8"], tmp_path / "a.mcap", mono=True, size=(8, 3))
+    for frame, luma in zip(frames_of(tmp_path / "a.mcap"), y, strict=True):
+        np.testing.assert_array_equal(frame.left[:, 1::2], luma)
+        assert set(frame.left[:, 0::2].flat) == {128}
+
+
+@pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
+def test_raw_frames_of_a_sensor_have_the_colours_of_their_filters(tmp_path: Path, pattern: str) -> None:
+    """Light of one colour, of which only the pixels behind its filter see anything."""
+    pytest.importorskip("cv2")
+    for colour in ("red", "green", "blue"):
+        seen = np.array([255 * (each == colour[0]) for each in pattern], np.uint8).reshape(2, 2)
+        (tmp_path / "a.raw").write_bytes(np.tile(seen, (3, 4)).tobytes())
+        import_recording(
+            [tmp_path / "a.raw"],
+            tmp_path / "a.mcap",
+            mono=True,
+            size=(8, 6),
+            format=f"bayer_{pattern}8",
+            force=True,
+        )
+        (frame,) = frames_of(tmp_path / "a.mcap")
+        u, y, v = PRIMARIES_UYV[colour]
+        assert set(frame.left[2:4].reshape(-1, 4)[1:3].flat) == {u, y, v}
+
+
 @pytest.mark.parametrize(
     ("colourspace", "chroma_shape", "expected"),
     [
@@ -356,6 +398,19 @@ def test_a_picture_of_several_is_refused(tmp_path: Path, name: str, format: str)
         import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True)
 
 
+def test_a_picture_that_a_decoder_stumbles_over_is_skipped(tmp_path: Path) -> None:
+    """Pillow raises a TypeError of a TIFF with a number of another type, which ended the import."""
+    for name in ("bad.tif", "whole.tif"):
+        save_grey(tmp_path / "im" / name, 7)
+    damaged = bytearray((tmp_path / "im" / "bad.tif").read_bytes())
+    damaged[72] = 2
+    (tmp_path / "im" / "bad.tif").write_bytes(damaged)
+    summary = import_recording([tmp_path / "im"], tmp_path / "a.mcap", mono=True)
+    assert summary.frame_count == 1
+    assert [each.name for each in summary.skipped] == ["bad.tif"]
+    assert summary.skipped[0].reason.startswith("image must be whole, but Pillow stops in it (TypeError: ")
+
+
 def test_a_jpeg_with_a_copy_behind_it_is_one_picture(tmp_path: Path) -> None:
     """Phones put a smaller copy behind the picture."""
     animation(tmp_path / "a.jpg", "MPO")
@@ -496,6 +551,12 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         save_grey(Path("large") / f"{k}.png", k, (10, 4))
         save_grey(Path("odd") / f"{k}.png", k, (7, 4))
         save_grey(Path("mixed") / f"{k}.png", k, (8, 4 + k))
+    Path("sequence").mkdir()
+    save_grey(Path("sequence/data/0.png"), 0)
+    Path("sides").mkdir()
+    for side in ("left", "right"):
+        save_grey(Path("sides") / side / "0.png", 0)
+        save_grey(Path("both") / f"img{side.capitalize()}0.png", 0)
     Path("empty").mkdir()
     Path("texts").mkdir()
     Path("texts/a.txt").touch()
@@ -549,6 +610,10 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["two"], {"mono": True, "crop": (6, 4), "resize": (8, 4)}, "`--resize` or `--crop`, not both"),
         (["empty"], {"mono": True}, r"empty: source must hold images \(\.bmp, .*none of its 0 files"),
         (["texts"], {"mono": True}, r"none of its 2 files is one: a\.txt, cam0/$"),
+        (["sequence"], {"mono": True}, r"none of its 1 files is one: data/; sequence/data holds some$"),
+        (["both"], {}, r'sources must be 2, not 1: .* in quotes, such as "both/\*Left\*" "both/\*Right\*"$'),
+        (["sides"], {}, r"in quotes, such as sides/left sides/right$"),
+        (["three"], {}, r'in quotes, such as "left\*\.jpg"$'),
         (["two/*.jpg"], {"mono": True}, "none of its 0 files"),
         (["nowhere/left*"], {"mono": True}, r"nowhere/left\*: the folder nowhere must be there, but is not"),
         (["nowhere"], {"mono": True}, "nowhere: source .* is not there"),

@@ -363,6 +363,18 @@ def test_a_bag_of_one_camera_asks_for_mono(kind: str, tmp_path: Path) -> None:
 
 
 @each_kind
+def test_a_bag_without_pictures_is_told_so(kind: str, tmp_path: Path) -> None:
+    """It was asked for two image topics of none; with `--mono`, too."""
+    ros = Ros(kind)
+    path = ros.write(tmp_path, [("/imu", "std_msgs/msg/String", EPOCH_NS, ros.imu())])
+    for options in ({}, {"mono": True}):
+        with pytest.raises(
+            RecordingError, match=r"bag must have a topic of sensor_msgs/Image or .*, not /imu \(std"
+        ):
+            imported(path, **options)
+
+
+@each_kind
 def test_topics_are_listed_where_they_must_be_chosen(kind: str, tmp_path: Path) -> None:
     """With types and counts, pictures first."""
     ros = Ros(kind)
@@ -515,7 +527,7 @@ def test_other_files_are_no_bags(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(octets)
         with pytest.raises(RecordingError, match=f"{name}: bag must be whole and of ROS"):
             import_recording([tmp_path / name], tmp_path / "out.mcap")
-    with pytest.raises(RecordingError, match="none.bag: bag must be whole and of ROS"):
+    with pytest.raises(RecordingError, match="none.bag: bag must be a file or a folder, but is not there"):
         import_recording([tmp_path / "none.bag"], tmp_path / "out.mcap")
     (tmp_path / "metadata.yaml").write_text("!!python/object/apply:os.system ['touch pwned']\n")
     with pytest.raises(RecordingError, match="bag must be whole and of ROS"):

@@ -44,8 +44,8 @@ def calibrate_command(
 ) -> None:
     """Write rectification tables and the geometry into RECORDING, made from chessboard pictures of its cameras.
 
-    The folder CHESSBOARDS holds pictures left* and right*, or folders left and right; left_03 and right_03 were taken
-    at once. Pictures without a board are skipped, and what does not fit the rest is left out; both are listed. Focal
+    The folder CHESSBOARDS holds pictures, or folders of them, whose names say left and right; left_03 and right_03 were
+    taken at once. Pictures without a board are skipped, and what does not fit the rest is left out; both are listed. Focal
     length and baseline are measured; height and tilt must be given, here or at the import. Needs OpenCV:
     pip install "bfsim[opencv]".
 

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from bfsim.cli.options.sizes import Size
+from bfsim.cli.record.imported import fitted_text, skipped_texts
 from bfsim.terminal import progress_bar
 
 if TYPE_CHECKING:
     from bfsim.recording.sources import SourceFormat
 
-SOURCE_FORMATS = ("images", "uyvy", "i420", "yuyv", "y4m", "video", "rosbag")
+SOURCE_FORMATS = (
+    "images", "uyvy", "i420", "yuyv", "nv12", "grey", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8",
+    "y4m", "video", "rosbag",
+)  # fmt: skip
 """Those of bfsim.recording, which takes its time to import."""
-
-_SKIPPED_LISTED = 10
 
 
 @click.command(name="import", short_help="Make a recording from pictures.")
@@ -32,9 +33,7 @@ _SKIPPED_LISTED = 10
     type=click.Choice(SOURCE_FORMATS),
     help="What the sources are, if names do not tell.",
 )
-@click.option(
-    "--size", type=Size(), metavar="WxH", help="Size of the frames in raw UYVY, YUYV and I420 files."
-)
+@click.option("--size", type=Size(), metavar="WxH", help="Size of the frames in raw files.")
 @click.option(
     "--resize",
     type=Size(),
@@ -90,9 +89,9 @@ def import_command(
 ) -> None:
     """Make the recording OUTPUT from pictures.
 
-    A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
-    (.uyvy, .yuyv, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera. A bag of ROS (.bag of
-    ROS 1, .mcap, .db3 or the folder of ROS 2) is one source with both: pictures are paired by their time stamps, and
+    A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file (.uyvy, .yuyv,
+    .i420 or .yuv, .nv12, .grey; others by --format), a .y4m file or a video. Two sources are the left and the right camera.
+    A bag of ROS (.bag of ROS 1, .mcap, .db3 or the folder of ROS 2) is one source with both: pictures are paired by their time stamps, and
     camera_info becomes geometry and rectification. Needs rosbags: pip install "bfsim[ros]".
     Images that cannot be read, those without a picture of the other camera by their names (left_07 goes with
     right_07), and other files in a folder are skipped and listed.
@@ -135,11 +134,8 @@ def import_command(
         f"at {float(summary.fps):g} per second, {summary.size_bytes / 1e6:.1f} MB"
     )
     if (resize or crop) and set(summary.source_sizes) != {(summary.width, summary.height)}:
-        sizes = ", ".join(f"{width}x{height}" for width, height in summary.source_sizes)
-        click.echo(f"{'Scaled by a triangle filter, and cut to shape,' if resize else 'Cut'} from {sizes}")
+        click.echo(fitted_text(summary, is_scaled=resize is not None))
     for note in summary.notes:
         click.echo(note)
-    for reason, found in groupby(summary.skipped, key=lambda each: each.reason):
-        skipped = [each.name for each in found]
-        more = f" and {len(skipped) - _SKIPPED_LISTED} more" if len(skipped) > _SKIPPED_LISTED else ""
-        click.echo(f"Skipped: {', '.join(skipped[:_SKIPPED_LISTED])}{more}: {reason}")
+    for line in skipped_texts(summary.skipped):
+        click.echo(line)

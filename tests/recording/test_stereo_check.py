@@ -1,7 +1,8 @@
-"""Pictures of left and right that are each other's: who imports them and who runs them is told."""
+"""Pictures of left and right that are each other's, or not rectified: who imports them and who runs them is told."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from PIL import Image, ImageFilter
 
 from bfsim.cli.record import record
 from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables
-from bfsim.recording.exchange import ExchangeCheck
+from bfsim.recording.stereo_check import StereoCheck
 from bfsim.run import simulate
 from bfsim.shipped import RECORDING
 from bfsim.trace import WarningKind
@@ -36,7 +37,7 @@ def pair(disparity: int) -> tuple[Luma, Luma]:
 
 def warnings_of(left: Luma, right: Luma, tables: RectificationTables | None = None) -> list[str]:
     """What is said of a pair."""
-    check = ExchangeCheck(tables)
+    check = StereoCheck(tables)
     check.look_at(grey_uyvy(left), grey_uyvy(right))
     return list(check.warnings)
 
@@ -48,6 +49,37 @@ def test_pictures_in_the_wrong_order_are_told(disparity: int) -> None:
     assert warnings_of(left, right) == []
     (said,) = warnings_of(right, left)
     assert "left and right pictures seem to be exchanged: at " in said
+
+
+@pytest.mark.parametrize("lower", [-9, -3, 3, 9])
+def test_pictures_that_are_not_rectified_are_told(lower: int) -> None:
+    """Things stand some rows higher or lower in the right picture; tables that undo it are no news."""
+    left, right = pair(7)
+    moved = np.roll(right, lower, axis=0)
+    (said,) = warnings_of(left, moved)
+    assert re.match(r"the pictures seem not to be rectified: at \d+ % of the places", said)
+    rows, columns = np.indices(right.shape, np.int32)
+    undone = np.stack([np.clip(rows + lower, 0, SIZE[1] - 1), columns])
+    assert warnings_of(left, moved, RectificationTables(np.stack([rows, columns]), undone)) == []
+
+
+def test_what_is_nearly_rectified_is_left_alone() -> None:
+    """Half a degree, or half a pixel: the vote of the rows around an edge takes that."""
+    left, right = pair(7)
+    image = Image.fromarray(right)
+    lower = Image.Transform.AFFINE, (1, 0, 0, 0, 1, 0.5), Image.Resampling.BILINEAR
+    for moved in (image.rotate(0.5, Image.Resampling.BILINEAR), image.transform(SIZE, *lower)):
+        assert warnings_of(left, np.asarray(moved)) == []
+
+
+def test_pictures_of_one_camera_are_not_compared() -> None:
+    """They cost no time, frame after frame."""
+    check = StereoCheck()
+    for _ in range(20):
+        check.look_at(*2 * [grey_uyvy(pair(0)[0])])
+    left, right = pair(7)
+    check.look_at(grey_uyvy(left), grey_uyvy(np.roll(right, 5, axis=0)))
+    assert len(list(check.warnings)) == 1
 
 
 def test_nothing_is_said_of_pictures_that_tell_nothing() -> None:

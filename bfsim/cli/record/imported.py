@@ -1,0 +1,48 @@
+"""What `bfsim record import` says of the pictures that it took: how they were fitted, and which were skipped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from bfsim.recording.importer import ImportSummary
+    from bfsim.recording.sources import Skipped
+
+MOST_LISTED = 10
+"""Sizes and names in a list; the others are counted."""
+
+LEAST_TOLD_CUT = 0.05
+"""Part of a picture that may be cut off without a word."""
+
+
+def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
+    """Return from which sizes pictures were scaled or cut, how much of them was cut off, and what would keep all."""
+    sizes = [f"{width}x{height}" for width, height in summary.source_sizes]
+    text = f"{'Scaled by a triangle filter' if is_scaled else 'Cut'} from {_listed(sizes)}"
+    cuts = [_part_cut_off(size, (summary.width, summary.height), is_scaled) for size in summary.source_sizes]
+    if max(cuts) < LEAST_TOLD_CUT:
+        return text
+    if len(cuts) > 1:
+        return f"{text}; up to {max(cuts):.0%} of a picture is cut off".replace("%", " %")
+    text = f"{text}; {cuts[0]:.0%} of each is cut off".replace("%", " %")
+    width, height = summary.source_sizes[0]
+    kept = f"{summary.width}x{max(2 * round(summary.width * height / width / 2), 2)}"
+    return f"{text}, `--resize {kept}` keeps all"
+
+
+def skipped_texts(skipped: Sequence[Skipped]) -> Iterator[str]:
+    """Yield a line for each reason to skip pictures."""
+    for reason in dict.fromkeys(each.reason for each in skipped):
+        yield f"Skipped: {_listed([each.name for each in skipped if each.reason == reason])}: {reason}"
+
+
+def _part_cut_off(source: tuple[int, int], target: tuple[int, int], is_scaled: bool) -> float:
+    width, height = (have / want for have, want in zip(source, target, strict=True))
+    kept = min(width, height) ** 2 if is_scaled else 1
+    return 1 - kept / (width * height)
+
+
+def _listed(words: Sequence[str]) -> str:
+    more = f" and {len(words) - MOST_LISTED} more" if len(words) > MOST_LISTED else ""
+    return f"{', '.join(words[:MOST_LISTED])}{more}"

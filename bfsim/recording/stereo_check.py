@@ -1,0 +1,85 @@
+"""Whether stereo frames are what the matching of edges needs: left and right in this order, and things in the same row of both.
+
+Places that both pictures surely show are compared, and those where they disagree with that are counted. That is no stereo matching:
+it says nothing of depths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.recording.exchange import EXCHANGED, exchanged_places
+from bfsim.recording.frames import RectificationTables, StereoFrame, UyvyImage
+from bfsim.recording.row_offsets import OTHER_ROWS, places_in_other_rows
+
+if TYPE_CHECKING:
+    from bfsim.recording.planes import Plane
+
+ENOUGH_PLACES, MOST_FRAMES = 40, 8
+"""As many frames are looked at as it takes."""
+
+FEWEST_PLACES, DOUBTED_SHARE = 16, 0.75
+"""Of fewer places nothing is said. Of right pairs up to 24 % of the places of a frame disagree, of chessboards, that look alike, 68 %."""
+
+
+@dataclass(slots=True)
+class _Doubt:
+    """What may be wrong: `places_of` returns of each place that is compared whether it is, and `text` tells the user."""
+
+    places_of: Callable[[Plane, Plane], NDArray[np.bool_]]
+    text: str
+    places: int = 0
+    wrong: int = 0
+
+    def look_at(self, left: Plane, right: Plane) -> None:
+        if self.places < ENOUGH_PLACES:
+            found = self.places_of(left, right)
+            self.places += found.size
+            self.wrong += int(found.sum())
+
+    @property
+    def is_told(self) -> bool:
+        return self.places >= FEWEST_PLACES and self.wrong >= DOUBTED_SHARE * self.places
+
+
+class StereoCheck:
+    """Looks at the first stereo frames that pass, as rectified by `tables`."""
+
+    def __init__(self, tables: RectificationTables | None = None) -> None:
+        self._tables = tables
+        self._frames = 0
+        self._doubts = (_Doubt(exchanged_places, EXCHANGED), _Doubt(places_in_other_rows, OTHER_ROWS))
+
+    def watch(self, frames: Iterable[StereoFrame]) -> Iterator[StereoFrame]:
+        """Pass frames on."""
+        for frame in frames:
+            self.look_at(frame.left, frame.right)
+            yield frame
+
+    def look_at(self, left: UyvyImage, right: UyvyImage) -> None:
+        """Compare the pictures of a frame, unless they are one camera's, or enough was compared."""
+        is_done = self._frames == MOST_FRAMES or all(each.places >= ENOUGH_PLACES for each in self._doubts)
+        if is_done or np.array_equal(left, right):
+            return
+        self._frames += 1
+        lumas = [each[:, 1::2] for each in (left, right)]
+        if self._tables:
+            tables = (self._tables.left, self._tables.right)
+            lumas = [
+                np.where(rows < 0, 0, luma[rows, columns])
+                for luma, (rows, columns) in zip(lumas, tables, strict=True)
+            ]
+        for doubt in self._doubts:
+            doubt.look_at(*lumas)
+
+    @property
+    def warnings(self) -> Iterator[str]:
+        """What to tell the user; nothing where the pictures seem to be right."""
+        for each in self._doubts:
+            if each.is_told:
+                yield each.text.format(percent=100 * each.wrong // each.places)
