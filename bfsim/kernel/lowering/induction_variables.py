@@ -159,6 +159,18 @@ class InductionVariables:
             if not is_number(name)
             and self.evolution.code_motion.is_invariant(name, loop)
             and self.evolution.increment(name, around) is None
+            and not self._is_carried(name, around)
+        )
+
+    def _is_carried(self, name: str, around: Loop, depth: int = 4) -> bool:
+        """Whether the loop around carries a position from iteration to iteration, which only some of them, or inner loops, step."""
+        each = self.flow.instruction(name)
+        if each is None or depth == 0 or self.flow.defined[name][0] not in around.blocks:
+            return False
+        if each.opcode == "phi" and self.flow.defined[name][0] == around.header:
+            return True
+        return each.opcode in ("phi", "add") and any(
+            self._is_carried(value, around, depth - 1) for value in each.operands if value != name
         )
 
     def _entering_value(self, name: str, loop: Loop) -> str:

@@ -141,11 +141,11 @@ class Likelihood:
     def _entered(self, way: str, other: str, block: BasicBlock) -> Loop | None:
         """The loop that one side of a test right before it enters, while the other one goes where the loop ends.
 
-        A loop from one number to another has no test before it: that is another one's.
+        A loop from one number to another, and with no other end, has no test before it: that is another one's.
         """
         for loop in self.flow.loops:
             fixed = is_number(self.evolution.counter_start(loop) or "")
-            if fixed and self.evolution.iterations(loop) is not None:
+            if fixed and self.evolution.iterations(loop) is not None and len(self.flow.exits(loop)) == 1:
                 continue
             if loop.header in self._onwards(way) and block.label not in loop.blocks:
                 ends = {
