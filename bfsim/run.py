@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial, wraps
@@ -132,7 +133,12 @@ def simulate(
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
     feed, fidelity = _one_of(Feed, "feed", feed), _one_of(Fidelity, "fidelity", fidelity)
-    script, record_work, work = map(_path_of, (script, record_work, work))
+    recording, script, record_work, work = (
+        _path_of(what, given)
+        for what, given in {
+            "recording": recording, "script": script, "record_work": record_work, "work": work,
+        }.items()
+    )  # fmt: skip
     found_board, found_compiler = find_board(board, settings), find_profile(profile)
     spec = found_board.value
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
@@ -227,8 +233,14 @@ def _one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
         raise ConfigError(f"{option} must be one of {known}, not {shown(name)}") from None
 
 
-def _path_of(name: Path | str | None) -> Path | None:
-    return None if name is None else Path(name)
+def _path_of(what: str, given: object) -> Path | None:
+    """Return what was given as a file's path. Raises ConfigError if it is none."""
+    if given is None:
+        return None
+    if isinstance(given, (str, os.PathLike)):
+        return Path(given)
+    advice = "; write `simulate(firmware=...)`" if isinstance(given, Firmware) else ""
+    raise ConfigError(f"{what} must be a file, not {type(given).__name__}{advice}")
 
 
 def _memories(link_map: LinkMap, spec: BoardSpec) -> Iterator[MemoryRecord]:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
+from bfsim.loading import load_firmware
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.run import Feed, Fidelity, simulate
 from bfsim.shipped import LDF_FOLDER, RECORDING
@@ -25,6 +26,7 @@ import json, sys
 sys.modules["numba"] = None  # which cannot be imported then
 from pathlib import Path
 from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.loading import load_firmware
 from bfsim.run import Feed, Fidelity, simulate
 runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]
 print(json.dumps([[identity_digest(run.identity), cycle_digest(run.frames)] for run in runs]))
@@ -232,6 +234,11 @@ def test_names_stand_for_files_and_choices() -> None:
         ({"feed": "slow"}, "feed must be one of demand, recorded, cameras, not 'slow'"),
         ({"fidelity": "good"}, "fidelity must be one of fast, detailed, not 'good'"),
         ({"ldf": "nowhere"}, "LDF must be a file or a shipped one"),
+        ({"script": 5}, "script must be a file, not int"),
+        (
+            {"recording": load_firmware("tinyphoon").firmware},
+            r"recording must be a file, not Firmware; write `simulate\(firmware=...\)`",
+        ),
     ):
         with pytest.raises(BfsimError, match=words):
             simulate(frames=1, **wrong)  # type: ignore[arg-type]
