@@ -17,31 +17,10 @@ STACK_OVERRUN_BYTES = 1 << 18
 """[ours] An access so far below the stack is one of local variables: nothing else is there."""
 MOST_PLACES = 3
 """[ours] As many are told where one of them is meant."""
-SYSTEM = frozenset(
-    f"_{each}"
-    for each in [
-        "exit",
-        "close",
-        "environ",
-        "execve",
-        "fork",
-        "fstat",
-        "getpid",
-        "gettimeofday",
-        "isatty",
-        "kill",
-        "link",
-        "lseek",
-        "open",
-        "read",
-        "sbrk",
-        "stat",
-        "times",
-        "unlink",
-        "wait",
-        "write",
-    ]
-)
+SYSTEM = {
+    "_exit", "_close", "_environ", "_execve", "_fork", "_fstat", "_getpid", "_gettimeofday", "_isatty", "_kill", "_link", "_lseek", "_open",
+    "_read", "_sbrk", "_stat", "_times", "_unlink", "_wait", "_write",
+}  # fmt: skip
 """[newlib, "System Calls"] What C's library asks an operating system for."""
 
 

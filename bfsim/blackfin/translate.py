@@ -80,9 +80,8 @@ class _Translation:
     ) -> None:
         self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
         self.aligned = aligned
-        self.offs: list[
-            tuple[ir.Value, int]
-        ] = []  # of each access of the block, and its instruction: not 0 if it is not aligned
+        # of each access of the block: what is not 0 if it is not aligned, and its instruction
+        self.offs: list[tuple[ir.Value, int]] = []
         self.results = None if results is None else results | ALWAYS_READ
         counted = self.counted = of.counters
         self.made = ir.Module(symbol)
