@@ -7,6 +7,8 @@ error.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 LONGEST_VALUE = 80
 """As many characters of a value go into a message; the whole of it is in the file that it is from."""
 
@@ -31,6 +33,12 @@ def cut(text: str) -> str:
 def printable(text: str) -> str:
     """Return foreign text on one line, with what cannot be seen as Python writes it."""
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
+
+
+def listed(words: Sequence[str], most: int) -> str:
+    """Return words as a list of as many as `most`, and how many more there are."""
+    more = len(words) - most
+    return ", ".join(words[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def with_article(name: str) -> str:

@@ -10,7 +10,7 @@ from dataclasses import astuple, dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
-from bfsim.errors import KernelError, cut
+from bfsim.errors import KernelError, cut, listed
 
 MOST_NAMES = 5
 """As many names are listed of what is missing."""
@@ -99,9 +99,8 @@ class Image:
     def address_of(self, symbol: str) -> int:
         """Return the address of a symbol. Raises KernelError if there is none of that name."""
         if symbol not in self.symbols:
-            names = ", ".join(cut(each.name) for each in self.routines[:MOST_NAMES])
-            more = f" and {len(self.routines) - MOST_NAMES} more" if len(self.routines) > MOST_NAMES else ""
-            has = f"only {names}{more}" if names else "no function"
+            names = listed([cut(each.name) for each in self.routines], MOST_NAMES)
+            has = f"only {names}" if names else "no function"
             raise KernelError(f"{self.name} must define {cut(symbol)}, but has {has}")
         return self.symbols[symbol]
 

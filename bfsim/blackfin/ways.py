@@ -9,7 +9,7 @@ from functools import cached_property
 from bfsim.blackfin.blocks import DIRECT, Code, does
 from bfsim.blackfin.image import Image
 from bfsim.blackfin.lines import LineTable
-from bfsim.errors import cut
+from bfsim.errors import cut, listed
 
 MOST_LINES, MOST_CALLS = 3, 4
 """[ours] As many lines that call the same are listed, and as many calls of a way: the last ones."""
@@ -60,8 +60,7 @@ class Ways:
         told = []
         for function, found in self._way(tuple(places)):
             named = list(dict.fromkeys(self.line_at(each) or f"0x{each:08X}" for each in found))
-            more = f" and {len(named) - MOST_LINES} more" if len(named) > MOST_LINES else ""
-            told.append(f"{cut(_name(function))} {verb} at {', '.join(named[:MOST_LINES])}{more}")
+            told.append(f"{cut(_name(function))} {verb} at {listed(named, MOST_LINES)}")
             verb = "calls"
         hidden = len(told) - MOST_CALLS
         if hidden > 1:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from bfsim.errors import listed
+
 if TYPE_CHECKING:
     from bfsim.recording.importer import ImportSummary
     from bfsim.recording.sources import Skipped
@@ -19,7 +21,7 @@ LEAST_TOLD_CUT = 0.05
 def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
     """Return from which sizes pictures were scaled or cut, how much of them was cut off, and what would keep all."""
     sizes = [f"{width}x{height}" for width, height in summary.source_sizes]
-    text = f"{'Scaled by a triangle filter' if is_scaled else 'Cut'} from {_listed(sizes)}"
+    text = f"{'Scaled by a triangle filter' if is_scaled else 'Cut'} from {listed(sizes, MOST_LISTED)}"
     cuts = [_part_cut_off(size, (summary.width, summary.height), is_scaled) for size in summary.source_sizes]
     if max(cuts) < LEAST_TOLD_CUT:
         return text
@@ -34,15 +36,10 @@ def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
 def skipped_texts(skipped: Sequence[Skipped]) -> Iterator[str]:
     """Yield a line for each reason to skip pictures."""
     for reason in dict.fromkeys(each.reason for each in skipped):
-        yield f"Skipped: {_listed([each.name for each in skipped if each.reason == reason])}: {reason}"
+        yield f"Skipped: {listed([each.name for each in skipped if each.reason == reason], MOST_LISTED)}: {reason}"
 
 
 def _part_cut_off(source: tuple[int, int], target: tuple[int, int], is_scaled: bool) -> float:
     width, height = (have / want for have, want in zip(source, target, strict=True))
     kept = min(width, height) ** 2 if is_scaled else 1
     return 1 - kept / (width * height)
-
-
-def _listed(words: Sequence[str]) -> str:
-    more = f" and {len(words) - MOST_LISTED} more" if len(words) > MOST_LISTED else ""
-    return f"{', '.join(words[:MOST_LISTED])}{more}"
