@@ -155,8 +155,8 @@ def test_only_a_test_that_leads_to_a_continue_by_itself_is_guessed_by_it(
         tmp_path,
     )
     taken = found.likelihood.taken
-    assert taken["body", "decided"] == pytest.approx(goes_on)  # on to the second part
-    assert taken["decided", "after.1"] == pytest.approx(0.67)
+    assert taken["body", joined] == pytest.approx(goes_on)  # on to the second part
+    assert taken[joined, "after.1"] == pytest.approx(0.67)
 
 
 def test_two_heuristics_are_combined() -> None:

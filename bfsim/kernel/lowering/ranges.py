@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Instruction, predicate
+from bfsim.kernel.ir_text import SWAPPED, Instruction, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.widths import WORD
 
@@ -65,7 +65,7 @@ def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
     if one is None or other is None or not predicate(one) == predicate(other) == "eq":
         return None
     hit, miss = flow.blocks[second].successors
-    if ways != (hit, second) or _plain(flow, one) != _plain(flow, other):
+    if ways != (hit, second) or _plain(flow, one.operands[0]) != _plain(flow, other.operands[0]):
         return None
     numbers = [test.operands[1] for test in (one, other)]
     if not all(each.lstrip("-").isdigit() for each in numbers):
@@ -74,8 +74,8 @@ def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
     if high != low + 1:
         return None
     if low == -1 and one.bits < WORD:  # as LLVM writes the highest of a narrow type
-        return Range(first, second, miss, _plain(flow, one), 1, (1 << one.bits) - 2)
-    return Range(first, second, miss, _plain(flow, one), low, high)
+        return Range(first, second, miss, _plain(flow, one.operands[0]), 1, (1 << one.bits) - 2)
+    return Range(first, second, miss, _plain(flow, one.operands[0]), low, high)
 
 
 def _bound(flow: ControlFlow, label: str, holds: bool) -> tuple[tuple[str, str], str, int] | None:
@@ -83,13 +83,16 @@ def _bound(flow: ControlFlow, label: str, holds: bool) -> tuple[tuple[str, str],
     test = _test(flow, label)
     if test is None or len(flow.users.get(test.result or "", [])) > 1:
         return None
-    sign, relation, bound = predicate(test)[0], predicate(test)[-2:], test.operands[1]
-    if relation not in OPPOSITE or not bound.lstrip("-").isdigit():
+    relation, (value, bound) = predicate(test), test.operands
+    if is_number(value):
+        relation, value, bound = SWAPPED[relation], bound, value
+    sign, relation = relation[0], relation[-2:]
+    if relation not in OPPOSITE or not is_number(bound):
         return None
     relation = relation if holds else OPPOSITE[relation]
     number = int(bound) % (1 << test.bits) if sign == "u" else int(bound)  # LLVM writes all as signed
     number += {"lt": -1, "gt": 1}.get(relation, 0)
-    return (_plain(flow, test), sign), "low" if relation[0] == "g" else "high", number
+    return (_plain(flow, value), sign), "low" if relation[0] == "g" else "high", number
 
 
 def _test(flow: ControlFlow, label: str) -> Instruction | None:
@@ -99,8 +102,8 @@ def _test(flow: ControlFlow, label: str) -> Instruction | None:
     return test if test is not None and test.opcode == "icmp" else None
 
 
-def _plain(flow: ControlFlow, test: Instruction) -> str:
-    value, each = test.operands[0], flow.instruction(test.operands[0])
+def _plain(flow: ControlFlow, value: str) -> str:
+    each = flow.instruction(value)
     while each is not None and each.opcode in RENAMING:
         value = each.operands[0]
         each = flow.instruction(value)

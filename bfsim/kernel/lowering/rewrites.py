@@ -10,7 +10,6 @@ from collections.abc import Callable
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
 from bfsim.kernel.lowering.bit_tests import with_bit_tests
 from bfsim.kernel.lowering.carried import carry_over
-from bfsim.kernel.lowering.chosen_ranges import with_chosen_ranges
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.early_loads import with_early_loads
 from bfsim.kernel.lowering.extremes import with_extremes
@@ -27,6 +26,7 @@ from bfsim.kernel.lowering.narrow_tests import with_narrow_tests
 from bfsim.kernel.lowering.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
 from bfsim.kernel.lowering.preheaders import with_preheaders
+from bfsim.kernel.lowering.range_tests import with_range_tests
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.remainders import with_remainders
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
@@ -72,7 +72,6 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_final_values,
     with_predictive_commoning,
     with_bit_tests,
-    with_chosen_ranges,
     with_narrow_sums,
     with_jump_tables,
 )
@@ -95,7 +94,6 @@ SWITCHES = {
     with_shifted_products: Rule.SHIFTED_PRODUCTS,
     with_operations_on_sides: Rule.OWN_OPERATIONS,
     with_bit_tests: Rule.BIT_TESTS,
-    with_chosen_ranges: Rule.BIT_TESTS,
     with_narrow_sums: Rule.EXTREMES,
     with_jump_tables: Rule.JUMP_TABLES,
 }
@@ -111,7 +109,7 @@ def rewritten_early(text: str, profile: CompilerProfile) -> str:
 
 
 def _rewritten_early(routine: Routine, profile: CompilerProfile) -> Routine:
-    routine = without_repeated_loads(routine)
+    routine = with_range_tests(without_repeated_loads(routine))
     if profile.applies(Rule.REMAINDERS):
         routine = with_remainders(routine)
     if profile.applies(Rule.NARROW_CHOICES):
