@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
+from bfsim.kernel.lowering.preheaders import preheader_of
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
 
@@ -104,10 +105,16 @@ def _wanted_of_step(
 
 
 def _before_inner(flow: ControlFlow, loop: Loop, label: str) -> str:
-    """Where a value that does not change in the loops inside `loop` is computed for block `label`: before them."""
+    """Where a value that does not change in the loops inside `loop` is computed for block `label`: before them.
+
+    Of a preheader that is the test which leads there: where a register is free for the counter, GCC keeps it [measured].
+    """
     around = flow.loops_of(label)
     inner = around[: around.index(loop)] if loop in around else []
-    return flow.entering(inner[-1]) if inner else label
+    if not inner:
+        return label
+    before = flow.entering(inner[-1])
+    return flow.predecessors[before][0] if before == preheader_of(inner[-1]) else before
 
 
 def _home(flow: ControlFlow, user: Instruction) -> str:

@@ -15,13 +15,18 @@ def preheader_of(loop: Loop) -> str:
 
 
 def with_preheaders(routine: Routine) -> Routine:
-    """Return `routine` with a preheader for each loop that begins right behind another one."""
+    """Return `routine` with a preheader for each loop that begins right behind another one, or on one side of a test."""
     flow = ControlFlow(routine)
     for loop in sorted(flow.loops, key=lambda each: each.header):
         before = [each for each in flow.predecessors[loop.header] if each not in loop.blocks]
-        if len(before) == 1 and flow.innermost(before[0]) is not flow.around(loop):
+        if len(before) == 1 and _needs_one(flow, loop, before[0]):
             routine = with_preheader(routine, loop, before[0])
     return routine
+
+
+def _needs_one(flow: ControlFlow, loop: Loop, before: str) -> bool:
+    """Whether the block `before`, from which alone a loop is entered, belongs to another loop, or does not always lead to it."""
+    return flow.innermost(before) is not flow.around(loop) or len(set(flow.blocks[before].successors)) > 1
 
 
 def with_preheader(routine: Routine, loop: Loop, before: str) -> Routine:

@@ -1,0 +1,58 @@
+"""Code that mostly decides: tests for ranges, and what is done on one side of a test before a loop."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
+from tests.kernel.beside_gcc import check_estimate, check_meaning
+
+CLASSES = """
+def f(a: u8[:], n: i32) -> i32:
+    s = 0
+    for i in range(n):
+        c = a[i]
+        if 48 <= c <= 57:
+            s += c - 48
+        elif 65 <= c <= 90:
+            s += c - 55
+        elif 97 <= c and c <= 122:
+            s -= c
+    return s
+"""
+RUNS = """
+def f(a: u8[:], o: u16[:], n: i32, t: i32) -> i32:
+    k = 0
+    x = 0
+    while x < n:
+        if a[x] < 2 * t:
+            x += 1
+            continue
+        begin = x
+        while x < n and a[x] >= t:
+            x += 1
+        o[k] = x - begin
+        k += 1
+    return k
+"""
+
+# of each case: the kernel, cycles of GCC's code in the GNU simulator, how near the estimate is
+CASES = {
+    "ranges one after the other": (CLASSES, 7549, 0.02),
+    "a loop that few iterations come to": (RUNS, 2933, 0.02),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
+    """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 18 %."""
+    check_estimate(*CASES[name], tmp_path)
+
+
+@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
+@pytest.mark.parametrize("name", CASES)
+def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
+    """Whatever is tested before what."""
+    check_meaning(CASES[name][0], profile, tmp_path, (8, 60, 200))
