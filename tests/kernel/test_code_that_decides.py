@@ -1,4 +1,4 @@
-"""Code that mostly decides: tests for ranges, and what is done on one side of a test before a loop."""
+"""Code that mostly decides: tests for ranges, what is done on one side of a test before a loop, and what is done on both sides."""
 
 from __future__ import annotations
 
@@ -37,11 +37,49 @@ def f(a: u8[:], o: u16[:], n: i32, t: i32) -> i32:
         k += 1
     return k
 """
+UPWARDS = """
+def f(a: u8[:], n: i32) -> i32:
+    c = 0xFFFF
+    for i in range(n):
+        c ^= a[i] << 8
+        for k in range(8):
+            c <<= 1
+            if c & 0x10000:
+                c ^= 0x11021
+    return c
+"""
+DOWNWARDS = """
+def f(a: u8[:], n: i32) -> i32:
+    c = 0xFFFF
+    for i in range(n):
+        c ^= a[i]
+        for k in range(8):
+            if c & 1:
+                c = (c >> 1) ^ 0xA001
+            else:
+                c >>= 1
+    return c
+"""
+CUT = """
+def f(a: u8[:], n: i32) -> i32:
+    c = 0
+    for i in range(n):
+        c ^= a[i]
+        for k in range(8):
+            if c & 0x80:
+                c = ((c << 1) ^ 0x31) & 255
+            else:
+                c = (c << 1) & 255
+    return c
+"""
 
 # of each case: the kernel, cycles of GCC's code in the GNU simulator, how near the estimate is
 CASES = {
     "ranges one after the other": (CLASSES, 7549, 0.02),
     "a loop that few iterations come to": (RUNS, 2933, 0.02),
+    "a bit of what was shifted": (UPWARDS, 32218, 0.01),
+    "a shift on both sides": (DOWNWARDS, 33654, 0.01),
+    "a shift that is cut": (CUT, 17527, 0.02),
 }
 
 

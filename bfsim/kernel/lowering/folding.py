@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from bfsim.kernel.ir_text import Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, is_number, predicate
 from bfsim.kernel.isa import ADDRESS_SHIFTS
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.hoisted_code import BEFORE_TESTS
 from bfsim.kernel.lowering.remainders import quotient_of_rest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -114,7 +115,34 @@ class Folding:
             return None
         mask, alone = masked.operands[-1], len(self.users(masked.result or "")) == 1
         single = masked.opcode == "and" and mask.isdigit() and int(mask).bit_count() == 1
-        return masked.operands[0] if single and alone else None
+        if not (single and alone) or self._is_overwritten(masked):
+            return None
+        return self._shifted_before(masked) or masked.operands[0]
+
+    def _is_overwritten(self, masked: Instruction) -> bool:
+        """Whether what was moved before the branch takes over the register of a value that is masked: it is masked before, and compared behind."""
+        value, here = masked.operands[0], self._block_of(masked)
+        own = {id(each) for each in here}
+        takes_over = any(
+            each.operands[0] == value
+            and (each.result or "").endswith(BEFORE_TESTS)
+            and any(user.opcode == "phi" for user in self.users(each.result or ""))
+            for each in here
+            if each.opcode in SHIFTS
+        )
+        return takes_over and all(id(user) in own for user in self.users(value))
+
+    def _shifted_before(self, masked: Instruction) -> str | None:
+        """The value that was shifted before one of its bits is tested: LLVM makes a test of the value before of that."""
+        value, here = masked.operands[0], self._block_of(masked)
+        for each in here[: here.index(masked)]:
+            if each.opcode == "shl" and each.operands[0] == value and is_number(each.operands[1]):
+                bit = int(masked.operands[-1]).bit_length() - 1 + int(each.operands[1])
+                return each.result if bit < each.bits else None
+        return None
+
+    def _block_of(self, each: Instruction) -> tuple[Instruction, ...]:
+        return self.flow.blocks[self.flow.defined[each.result or ""][0]].instructions
 
     def in_bit_test(self, each: Instruction) -> bool:
         """Whether an `and` is done by a bit test."""

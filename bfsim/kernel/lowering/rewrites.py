@@ -16,6 +16,7 @@ from bfsim.kernel.lowering.extremes import with_extremes
 from bfsim.kernel.lowering.factored_sums import factor_sums
 from bfsim.kernel.lowering.final_values import with_final_values
 from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
+from bfsim.kernel.lowering.hoisted_code import with_hoisted_code
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.jump_tables import with_jump_tables
 from bfsim.kernel.lowering.known_answers import with_known_answers
@@ -61,6 +62,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     split_loads,
     merge_stores,
     without_partial_redundancies,
+    with_hoisted_code,
     copy_headers,
     copy_breaks,
     with_preheaders,

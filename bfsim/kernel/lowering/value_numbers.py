@@ -7,6 +7,8 @@ from bfsim.kernel.ir_text import Instruction
 COMPUTED = {
     "getelementptr", "add", "sub", "mul", "shl", "lshr", "ashr", "and", "or", "xor", "sext", "zext", "trunc",
 }  # fmt: skip
+FLAGS = frozenset({"nuw", "nsw", "exact", "disjoint", "nneg", "inbounds"})
+"""What LLVM knows of a result, which makes no other value of it."""
 
 
 class ValueNumbers:
@@ -23,7 +25,7 @@ class ValueNumbers:
     def add(self, each: Instruction) -> None:
         """Note what an instruction computes."""
         if each.result and each.opcode in COMPUTED:
-            kinds = (word for word in each.text.split() if not word.startswith("%"))
+            kinds = (word for word in each.text.split() if not word.startswith("%") and word not in FLAGS)
             key = (*kinds, *map(self.of, each.operands))
             self._first[each.result] = self._computed.setdefault(key, each.result)
 
