@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-
 from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
@@ -45,6 +43,6 @@ def _build(firmware: Firmware, own: OwnModules, profile: CompilerProfile) -> Bui
         profile,
         {each: there for each in code.names if there.has(each)},
         f"GCC {code.compiler} {level_of(profile)}, timing {there.timing.name}",
-        hashlib.sha256(code.octets).hexdigest(),
+        there.digest,
         is_tried=code.is_shipped,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import shutil
 import subprocess
 import sys
@@ -14,6 +15,8 @@ import numpy as np
 import pytest
 
 from bfsim import building
+from bfsim.blackfin.image import Use
+from bfsim.blackfin.objects import read_object
 from bfsim.building import build_for
 from bfsim.compiling.loaded_code import LoadedCode
 from bfsim.compiling.object_code import object_code
@@ -77,6 +80,40 @@ def test_what_is_inlined_is_of_the_line_that_calls_it() -> None:
                 assert 1 < place.line <= len(rows)
                 signs.setdefault(places.kernels[routine.name].name, set()).add(rows[place.line - 1].strip())
     assert signs["slope"] == {"return (across << SLOPE_BITS) // along"}
+
+
+def test_the_digest_of_code_is_of_what_runs() -> None:
+    """A file of code names the folder in which it was compiled, another one each time: runs of the same firmware had other identities."""
+    loaded = load_firmware(FIRMWARE[0])
+    kernels, entries = kernels_of(loaded.own), entries_of(loaded.firmware)
+    code = object_code(kernels | entries, entries, GCC_ADI, None)
+    elsewhere = re.sub(rb"/tmp/tmp.{8}", b"/var/tmp/folder_", code.octets)
+    assert elsewhere != code.octets
+    at = next(each.offset for each in read_object(code.octets, "").sections if each.use is Use.CODE)
+    changed = b"".join((code.octets[:at], bytes([code.octets[at] ^ 1]), code.octets[at + 1 :]))
+    digest, same, other = (
+        LoadedCode(replace(code, octets=each)).digest for each in (code.octets, elsewhere, changed)
+    )
+    assert digest == same != other
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_a_run_is_the_same_one_wherever_its_code_was_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On two machines, each with a cache of its own, and in two folders: what was recorded on one is played on the other."""
+    identities = []
+    for machine in ("one", "another"):
+        folder = tmp_path / machine
+        folder.mkdir()
+        (folder / "eyes.py").write_text(SMALL_FIRMWARE)
+        monkeypatch.setenv("BFSIM_CACHE_DIR", str(folder / "cache"))
+        monkeypatch.chdir(folder)
+        work = {"work" if identities else "record_work": tmp_path / "eyes.work"}
+        identities.append(simulate(frames=1, firmware="eyes.py:eyes", **work).identity)
+    assert identities[0] == identities[1]
+    assert identities[0].code == CODE
 
 
 @pytest.mark.exhaustive

@@ -75,6 +75,15 @@ class Image:
         """SHA-256 of the file."""
         return hashlib.sha256(self.octets).hexdigest()
 
+    @cached_property
+    def code_digest(self) -> str:
+        """SHA-256 of what lies in memory, by addresses: the same of files that were compiled in other folders, which they name."""
+        found = hashlib.sha256()
+        for each in self.segments:
+            found.update(f"{each.address} {len(each.octets)} {each.use}\n".encode())
+            found.update(each.octets)
+        return found.hexdigest()
+
     def octets_of(self, first: int, end: int) -> bytes:
         """Return the bytes of a range of addresses, as far as one segment has them."""
         for each in self.segments:

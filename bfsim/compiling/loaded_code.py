@@ -31,6 +31,11 @@ class LoadedCode:
         self._loaded, self._places = LoadedImage(image), Places(image, kernels, of_file)
         self._placed = self.timing.placed(image)
 
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the code, wherever and whenever it was compiled."""
+        return self._loaded.image.code_digest
+
     def has(self, function: Function) -> bool:
         """Whether a kernel is a function of the code: helpers may be inlined in all that call them."""
         return self.code.symbol_of(function) in self._places.image.symbols
