@@ -33,14 +33,21 @@ class BoardView:
 
 
 def find_views(
-    cv2: Any, folder: Path, size: tuple[int, int], corners: tuple[int, int], *, mono: bool, resize: bool
+    cv2: Any,
+    folder: Path,
+    size: tuple[int, int],
+    corners: tuple[int, int],
+    *,
+    mono: bool,
+    resize: bool,
+    bits: int | None,
 ) -> tuple[list[BoardView], list[Skipped]]:
     """Return the boards seen in the pictures of `size` (width, height) of a folder, and the pictures that show none.
 
     With `mono` every picture is one of the only camera. Without, pictures whose names say left and right (or those of the
     folders whose names do) go together by the rest of their names, or by their order if the names have nothing in common.
     With `resize`, corners of pictures of other sizes are found there, where they are sharpest, and are brought to where an
-    import that scales the pictures has them. Raises RecordingError.
+    import that scales the pictures has them. `bits`: how many the cameras use of pixels that have 16. Raises RecordingError.
     """
     sets, skipped = _together(folder, mono=mono)
     views = []
@@ -48,7 +55,7 @@ def find_views(
         found = []
         for path in paths:
             try:
-                grey, to_recorded = _grey(path, size, resize=resize)
+                grey, to_recorded = _grey(path, size, resize=resize, bits=bits)
                 found.append(_brought(_corners_in(cv2, grey, corners), to_recorded))
             except RecordingError as error:
                 skipped.append(Skipped(path.name, str(error).removeprefix(f"{path}: ")))
@@ -88,9 +95,11 @@ def _pictures_of(folder: Path, side: str) -> tuple[list[Path], list[Skipped]]:
     return images, others
 
 
-def _grey(path: Path, size: tuple[int, int], *, resize: bool) -> tuple[Plane, NDArray[np.float64]]:
+def _grey(
+    path: Path, size: tuple[int, int], *, resize: bool, bits: int | None
+) -> tuple[Plane, NDArray[np.float64]]:
     """Return a picture, and the matrix (3, 3) that leads from its pixels to those of the recording."""
-    image = load_image(path)
+    image = load_image(path, bits)
     if image.size != size and not resize:
         raise RecordingError(
             f"picture must be {size[0]}x{size[1]} like the recording, not {image.width}x{image.height}; `--resize` "

@@ -64,6 +64,7 @@ def calibrate_recording(
     lens: LensName = "pinhole",
     mono: bool = False,
     resize: bool = False,
+    bits: int | None = None,
 ) -> StereoCalibration:
     """Write `recording` with the rectification tables and the geometry of its cameras to `output`, or in its own place.
 
@@ -88,6 +89,7 @@ def calibrate_recording(
         lens=lens,
         mono=mono,
         resize=resize,
+        bits=bits,
     )
     report = calibration.report
     writer = RecordingWriter(
@@ -124,13 +126,15 @@ def calibrate(
     lens: LensName = "pinhole",
     mono: bool = False,
     resize: bool = False,
+    bits: int | None = None,
 ) -> StereoCalibration:
     """Calibrate cameras with pictures of `size` (width, height) of a board with `corners` (across, down) inner corners.
 
     The folder `chessboards` holds pictures, or folders of them, whose names say left and right; those with the same
     rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
     board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of
-    another size are scaled as an import with `--resize` scales them. `focal_px` is the focal length to rectify to;
+    another size are scaled as an import with `--resize` scales them; of pixels that have 16 bits, the cameras use so many
+    `bits`. `focal_px` is the focal length to rectify to;
     without it, the mean of the left camera's. Raises RecordingError.
     """
     model = _MODELS[lens]()
@@ -140,7 +144,7 @@ def calibrate(
             f"and {square_mm:g} mm"
         )
     folder = Path(chessboards)
-    views, skipped = find_views(model.cv2, folder, size, corners, mono=mono, resize=resize)
+    views, skipped = find_views(model.cv2, folder, size, corners, mono=mono, resize=resize, bits=bits)
     if len(views) < FEWEST_VIEWS:
         raise _too_few(folder, views, skipped, mono=mono)
     board = np.zeros((corners[0] * corners[1], 3))

@@ -9,64 +9,72 @@ from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
 
+import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError, cut
+from bfsim.recording.deep_pixels import MOST_BITS, upper_bits
 from bfsim.recording.frames import UyvyImage
 from bfsim.recording.pairs import pairs_of
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 
+_DEEP = ";16"
+"""In Pillow's names of what pixels of 16 bits are like: `I;16`, `RGB;16B`."""
 _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
 
 
-def open_image_pair(left: str, right: str, *, mixed: bool) -> list[PictureSource]:
+def open_image_pair(left: str, right: str, *, mixed: bool, bits: int | None = None) -> list[PictureSource]:
     """Images of both cameras as `open_images` has them, those that belong together: as many of either."""
     lefts, rights = (images_and_others(source) for source in (left, right))
     pairs, alone = pairs_of(lefts[0], rights[0], f"{left} and {right}: images")
     sides = list(zip(*pairs, strict=True))
     return [
-        _source(left, list(sides[0]), [*lefts[1], *alone], mixed=mixed),
-        _source(right, list(sides[1]), rights[1], mixed=mixed),
+        _source(left, list(sides[0]), [*lefts[1], *alone], mixed=mixed, bits=bits),
+        _source(right, list(sides[1]), rights[1], mixed=mixed, bits=bits),
     ]
 
 
-def open_images(source: str, *, mixed: bool) -> PictureSource:
+def open_images(source: str, *, mixed: bool, bits: int | None = None) -> PictureSource:
     """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10).
 
     Images that cannot be read are skipped, if one can; others that are of another size than the first are refused,
-    unless they may be `mixed`.
+    unless they may be `mixed`. `bits` as in `decoded`.
     """
-    return _source(source, *images_and_others(source), mixed=mixed)
+    return _source(source, *images_and_others(source), mixed=mixed, bits=bits)
 
 
-def _source(source: str, paths: list[Path], skipped: list[Skipped], *, mixed: bool) -> PictureSource:
-    first = _first_readable(paths)
+def _source(
+    source: str, paths: list[Path], skipped: list[Skipped], *, mixed: bool, bits: int | None
+) -> PictureSource:
+    first = _first_readable(paths, bits)
     return PictureSource(
         name=source,
         size=first[1],
         count=len(paths),
         fps=None,
-        pictures=lambda: _pictures(paths, None if mixed else first),
+        pictures=lambda: _pictures(paths, None if mixed else first, bits),
         skipped=tuple(skipped),
     )
 
 
-def _first_readable(paths: list[Path]) -> tuple[str, tuple[int, int]]:
+def _first_readable(paths: list[Path], bits: int | None) -> tuple[str, tuple[int, int]]:
     """Return name and size of the first image that can be read; if none can, raise what is wrong with the first."""
     errors = []
     for path in paths:
         try:
-            return path.name, load_image(path).size
+            return path.name, load_image(path, bits).size
         except RecordingError as error:
             errors.append(error)
     raise errors[0]
 
 
-def _pictures(paths: list[Path], model: tuple[str, tuple[int, int]] | None) -> Iterator[YuvPlanes | Skipped]:
+def _pictures(
+    paths: list[Path], model: tuple[str, tuple[int, int]] | None, bits: int | None
+) -> Iterator[YuvPlanes | Skipped]:
     for path in paths:
         try:
-            image = load_image(path)
+            image = load_image(path, bits)
         except RecordingError as error:
             yield Skipped(path.name, str(error).removeprefix(f"{path}: "))
             continue
@@ -150,16 +158,21 @@ def _natural_key(path: Path) -> list[int | str]:
     return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", str(path))]
 
 
-def load_image(path: Path) -> Image.Image:
-    """Return the decoded image, turned upright as its EXIF orientation says."""
+def load_image(path: Path, bits: int | None = None) -> Image.Image:
+    """Return the decoded image, turned upright as its EXIF orientation says; `bits` as in `decoded`."""
     try:
-        return decoded(path)
+        return decoded(path, bits=bits)
     except RecordingError as error:
         raise RecordingError(f"{path}: {error}") from None
 
 
-def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Image.Image:
-    """Return the image in a file, of all formats or of these, as `load_image`. RecordingError does not name the file."""
+def decoded(
+    file: Path | BytesIO, formats: tuple[str, ...] | None = None, *, bits: int | None = None
+) -> Image.Image:
+    """Return the image in a file, of all formats or of these, as `load_image`. RecordingError does not name the file.
+
+    `bits`: how many a camera uses, whose pixels have 16 in the file.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what Pillow could do all the same
@@ -167,8 +180,8 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
             with Image.open(file, formats=formats) as image:
                 # A phone may keep a smaller copy of the picture behind it (MPO).
                 count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
+                has_deep_colours = _DEEP in str(image.tile) and image.mode in _EIGHT_BIT_MODES
                 image.load()
-                mode = image.mode
                 upright = ImageOps.exif_transpose(image)
     except UnidentifiedImageError:
         kinds = " or ".join(formats) if formats else "an image that Pillow reads"
@@ -184,9 +197,15 @@ def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Ima
             f"image must be one picture, not {count}; `--format video` reads GIF and animated PNG, and "
             "`magick in.webp -coalesce %03d.png` makes one file of each picture of others"
         )
-    if mode not in _EIGHT_BIT_MODES:
+    if upright.mode == "I" or upright.mode.startswith(f"I{_DEEP}"):
+        return Image.fromarray(upper_bits(np.asarray(upright), bits))
+    if upright.mode not in _EIGHT_BIT_MODES:
         raise RecordingError(
-            f"image must have 8 bits a channel, not the pixel format {mode}; make 8 of the bits that the camera uses, of 16 "
-            "bits with `mogrify -depth 8`"
+            f"image must have pixels of 8 bits, or grey ones of 16, not the pixel format {upright.mode}"
+        )
+    if bits is not None and not (has_deep_colours and bits == MOST_BITS):
+        # Of colours of 16 bits Pillow keeps the upper 8.
+        raise RecordingError(
+            f"image must have grey pixels of 16 bits for `--bits {bits}`, not {'colours' if has_deep_colours else 'pixels of 8'}"
         )
     return upright

@@ -9,7 +9,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from bfsim.errors import RecordingError
-from bfsim.recording.sources import RAW_FORMATS, PictureSource, SourceFormat, guess_format
+from bfsim.recording.deep_pixels import check_bits
+from bfsim.recording.sources import DEEP_FORMATS, RAW_FORMATS, PictureSource, SourceFormat, guess_format
 
 _PATTERN = '"left*.jpg"'
 
@@ -63,6 +64,7 @@ def check_options(
     formats: Sequence[SourceFormat | None],
     *,
     size: tuple[int, int] | None,
+    bits: int | None,
     fps: Fraction | float | None,
     topics: tuple[str, str] | None,
     slop_s: float | None,
@@ -76,6 +78,11 @@ def check_options(
     if size is not None and not any(each in (*RAW_FORMATS, None) for each in formats):
         raise RecordingError(
             f"{name}: `--size` must go with raw frames, which have none of their own; `--resize` scales pictures"
+        )
+    check_bits(bits)
+    if bits is not None and not any(each in (*DEEP_FORMATS, None) for each in formats):
+        raise RecordingError(
+            f"{name}: `--bits` must go with {', '.join(DEEP_FORMATS)}, whose pixels may have 16"
         )
 
 

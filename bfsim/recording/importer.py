@@ -53,6 +53,7 @@ def import_recording(
     *,
     format: SourceFormat | None = None,
     size: tuple[int, int] | None = None,
+    bits: int | None = None,
     resize: tuple[int, int] | None = None,
     crop: tuple[int, int] | None = None,
     side_by_side: bool = False,
@@ -70,7 +71,7 @@ def import_recording(
 
     Two sources are the left and the right camera. One source needs `side_by_side` (left half, right half) or
     `mono` (one camera feeds both sides). `format` is guessed from the names. `size` is the (width, height) of
-    raw frames; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
+    raw frames; of pixels that have 16 bits, of which a camera uses so many `bits`, the upper 8 are taken; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
     its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
     picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`).
 
@@ -94,10 +95,11 @@ def import_recording(
         is_bag=is_bag,
         force=force,
     )
-    check_options(names[0], formats, size=size, fps=fps, topics=topics, slop_s=slop_s)
+    check_options(names[0], formats, size=size, bits=bits, fps=fps, topics=topics, slop_s=slop_s)
     is_fitted = resize is not None or crop is not None
-    bag = open_bag(names[0], topics, slop_s, single=side_by_side or mono, mixed=is_fitted) if is_bag else None
-    opened = [*bag.sources] if bag else open_sources(names, format, size, mixed=is_fitted)
+    is_single = side_by_side or mono
+    bag = open_bag(names[0], topics, slop_s, single=is_single, mixed=is_fitted, bits=bits) if is_bag else None
+    opened = [*bag.sources] if bag else open_sources(names, format, size, mixed=is_fitted, bits=bits)
     rate = frame_rate(fps, opened)
     count = check_pair(opened, side_by_side=side_by_side, is_fitted=is_fitted)
     picture_size = resize or crop or camera_size(opened[0], side_by_side)

@@ -15,25 +15,34 @@ from bfsim.recording.video import open_video
 
 _FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
 _RAW_OPENERS: dict[SourceFormat, Callable[[str, tuple[int, int]], PictureSource]] = {
-    "uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420, "nv12": open_nv12, "grey": open_grey,
-    **{each: partial(open_bayer, pattern=each) for each in BAYER_PATTERNS},
+    "uyvy": open_uyvy, "yuyv": open_yuyv, "i420": open_i420, "nv12": open_nv12,
 }  # fmt: skip
+_SENSOR_OPENERS: dict[SourceFormat, Callable[[str, tuple[int, int], int | None], PictureSource]] = {
+    "grey": open_grey,
+    **{each: partial(open_bayer, each) for each in BAYER_PATTERNS},
+}
+"""Of raw frames whose pixels may have 16 bits."""
 
 
 def open_sources(
-    names: list[str], format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
+    names: list[str],
+    format: SourceFormat | None,
+    size: tuple[int, int] | None,
+    *,
+    mixed: bool,
+    bits: int | None = None,
 ) -> list[PictureSource]:
     """Open sources by their names; `format` is that of all, and `size` that of raw frames.
 
-    `mixed`: the pictures of a source may have several sizes.
+    `mixed`: the pictures of a source may have several sizes. `bits`: how many the cameras use of pixels that have 16.
     """
     if len(names) == 2 and all((format or guess_format(name)) == "images" for name in names):
-        return open_image_pair(*names, mixed=mixed)
-    return [_open_source(name, format, size, mixed=mixed) for name in names]
+        return open_image_pair(*names, mixed=mixed, bits=bits)
+    return [_open_source(name, format, size, mixed=mixed, bits=bits) for name in names]
 
 
 def _open_source(
-    name: str, format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
+    name: str, format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool, bits: int | None
 ) -> PictureSource:
     chosen = format or guess_format(name)
     if chosen is None:
@@ -43,11 +52,13 @@ def _open_source(
             f"(`--format` {', '.join(SOURCE_FORMATS)})"
         )
     if chosen == "images":
-        return open_images(name, mixed=mixed)
+        return open_images(name, mixed=mixed, bits=bits)
     if chosen in _FILE_OPENERS:
         return _FILE_OPENERS[chosen](name)
     if size is None or min(size) <= 0:
         raise RecordingError(
             f"{name}: raw {chosen.upper()} needs the size of its frames, such as `--size 320x240`"
         )
+    if chosen in _SENSOR_OPENERS:
+        return _SENSOR_OPENERS[chosen](name, size, bits)
     return _RAW_OPENERS[chosen](name, size)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import IO
 
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
 from bfsim.recording.bayer import BayerPattern, planes_of_bayer
+from bfsim.recording.deep_pixels import upper_bits, words
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.sources import PictureSource
 
@@ -100,20 +102,34 @@ def open_nv12(source: str, size: tuple[int, int]) -> PictureSource:
     return _open_raw(source, "NV12", size, frame.frame_bytes, planes)
 
 
-def open_grey(source: str, size: tuple[int, int]) -> PictureSource:
-    """Raw grey frames, a byte a pixel, of `size` (width, height) in pixels."""
-    frame = _Layout(*size, (0, 0))
-    return _open_raw(source, "grey", size, frame.frame_bytes, frame.planes)
+def open_grey(source: str, size: tuple[int, int], bits: int | None = None) -> PictureSource:
+    """Raw grey frames of `size` (width, height) in pixels of a byte, or of two of which the camera uses so many `bits`."""
+    return _open_sensor(source, "grey", size, bits, YuvPlanes.from_grey)
 
 
-def open_bayer(source: str, size: tuple[int, int], pattern: BayerPattern) -> PictureSource:
-    """Raw frames of a sensor with filters before its pixels, a byte a pixel, of `size` (width, height) in pixels."""
+def open_bayer(
+    pattern: BayerPattern, source: str, size: tuple[int, int], bits: int | None = None
+) -> PictureSource:
+    """Raw frames of a sensor with filters before its pixels, as `open_grey` has them."""
+    return _open_sensor(source, pattern, size, bits, partial(planes_of_bayer, pattern=pattern))
+
+
+def _open_sensor(
+    source: str,
+    name: str,
+    size: tuple[int, int],
+    bits: int | None,
+    planes_of: Callable[[NDArray[np.uint8]], YuvPlanes],
+) -> PictureSource:
+    """A number a pixel; those of two bytes begin with the lower one."""
     width, height = size
 
     def planes(data: bytes) -> YuvPlanes:
-        return planes_of_bayer(np.frombuffer(data, np.uint8).reshape(height, width), pattern)
+        if bits is None:
+            return planes_of(np.frombuffer(data, np.uint8).reshape(height, width))
+        return planes_of(upper_bits(words(data, (height, width)), bits))
 
-    return _open_raw(source, pattern, size, width * height, planes)
+    return _open_raw(source, name, size, width * height * (1 if bits is None else 2), planes)
 
 
 def _quartered(source: str, name: str, size: tuple[int, int]) -> _Layout:

@@ -11,6 +11,7 @@ from PIL import Image
 
 from bfsim.errors import RecordingError, shown
 from bfsim.recording.bayer import BAYER_PATTERNS, planes_of_bayer
+from bfsim.recording.deep_pixels import upper_bits, words
 from bfsim.recording.images import decoded
 from bfsim.recording.layout import LARGEST_PICTURE_BYTES
 from bfsim.recording.planes import YuvPlanes
@@ -23,22 +24,34 @@ _COLOURS = {"rgb8": "RGB", "bgr8": "BGR", "rgba8": "RGBA", "bgra8": "BGRA"}
 _YUV = {"yuv422": "UYVY", "uyvy": "UYVY", "yuv422_yuy2": "YUYV", "yuyv": "YUYV"}
 """Order of the bytes of two pixels: sensor_msgs/image_encodings."""
 _GREY = ("mono8", "8UC1")
-ENCODINGS = (*_GREY, *_COLOURS, *_YUV, *BAYER_PATTERNS)
+_DEEP = {"mono16": "", "16UC1": "", **{f"{each.removesuffix('8')}16": each for each in BAYER_PATTERNS}}
+"""Of pixels of 16 bits: the pattern that they make with 8, or none."""
+ENCODINGS = (*_GREY, *_COLOURS, *_YUV, *BAYER_PATTERNS, *_DEEP)
 _PIXEL_BYTES: dict[str, int] = {**dict.fromkeys(_GREY, 1), **{each: len(order) for each, order in _COLOURS.items()},
-                **dict.fromkeys(_YUV, 2), **dict.fromkeys(BAYER_PATTERNS, 1)}  # fmt: skip
+                **dict.fromkeys(_YUV, 2), **dict.fromkeys(BAYER_PATTERNS, 1), **dict.fromkeys(_DEEP, 2)}  # fmt: skip
 
 
-def planes_of(message: Any, kind: str) -> YuvPlanes:
+def planes_of(message: Any, kind: str, bits: int | None = None) -> YuvPlanes:
     """Return the picture in a message of one of IMAGE_TYPES. YUV is taken as it is, in full range.
+
+    `bits`: how many the camera uses of pixels that have 16.
 
     Raises RecordingError for other encodings, and where the bytes are no such picture.
     """
     if kind == COMPRESSED:
-        return YuvPlanes.from_image(decoded(BytesIO(message.data), ("JPEG", "PNG")))
+        return YuvPlanes.from_image(decoded(BytesIO(message.data), ("JPEG", "PNG"), bits=bits))
     encoding, width, height = message.encoding, message.width, message.height
     if encoding not in ENCODINGS:
         raise RecordingError(f"encoding must be one of {', '.join(ENCODINGS)}, not {shown(encoding)}")
     pixels = _pixels(message, _PIXEL_BYTES[encoding])
+    if encoding in _DEEP:
+        deep = words(pixels.tobytes(), (height, width), is_big_endian=bool(message.is_bigendian))
+        pixels, pattern = upper_bits(deep, bits), _DEEP[encoding]
+        return planes_of_bayer(pixels, pattern) if pattern else YuvPlanes.from_grey(pixels)
+    if bits is not None:
+        raise RecordingError(
+            f"encoding must be one of {', '.join(_DEEP)} for `--bits {bits}`, not {encoding}"
+        )
     if encoding in _GREY:
         return YuvPlanes.from_grey(pixels)
     if encoding in _COLOURS:

@@ -40,13 +40,14 @@ def open_bag(
     *,
     single: bool,
     mixed: bool,
+    bits: int | None = None,
 ) -> BagPictures:
     """Open a .bag, .db3 or .mcap file, or the folder of a ROS 2 bag.
 
     Of `topics`, left and right, pictures are paired that are each other's nearest within `slop_s`, or half a frame
     period; the others are skipped. Without `topics` there must be one pair of image topics whose names differ by left
     and right. `single`: there must be one image topic, or `topics` name it twice. Without `mixed` all pictures of a
-    topic must be of one size. Raises RecordingError.
+    topic must be of one size. `bits`: how many the cameras use of pixels that have 16. Raises RecordingError.
     """
     bag = BagFile(Path(name))
     found = {each.name: each for each in bag.topics()}
@@ -72,6 +73,7 @@ def open_bag(
             ),
             Fraction(1e9 / rate).limit_denominator(_FPS_PARTS) if rate else None,
             mixed=mixed,
+            bits=bits,
         )
         for side, (topic, own, own_ns, all_ns, numbers) in enumerate(
             zip(chosen, usable, rising_ns, times, pairs, strict=False)
@@ -133,6 +135,7 @@ def _source(
     fps: Fraction | None,
     *,
     mixed: bool,
+    bits: int | None,
 ) -> PictureSource:
     wanted = {int(each) for each in numbers}
 
@@ -141,7 +144,7 @@ def _source(
             if number not in wanted:
                 continue
             try:
-                picture = planes_of(bag.decode(raw, topic.kind), topic.kind)
+                picture = planes_of(bag.decode(raw, topic.kind), topic.kind, bits)
             except RecordingError as error:
                 yield Skipped(f"{topic.name} {number}", str(error))
                 continue

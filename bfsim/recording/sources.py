@@ -18,6 +18,10 @@ SourceFormat = Literal[
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
 RAW_FORMATS = tuple(each for each in SOURCE_FORMATS if each not in ("images", "y4m", "video", "rosbag"))
 """Of these no file says how large its pictures are."""
+DEEP_FORMATS = tuple(
+    each for each in SOURCE_FORMATS if each in ("images", "grey", "rosbag") or each.startswith("bayer")
+)
+"""Of these pixels may have 16 bits."""
 
 IMAGE_SUFFIXES = frozenset({
     ".bmp", ".gif", ".jfif", ".jpe", ".jpeg", ".jpg", ".pgm", ".png", ".pnm", ".ppm", ".tif", ".tiff", ".webp",

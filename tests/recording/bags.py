@@ -54,6 +54,7 @@ class Ros:
         *,
         height: int | None = None,
         step: int | None = None,
+        is_bigendian: bool = False,
     ) -> Any:
         """An Image; `rows` (height, bytes of a row)."""
         return self.store.types["sensor_msgs/msg/Image"](
@@ -61,7 +62,7 @@ class Ros:
             height=rows.shape[0] if height is None else height,
             width=width,
             encoding=encoding,
-            is_bigendian=0,
+            is_bigendian=int(is_bigendian),
             step=rows.shape[1] if step is None else step,
             data=rows.ravel(),
         )

@@ -183,6 +183,56 @@ def test_raw_grey_has_no_colour(tmp_path: Path) -> None:
         assert set(frame.left[:, 0::2].flat) == {128}
 
 
+@pytest.mark.parametrize("bits", [8, 10, 12, 16])
+@pytest.mark.parametrize("name", ["a.png", "a.tiff", "a.pgm", "a.grey"])
+def test_of_pixels_of_16_bits_the_upper_8_that_the_camera_uses_are_taken(
+    tmp_path: Path, name: str, bits: int
+) -> None:
+    """Of 12 bits in 16, 4,095 is white; taken as 16 bits, it is nearly black."""
+    y = np.linspace(0, (1 << bits) - 1, 8 * 256).astype(np.uint16).reshape(8, 256)
+    if name == "a.grey":
+        (tmp_path / name).write_bytes(y.astype("<u2").tobytes())
+    elif name == "a.pgm":
+        (tmp_path / name).write_bytes(b"P5 256 8 65535\n" + y.astype(">u2").tobytes())
+    else:
+        Image.fromarray(y).save(tmp_path / name)
+    size = {"size": (256, 8)} if name == "a.grey" else {}
+    import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True, bits=bits, **size)
+    (frame,) = frames_of(tmp_path / "a.mcap")
+    np.testing.assert_array_equal(frame.left[:, 1::2], y >> (bits - 8))
+    assert set(frame.left[:, 0::2].flat) == {128}
+
+
+def test_of_a_sensors_pixels_of_16_bits_the_upper_8_have_the_same_colours(tmp_path: Path) -> None:
+    """A pattern of 12 bits is that of its upper 8."""
+    pytest.importorskip("cv2")
+    seen = noise((6, 8))
+    (tmp_path / "deep.raw").write_bytes((seen.astype("<u2") << 4 | 5).astype("<u2").tobytes())
+    (tmp_path / "plain.raw").write_bytes(seen.tobytes())
+    for name, more in (("deep", {"bits": 12}), ("plain", {})):
+        import_recording(
+            [tmp_path / f"{name}.raw"],
+            tmp_path / f"{name}.mcap",
+            mono=True,
+            size=(8, 6),
+            format="bayer_rggb8",
+            **more,
+        )
+    deep, plain = (frames_of(tmp_path / f"{name}.mcap")[0].left for name in ("deep", "plain"))
+    np.testing.assert_array_equal(deep, plain)
+
+
+def test_of_colours_of_16_bits_the_upper_8_are_taken(tmp_path: Path) -> None:
+    """Which is all that Pillow keeps of them: a camera that uses 12 would be nearly black."""
+    cv2 = pytest.importorskip("cv2")
+    cv2.imwrite(str(tmp_path / "a.png"), np.full((4, 8, 3), 0xC8FF, np.uint16))
+    for bits in (None, 16):
+        import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True, bits=bits, force=True)
+        assert set(frames_of(tmp_path / "a.mcap")[0].left[:, 1::2].flat) == {0xC8}
+    with pytest.raises(RecordingError, match="grey pixels of 16 bits for `--bits 12`, not colours$"):
+        import_recording([tmp_path / "a.png"], tmp_path / "b.mcap", mono=True, bits=12)
+
+
 @pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
 def test_raw_frames_of_a_sensor_have_the_colours_of_their_filters(tmp_path: Path, pattern: str) -> None:
     """Light of one colour, of which only the pixels behind its filter see anything."""
@@ -564,7 +614,8 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Image.fromarray(noise((32, 32))).save("whole.png")
     Path("bad.png").write_bytes(Path("whole.png").read_bytes()[:500])
     Path("text.png").write_text("no image")
-    Image.fromarray(np.zeros((4, 8), np.uint16)).save("deep.png")
+    Image.fromarray(np.full((4, 8), 4032, np.uint16)).save("deep.png")
+    Image.fromarray(np.zeros((4, 8), np.float32)).save("floats.tiff")
     Path("short.uyvy").write_bytes(bytes(100))
     Path("none.uyvy").touch()
     Path("frames.raw").write_bytes(bytes(64))
@@ -624,8 +675,17 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (
             ["deep.png"],
             {"mono": True},
-            r"deep\.png: image must have 8 bits a channel, not .* I;16; make 8 of",
+            r"deep\.png: pixels must have 8 bits, or 16 of which .* --bits` .*: the brightest one here, 4,032, has 12$",
         ),
+        (["deep.png"], {"mono": True, "bits": 11}, "fit into the bits of `--bits 11`, but one is 4,032"),
+        (["deep.png"], {"mono": True, "bits": 7}, "`--bits` must be 8 to 16, not 7"),
+        (["floats.tiff"], {"mono": True}, "pixels of 8 bits, or grey ones of 16, not the pixel format F"),
+        (
+            ["two/0.png"],
+            {"mono": True, "bits": 12},
+            "grey pixels of 16 bits for `--bits 12`, not pixels of 8",
+        ),
+        (["short.uyvy"], {"mono": True, "bits": 12}, "`--bits` must go with images, grey, bayer_rggb8"),
         (["short.uyvy"], {"mono": True}, r"short\.uyvy: raw UYVY needs the size .* `--size 320x240`"),
         (
             ["short.uyvy"],

@@ -238,6 +238,23 @@ def test_a_bayer_pattern_of_one_colour_is_that_colour(encoding: str, corner: str
     assert np.array_equal(frame.left, expected)
 
 
+@pytest.mark.parametrize("encoding", ["mono16", "16UC1", "bayer_rggb16"])
+@pytest.mark.parametrize("is_bigendian", [False, True])
+def test_of_pixels_of_16_bits_the_upper_8_that_the_camera_uses_are_taken(
+    encoding: str, is_bigendian: bool, tmp_path: Path
+) -> None:
+    """In either order of their bytes; in the same bag, a picture of 8 bits has none to spare."""
+    pixels = np.full((4, 8), 0xC8F, ">u2" if is_bigendian else "<u2").view(np.uint8)
+    ros = Ros("ros1")
+    deep = ros.image(EPOCH_NS, encoding, pixels, 8, is_bigendian=is_bigendian)
+    path = ros.write(tmp_path, [*one_pair(ros, deep), *grey_pair(ros, [1])])
+    summary = import_recording([path], tmp_path / "out.mcap", bits=12)
+    assert summary.frame_count == 1
+    assert "must be one of mono16, 16UC1, bayer_rggb16, " in summary.skipped[0].reason
+    with RecordingReader(tmp_path / "out.mcap") as reader:
+        assert set(next(reader.frames()).left[:, 1::2].flat) == {0xC8}
+
+
 @each_kind
 @pytest.mark.parametrize("form", ["png", "jpeg"])
 def test_compressed_pictures_are_decoded(kind: str, form: str, tmp_path: Path) -> None:
@@ -272,7 +289,11 @@ def test_resize_and_one_camera(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("how", "reason"),
     [
-        ({"encoding": "mono16"}, f"encoding must be one of {', '.join(ENCODINGS)}, not 'mono16'"),
+        ({"encoding": "rgb16"}, f"encoding must be one of {', '.join(ENCODINGS)}, not 'rgb16'"),
+        (
+            {"encoding": "mono16", "width": 4},
+            "pixels must have 8 bits, or 16 of which `bfsim record import --bits` says",
+        ),
         ({"encoding": ""}, "encoding must be one of"),
         (
             {"encoding": "rgb8"},

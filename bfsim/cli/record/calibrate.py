@@ -29,6 +29,12 @@ from bfsim.cli.record.recorded import view_text, views_text
 @click.option(
     "--resize", is_flag=True, help="Scale the chessboards, as `record import --resize` scaled RECORDING."
 )
+@click.option(
+    "--bits",
+    type=click.IntRange(8, 16),
+    metavar="N",
+    help="As of `record import`, for chessboards with pixels of 16 bits.",
+)
 @click.option("--output", type=click.Path(path_type=Path), help="Write this file and leave RECORDING alone.")
 def calibrate_command(
     chessboards: Path,
@@ -40,6 +46,7 @@ def calibrate_command(
     fisheye: bool,
     mono: bool,
     resize: bool,
+    bits: int | None,
     output: Path | None,
 ) -> None:
     """Write rectification tables and the geometry into RECORDING, made from chessboard pictures of its cameras.
@@ -69,6 +76,7 @@ def calibrate_command(
         lens="fisheye" if fisheye else "pinhole",
         mono=mono,
         resize=resize,
+        bits=bits,
     )
     with RecordingReader(output or path) as reader:
         geometry = reader.geometry

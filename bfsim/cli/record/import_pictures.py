@@ -35,6 +35,13 @@ SOURCE_FORMATS = (
 )
 @click.option("--size", type=Size(), metavar="WxH", help="Size of the frames in raw files.")
 @click.option(
+    "--bits",
+    type=click.IntRange(8, 16),
+    metavar="N",
+    help="Pixels have 16 bits, of which the camera uses N: the upper 8 of these are taken. Of grey images, grey and Bayer frames, raw "
+    "or in a bag.",
+)
+@click.option(
     "--resize",
     type=Size(),
     metavar="WxH",
@@ -77,6 +84,7 @@ def import_command(
     mono: bool,
     format: SourceFormat | None,
     size: tuple[int, int] | None,
+    bits: int | None,
     resize: tuple[int, int] | None,
     crop: tuple[int, int] | None,
     fps: float | None,
@@ -115,6 +123,7 @@ def import_command(
             output,
             format=format,
             size=size,
+            bits=bits,
             resize=resize,
             crop=crop,
             side_by_side=side_by_side,
