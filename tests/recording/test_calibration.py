@@ -308,6 +308,21 @@ def test_larger_chessboards_are_scaled_like_the_recording(chessboards: Path, tmp
     assert report.focal_px == pytest.approx(386, rel=0.02)
 
 
+def test_chessboards_may_have_pixels_of_16_bits(chessboards: Path, tmp_path: Path) -> None:
+    """Of which the camera uses 12: their upper 8 are the same pictures."""
+    pytest.importorskip("cv2")
+    reports = []
+    for name, bits in (("plain", None), ("deep", 12)):
+        (tmp_path / name).mkdir()
+        for path in chessboards.glob("left_0*.png"):
+            with Image.open(path) as picture:
+                grey = np.asarray(picture.convert("L"))
+            Image.fromarray(grey.astype(np.uint16) << 4 if bits else grey).save(tmp_path / name / path.name)
+        found = calibrate(tmp_path / name, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=True, bits=bits)
+        reports.append(found.report)
+    assert reports[0] == reports[1]
+
+
 @pytest.mark.exhaustive
 def test_boards_that_an_import_cuts_off_count_too(chessboards: Path, tmp_path: Path) -> None:
     """Corners are found in the pictures as they are: a board need not be whole in the shape of the recording."""
