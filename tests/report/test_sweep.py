@@ -47,6 +47,15 @@ def test_a_column_is_numbers_or_text() -> None:
     assert csv_of(rows) == 'a,b,c\n1.0,"x,""y""",\n2.5,,\n,3,4\n'
 
 
+@pytest.mark.parametrize("other", [3, 2.5, None])
+def test_a_number_without_a_place_in_a_column_is_text(tmp_path: Path, other: float | None) -> None:
+    """A value with a digit too many can never work, and is told in a row of its own; the table ended in a traceback."""
+    pytest.importorskip("pyarrow")
+    rows = [{"set": 10**400}, {"set": other}, {"set": -(2**63) + 1}]
+    assert columns_of(rows)["set"] == [str(10**400), other and str(other), str(-(2**63) + 1)]
+    write_parquet(tmp_path / "a.parquet", rows)
+
+
 @pytest.mark.exhaustive
 def test_a_plot_takes_any_text() -> None:
     """What XML has no way to write ended the process: the library that draws is not Python."""

@@ -12,6 +12,8 @@ from bfsim.report.save import growing_file, writing
 Cell = str | int | float | None
 Row = Mapping[str, Cell]
 """The cells of a point by their columns; one that is not there is empty."""
+MOST_BITS = 63
+"""[Parquet] Of a whole number, without its sign."""
 
 
 def columns_of(rows: Sequence[Row]) -> dict[str, list[Cell]]:
@@ -22,10 +24,14 @@ def columns_of(rows: Sequence[Row]) -> dict[str, list[Cell]]:
 
 
 def _of_one_type(cells: list[Cell]) -> list[Cell]:
-    found = {type(each) for each in cells if each is not None}
-    if found == {int, float}:
-        return [None if each is None else float(each) for each in cells]
-    return [None if each is None else str(each) for each in cells] if len(found) > 1 else cells
+    """Return cells as whole numbers, as floats or as text; whole numbers that have no place in a column of 64 bits are text."""
+    there = [each for each in cells if each is not None]
+    kinds = {type(each) for each in there}
+    if any(isinstance(each, int) and each.bit_length() > MOST_BITS for each in there):
+        kinds.add(str)
+    if str in kinds:
+        return [None if each is None else str(each) for each in cells]
+    return [None if each is None else float(each) for each in cells] if float in kinds else cells
 
 
 def csv_of(rows: Sequence[Row]) -> str:
