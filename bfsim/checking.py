@@ -93,6 +93,15 @@ def require_comparable(case: Case, path: Path) -> None:
     require_stages(case, path, [each.stage for each in firmware.rows], tuple(firmware.mains))
 
 
+def require_held(case: Case, path: Path) -> None:
+    """Raise ConfigError if a run has nothing to be held against: it would pass, whatever it costs."""
+    if not (case.limits or case.require):
+        raise ConfigError(
+            f"{path}: run {shown(case.name)} must have limits or a require, but has neither; "
+            f"`{update_command(path, case.name)}` measures its limits"
+        )
+
+
 def _require_alike(
     case: Case, path: Path, then: MeasuredOn, now: MeasuredOn, names: Mapping[str, str]
 ) -> None:

@@ -75,7 +75,7 @@ def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]
 
     The file lies beside the test. Returns the runs by their names: all of the file, or the one of that name.
     """
-    from bfsim.checking import arguments_of, require_comparable
+    from bfsim.checking import arguments_of, require_comparable, require_held
     from bfsim.report.check.baseline import read_baseline
     from bfsim.report.check.choice import chosen
     from bfsim.report.check.judge import judge
@@ -88,6 +88,7 @@ def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]
             cases = chosen(read_baseline(path), path, None, case, "", update=False)
             for each in cases:
                 require_comparable(each, path)
+                require_held(each, path)
             results = {
                 each.name: _once(request.config, **arguments_of(each.configuration, path.parent))
                 for each in cases

@@ -77,6 +77,9 @@ def test_broken_limits(bfsim_check):
 
 def test_no_baseline(bfsim_check):
     bfsim_check("limits.toml")
+
+def test_nothing_to_keep(bfsim_check):
+    bfsim_check("bare.toml")
 """
 BASELINE = """
 [[run]]
@@ -95,6 +98,7 @@ def suite(folder: Path, *options: str) -> str:
     """Run the suite in a process of its own, and return what it prints."""
     (folder / "test_budget.py").write_text(SUITE)
     (folder / "budget.toml").write_text(BASELINE)
+    (folder / "bare.toml").write_text('[[run]]\nname = "bare"\nframes = 1\n')
     (folder / "pytest.ini").write_text("[pytest]\naddopts = --strict-markers\n")
     command = [
         sys.executable,
@@ -115,7 +119,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "7 failed, 5 passed, 4 errors" in told
+    assert "8 failed, 5 passed, 4 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -136,6 +140,7 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert "@pytest.mark.frame_budget: max_ms must be min_hz or stages" in told
     assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
     assert "limits.toml must be a baseline file, but there is none" in told
+    assert "bare.toml: run 'bare' must have limits or a require, but has neither" in told
     # a mistake in a marker or a baseline is told without the code that found it
     assert "pytest_plugin.py:" not in told
     assert "another exception occurred" not in told

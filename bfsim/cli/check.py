@@ -80,7 +80,7 @@ def check(
       bfsim check drive.mcap --ldf l2 --baseline bfsim.toml --update     one run more
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
-    from bfsim.checking import arguments_of, require_comparable
+    from bfsim.checking import arguments_of, require_comparable, require_held
     from bfsim.report.check.history import append_history, read_history
     from bfsim.report.check.outputs import check_json
     from bfsim.run_inputs import files_of_run
@@ -97,6 +97,8 @@ def check(
     for case in cases:
         without_limits = case.model_copy(update={"measured_on": None, "limits": []})
         require_comparable(without_limits if update else case, path)
+        if not update:
+            require_held(case, path)
     with ExitStack() as stack:
         runs = [(case, _run(case, path.parent, stack, sanitize=sanitize)) for case in cases]
         if update:

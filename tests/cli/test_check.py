@@ -211,6 +211,21 @@ def test_a_mistake_in_the_file_is_told_with_its_run() -> None:
         )
 
 
+def test_a_run_without_limits_is_refused_until_it_has_some(repository: Path) -> None:
+    """One that somebody wrote down and nobody measured passed, whatever it cost: `all 0 limits kept`."""
+    bare = '[[run]]\nname = "bare"\nrecording = "drive.mcap"\nfirmware = "fw_eyes.py"\n'
+    (repository / "bare.toml").write_text(bare)
+    assert refused("--baseline", "bare.toml") == (
+        "bare.toml: run 'bare' must have limits or a require, but has neither; "
+        "`bfsim check --baseline bare.toml --case bare --update` measures its limits"
+    )
+    (repository / "bare.toml").write_text(f'{bare}require = ["missed == 0"]\n')
+    assert "all 1 limits kept" in call("--baseline", "bare.toml").output
+    (repository / "bare.toml").write_text(bare)
+    assert call("--baseline", "bare.toml", "--case", "bare", "--update").exit_code == 0
+    assert call("--baseline", "bare.toml").exit_code == 0
+
+
 def test_an_ldf_lies_beside_the_file_and_is_none_of_the_current_folder(idle_repository: Path) -> None:
     """What a run names is sought from there alone, also where the current folder has a file of that name."""
     text = (idle_repository / "limits.toml").read_text()
