@@ -18,6 +18,7 @@ from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
+from bfsim.given_kinds import require_kinds
 from bfsim.hardware import find_board, find_profile
 from bfsim.identifying import DigestedFrames, identity_of, written
 from bfsim.kernel.profile import DEFAULT
@@ -56,10 +57,11 @@ def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
 
     @wraps(simulate)
     def repeatable(*arguments: Given.args, **options: Given.kwargs) -> Run:
-        with _ONE_AT_A_TIME:
-            done = simulate(*arguments, **options)
         bound = signature(simulate).bind(*arguments, **options)
         bound.apply_defaults()
+        require_kinds(bound.arguments)
+        with _ONE_AT_A_TIME:
+            done = simulate(*arguments, **options)
         what = {
             name: dict(value) if isinstance(value, Mapping) else value
             for name, value in bound.arguments.items()

@@ -71,6 +71,7 @@ MAY_IMPORT = {
     "loading": {"errors", "importing", "kernel", "locating", "machine", "shipped"},
     "building": {"compiling", "importing", "kernel", "loading", "machine", "once"},
     "given": {"importing", "kernel", "loading", "locating", "machine", "shipped"},
+    "given_kinds": {"chip", "errors", "machine"},
     "hardware": {"chip", "errors", "fields", "importing", "kernel", "loading", "once"},
     "run_inputs": {"chip", "errors", "linker", "locating", "machine", "once", "recording", "shipped"},
     "mapping": {
@@ -136,6 +137,7 @@ MAY_IMPORT = {
         "identifying",
         "errors",
         "given",
+        "given_kinds",
         "result",
         "seen",
         "spans",

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import tinyphoon
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
 from bfsim.loading import load_firmware
 from bfsim.report.digest import cycle_digest, identity_digest
@@ -235,6 +236,14 @@ def test_names_stand_for_files_and_choices() -> None:
         ({"fidelity": "good"}, "fidelity must be one of fast, detailed, not 'good'"),
         ({"ldf": "nowhere"}, "LDF must be a file or a shipped one"),
         ({"script": 5}, "script must be a file, not int"),
+        ({"firmware": tinyphoon}, "a Firmware or the name of one, not module; it has tinyphoon.tinyphoon, "),
+        ({"firmware": None}, "firmware must be a Firmware or the name of one, not NoneType"),
+        ({"board": 561}, "board must be a BoardSpec or the name of one, not int"),
+        ({"settings": [3]}, "settings must be a dict of numbers by their paths, .* not list"),
+        ({"defines": "USE_SDRAM"}, "defines must be a dict of macros, .* not str"),
+        ({"ldf": 3}, "ldf must be a file or the name of a shipped one, not int"),
+        ({"profile": None}, "profile must be the name of a compiler profile, not NoneType"),
+        ({"on_seen": []}, "on_seen must be a function, not list"),
         (
             {"recording": load_firmware("tinyphoon").firmware},
             r"recording must be a file, not Firmware; write `simulate\(firmware=...\)`",
@@ -242,3 +251,7 @@ def test_names_stand_for_files_and_choices() -> None:
     ):
         with pytest.raises(BfsimError, match=words):
             simulate(frames=1, **wrong)  # type: ignore[arg-type]
+    for number in ("2", 2.5):
+        with pytest.raises(ConfigError, match=f"frames must be a whole number, not {type(number).__name__}"):
+            simulate(frames=number)  # type: ignore[arg-type]
+    assert simulate(frames=np.int64(1)).identity == simulate(frames=1).identity
