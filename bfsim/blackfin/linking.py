@@ -13,7 +13,16 @@ from itertools import pairwise
 
 from bfsim.blackfin.image import LINKED_WITH, MOST_NAMES, NOWHERE, NOWHERE_BYTES, Image, Routine, Segment, Use
 from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol
-from bfsim.blackfin.relocations import FIELDS, LONG, NOTHING, OPERATIONS, PUSH, PUSH_CONSTANT, Kind
+from bfsim.blackfin.relocations import (
+    FIELDS,
+    INDEPENDENT,
+    LONG,
+    NOTHING,
+    OPERATIONS,
+    PUSH,
+    PUSH_CONSTANT,
+    Kind,
+)
 from bfsim.errors import KernelError, cut
 
 BASE = {Use.CODE: 0xFFA00000, Use.DATA: 0xFF900000}
@@ -180,9 +189,12 @@ def _apply(
     if kind not in set(Kind):
         if section.use is Use.NOTES:
             return  # what compilers of others note
-        raise _refused(
-            file, section, each, f"relocations of the type 0x{kind:02X} are not for plain programs"
+        what = (
+            "are of position-independent code, as compilers for Linux make it: -mno-fdpic, and no -mid-shared-library, makes other"
+            if kind in INDEPENDENT
+            else "are not for plain programs"
         )
+        raise _refused(file, section, each, f"relocations of the type 0x{kind:02X} {what}")
     field = FIELDS[Kind(kind)]
     at = each.offset - field.before
     if not 0 <= at <= len(body) - field.nbytes:

@@ -148,6 +148,11 @@ def _section(part: ElfSection, octets: bytes, name: str) -> Section:
     use = Use.NOTES
     if flags & SH_FLAGS.SHF_ALLOC:
         use = Use.CODE if flags & SH_FLAGS.SHF_EXECINSTR else Use.DATA
+    if flags & SH_FLAGS.SHF_COMPRESSED:
+        raise KernelError(
+            f"{name} must have sections that are not compressed, but {cut(part.name)} is; compile it without -gz, or use "
+            "`bfin-elf-objcopy --decompress-debug-sections`"
+        )
     is_zero = part["sh_type"] in ("SHT_NOBITS", "SHT_NULL")
     if not is_zero and first + nbytes > len(octets):
         raise KernelError(

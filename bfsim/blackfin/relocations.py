@@ -39,6 +39,8 @@ SECOND_HALF = {
 }  # fmt: skip
 """Those that point to the second half of an instruction, or [seen] in object files of VisualDSP++ 5 to its first one."""
 HALF_BYTES = 2
+INDEPENDENT = (*range(0x14, 0x22), 0x40, 0x41)
+"""[seen] Of position-independent code: those of FDPIC, and of shared libraries that have numbers."""
 NOTHING = (0x00, 0xD2)
 """What writes nothing: R_BFIN_UNUSED0, and [seen] what VisualDSP++ has where code needs a symbol, for its linker to keep that."""
 PUSH, PUSH_CONSTANT = 0xE0, 0xE1

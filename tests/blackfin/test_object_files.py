@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import random
+from io import BytesIO
 from pathlib import Path
 
 import pytest
+from elftools.elf.constants import SH_FLAGS
+from elftools.elf.elffile import ELFFile
 
 from bfsim.blackfin.image import Use, packed, unpacked
 from bfsim.blackfin.lines import Line, calls_inlined_in, lines_of
@@ -129,3 +132,16 @@ def test_other_files_are_refused(octets: bytes, why: str) -> None:
     """Text, files of 64-bit machines, and what is too large."""
     with pytest.raises(KernelError, match=why):
         read_object(octets, "given.o")
+
+
+def test_compressed_debugging_information_is_refused_by_its_name() -> None:
+    """With what makes other; it was told as a relocation outside of its section."""
+    octets = bytearray(octets_of("sums.o"))
+    elf = ELFFile(BytesIO(octets))
+    number = next(each for each in range(elf.num_sections()) if elf.get_section(each).name == ".debug_info")
+    flags_at = elf["e_shoff"] + number * elf["e_shentsize"] + 8
+    octets[flags_at : flags_at + 4] = SH_FLAGS.SHF_COMPRESSED.to_bytes(4, "little")
+    with pytest.raises(
+        KernelError, match=r"not compressed, but \.debug_info is; compile it without -gz, or use"
+    ):
+        read_object(bytes(octets), "sums.o")

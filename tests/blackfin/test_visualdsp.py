@@ -181,3 +181,12 @@ def test_what_cannot_be_computed_is_refused() -> None:
     """Its number is told."""
     with pytest.raises(KernelError, match="relocations of the type 0xEE are not for plain programs"):
         table_of([(LENGTH, 0), (Kind.WORD, 0)])
+
+
+@pytest.mark.parametrize("kind", [0x14, 0x17, 0x41])
+def test_position_independent_code_is_told_as_such(kind: int) -> None:
+    """What compilers for Linux make if nothing is said, and how to have other: those are the types that GCC's files have."""
+    with pytest.raises(
+        KernelError, match=f"type 0x{kind:02X} are of position-independent code, .* -mno-fdpic"
+    ):
+        table_of([(kind, 0)])
