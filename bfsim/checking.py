@@ -116,6 +116,11 @@ def _require_alike(
             f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)} (it is that of the "
             "compiler on the PATH, or else kept from one; limits of --profile gcc-O2, an estimate, need none)"
         )
+    if then.differs_in("file_compiler", now):
+        differences.append(
+            f"kernels in C were compiled by {shown(then.file_compiler)} when the limits were measured, and are by "
+            f"{shown(now.file_compiler)} (the compiler on the PATH, or else the one whose code is kept)"
+        )
     if differences:
         raise ConfigError(
             f"{path}: run {shown(case.name)}: {'; '.join(differences)}: limits of one say nothing about the other; "

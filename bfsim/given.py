@@ -21,7 +21,7 @@ from typing import Any
 from bfsim import shipped
 from bfsim.importing import ImportedFile, OwnModules, Root, relative_name
 from bfsim.kernel import Kernel
-from bfsim.loading import SHIPPED, LoadedFirmware
+from bfsim.loading import SHIPPED, LoadedFirmware, add_files_of_code, entries_of, kernels_of
 from bfsim.locating import located
 from bfsim.machine.peripherals.table import makers_of
 from bfsim.machine.program import Firmware
@@ -40,6 +40,7 @@ def given_firmware(firmware: Firmware) -> LoadedFirmware:
     own = OwnModules(())
     for each in (home, *namespaces):
         _add_sources(own.sources, each)
+    add_files_of_code(own, kernels_of(own) | entries_of(firmware))
     file = _file(home)
     module = located(str(file))[0] if file else home["__name__"]
     is_built_in = module == shipped.FIRMWARE_PACKAGE and attribute in shipped.FIRMWARE

@@ -16,7 +16,7 @@ from bfsim.hardware import Found
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
 from bfsim.linker import LinkerScript
-from bfsim.loading import LoadedFirmware
+from bfsim.loading import LoadedFirmware, compilers_of
 from bfsim.machine.board import Fidelity
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Feed
@@ -120,6 +120,7 @@ def identity_of(
         compiler_numbers=compiler.numbers,
         code=build.code,
         code_digest=build.digest,
+        file_compiler=", ".join(sorted(compilers_of(loaded))),
         feed=feed.value,
         script_digest=script_digest,
         fidelity=fidelity.value,

@@ -176,6 +176,19 @@ def written_in_python(kernels: Iterable[Kernel]) -> set[Kernel]:
     return {each for each in kernels if each.object_code is None}
 
 
+def compilers_of(loaded: LoadedFirmware) -> set[str]:
+    """Return what compiled the kernels of a firmware that are in C or assembler."""
+    kernels = kernels_of(loaded.own) | entries_of(loaded.firmware)
+    return {each.object_code.compiler for each in kernels if each.object_code and each.object_code.compiler}
+
+
+def add_files_of_code(own: OwnModules, kernels: Iterable[Kernel]) -> None:
+    """Add to the sources of modules the files of their kernels that are not in Python."""
+    for each in kernels:
+        for path, sha256 in each.object_code.files.items() if each.object_code else ():
+            own.sources[str(path)] = ImportedFile(path, path.name, sha256)
+
+
 def _apart(kernels: list[Kernel], place: str) -> str:
     """Say by which names kernels are told apart, those of `place` or, without it, of several modules."""
     names = sorted(
@@ -217,9 +230,7 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
         return known
     own = OwnModules((root, SHIPPED))
     imported = import_more(module, own)
-    for each in kernels_of(own):
-        for path, sha256 in each.object_code.files.items() if each.object_code else ():
-            own.sources[str(path)] = ImportedFile(path, path.name, sha256)
+    add_files_of_code(own, kernels_of(own))
     _imported[module, root] = imported, own
     return imported, own
 

@@ -30,6 +30,7 @@ SAME = {
     "compiler": "compiler",
     "compiler_digest": "compiler",
     "code_digest": "code of the compiler",
+    "file_compiler": "compiler of kernels in C",
     "script_digest": "script for the device",
     "llvm_version": "version of LLVM",
 }

@@ -40,9 +40,13 @@ _last: dict[Path, tuple[LoadedImage, set[str]]] = {}
 
 @dataclass(frozen=True, eq=False)
 class FileCode:
-    """The object code of one file, as one of its functions has it. `files`: what it was made of, with their SHA-256."""
+    """The object code of one file, as one of its functions has it.
+
+    `files`: what it was made of, with their SHA-256. `compiler`: what compiled it now, or before; empty where the file is object code.
+    """
 
     files: Mapping[Path, str]
+    compiler: str
     function: Function
     symbol: str
     loaded: LoadedImage
@@ -69,7 +73,8 @@ class FileCode:
 def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result: Number | None) -> Kernel:
     """Return the function `name` of a file as a kernel. Raises as `kernel_from`."""
     files = _files(path)
-    image = link(read_object(_object_file(path, files), path.name), is_whole=False)
+    octets, compiler = _object_file(path, files)
+    image = link(read_object(octets, path.name), is_whole=False)
     symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
     address = image.address_of(symbol)
     require_declared(image, path.name, name, parameters, result)
@@ -81,7 +86,9 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
     own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)
     function = kernels[routine.name] = object_function(name, own, source, parameters, result)
     digests = {path.parent / each: hashlib.sha256(octets).hexdigest() for each, octets in files.items()}
-    return Kernel(function, None, FileCode(digests, function, symbol, _loaded(path, image, name), places))
+    return Kernel(
+        function, None, FileCode(digests, compiler, function, symbol, _loaded(path, image, name), places)
+    )
 
 
 def _loaded(path: Path, image: Image, name: str) -> LoadedImage:
@@ -121,10 +128,12 @@ def _files(path: Path) -> dict[str, bytes]:
     return found
 
 
-def _object_file(path: Path, files: Mapping[str, bytes]) -> bytes:
+def _object_file(path: Path, files: Mapping[str, bytes]) -> tuple[bytes, str]:
+    """Return the object code, and what compiled it if that was done here."""
     if path.suffix in OBJECTS:
-        return files[path.name]
-    return code_of(recipe_of_source(files, path.name), blackfin_compiler())[0]
+        return files[path.name], ""
+    octets, version = code_of(recipe_of_source(files, path.name), blackfin_compiler())
+    return octets, f"GCC {version}"
 
 
 def recipe_of_source(files: Mapping[str, bytes], name: str) -> Recipe:

@@ -40,10 +40,16 @@ _IN_PYTHON = ContextVar("_IN_PYTHON", default=False)
 
 
 class ObjectCode(Protocol):
-    """The object code of a kernel that is not written in Python. `files`: what it was made of, with their SHA-256."""
+    """The object code of a kernel that is not written in Python.
+
+    `files`: what it was made of, with their SHA-256. `compiler`: what compiled it; empty where the file is object code.
+    """
 
     @property
     def files(self) -> Mapping[Path, str]: ...
+
+    @property
+    def compiler(self) -> str: ...
 
     def compiled(
         self, profile: CompilerProfile, *, traced: bool = False, files: LoadedFiles | None = None

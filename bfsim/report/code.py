@@ -17,7 +17,8 @@ def code_in_words(run: RunRecord) -> str:
     has_code = bool(run.identity.code_digest)
     if not (share or has_code):
         return f"{code}; a kernel is off by some {MODEL_ERROR_PERCENT} %" if code else ""
-    whose = code if has_code else OF_FILES
+    of_files = ", ".join(filter(None, (OF_FILES, run.identity.file_compiler)))
+    whose = code if has_code else of_files
     if share == 1:
         return whose
     others = "estimated" if has_code else code or "estimated"

@@ -70,6 +70,7 @@ class Identity:
     compiler_numbers: tuple[str, ...] = ()
     code: str = ""
     code_digest: str = ""
+    file_compiler: str = ""
 
 
 class WarningKind(StrEnum):

@@ -45,6 +45,7 @@ def test_identity_digest_sees_every_field() -> None:
         "compiler_digest": "6" * 64,
         "code": "GCC",
         "code_digest": "7" * 64,
+        "file_compiler": "GCC 12.2.0",
     }
     changed = [
         replace(IDENTITY, **{name: others.get(name) or getattr(IDENTITY, name) * 2})

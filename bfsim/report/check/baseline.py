@@ -28,7 +28,7 @@ Whole = Annotated[int, Field(gt=-(1 << 63), lt=1 << 63)]
 OLD_KEYS = {"core", "measured_by", "tolerance_percent"}
 """At the top of files that were written before there were several runs in one."""
 
-COMPARABLE = ("recording", "frames", "board", "compiler", "code", "script")
+COMPARABLE = ("recording", "frames", "board", "compiler", "code", "file_compiler", "script")
 """Of what limits were measured on, what a run must have in common with them."""
 
 
@@ -67,9 +67,9 @@ class Configuration(_Table):
 class MeasuredOn(_Table):
     """What the limits were measured on: digests (sha256), sizes and versions.
 
-    `code` is whose object code kernels ran as, in words: the code itself is another one with each edit of the firmware.
-    It is empty where the compiler is an estimate, and in files that were written before it was kept; so is the size of the
-    pictures, 0, in older ones.
+    `code` is whose object code kernels ran as, in words: the code itself is another one with each edit of the firmware. It is empty where
+    the compiler is an estimate, and `file_compiler`, what compiled kernels in C, where there are none; either is empty in files that were
+    written before it was kept, and the size of the pictures, 0, in older ones.
     """
 
     recording: str
@@ -82,6 +82,7 @@ class MeasuredOn(_Table):
     bfsim_version: str
     llvm_version: str
     code: str = ""
+    file_compiler: str = ""
     width_px: int = 0
     height_px: int = 0
     board_numbers: list[str] = []
@@ -94,8 +95,8 @@ class MeasuredOn(_Table):
         """
         if getattr(self, key) == getattr(other, key):
             return False
-        if key == "code":
-            return bool(self.code and other.code)
+        if key in ("code", "file_compiler"):
+            return bool(getattr(self, key) and getattr(other, key))
         numbers = f"{key}_numbers"
         are_known = numbers in MeasuredOn.model_fields and self.bfsim_version == other.bfsim_version
         return not (
@@ -210,6 +211,7 @@ def measured_on(identity: Identity, frames: int) -> MeasuredOn:
         bfsim_version=identity.bfsim_version,
         llvm_version=identity.llvm_version,
         code=identity.code,
+        file_compiler=identity.file_compiler,
         width_px=identity.width_px,
         height_px=identity.height_px,
         board_numbers=list(identity.board_numbers),

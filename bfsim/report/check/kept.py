@@ -81,7 +81,9 @@ def kept_side(case: Case) -> Side:
     digests = {"recording", "board", "compiler", "script", "firmware", "ldf"}
     configuration = {
         f"{key}: content" if key in digests else key.replace("_", " "): str(value)
-        for key, value in on.model_dump(include={*digests, "bfsim_version", "llvm_version", "code"}).items()
+        for key, value in on.model_dump(
+            include={*digests, "bfsim_version", "llvm_version", "code", "file_compiler"}
+        ).items()
     } | {
         FRAMES: str(on.frames),
         "board numbers": SEPARATOR.join(on.board_numbers),
