@@ -471,6 +471,35 @@ def test_what_is_included_may_be_in_other_folders(tmp_path: Path) -> None:
     assert "R0" in sources["part"]
 
 
+INCLUDING = {
+    "file.c": '#include "{there}/part.h"\nint part(int a) {{ return PART * a; }}\n',
+    "marked.c": '\ufeff#include "part.h"\nint part(int a) {{ return PART * a; }}\n',
+    "file.s": '.include "part.inc"\n.global _part\n.type _part, STT_FUNC\n_part:\n times_part;\nRTS;\n.size _part, .-_part\n',
+}
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+@pytest.mark.parametrize("file", INCLUDING)
+def test_what_is_included_is_a_part_of_the_code_however_it_is_named(file: str, tmp_path: Path) -> None:
+    """By the name of a place, whose changes were not seen; behind a byte order mark, and by the assembler, which found nothing."""
+    (tmp_path / file).write_text(INCLUDING[file].format(there=tmp_path), encoding="utf-8")
+    for part, code in ((2, "R0 = R0 + R0"), (3, "R1 = R0 << 1; R0 = R0 + R1")):
+        (tmp_path / "part.h").write_text(f"#define PART {part}\n")
+        (tmp_path / "part.inc").write_text(f".macro times_part\n{code};\n.endm\n")
+        assert kernel_from(tmp_path / file, "part", a=i32, result=i32)(7) == 7 * part
+        assert (tmp_path / "part.h").read_text() == f"#define PART {part}\n"
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_a_compiler_sees_the_bytes_of_the_file(tmp_path: Path) -> None:
+    """Old C is in Latin-1: a letter beyond ASCII had three bytes, and others than in the file."""
+    text = 'static const unsigned char name[] = "\xfc";\nint letter(int a) { return 1000 * sizeof name + name[a]; }\n'
+    (tmp_path / "old.c").write_bytes(text.encode("latin-1"))
+    assert kernel_from(tmp_path / "old.c", "letter", a=i32, result=i32)(0) == 2000 + 0xFC
+
+
 @pytest.mark.parametrize("file", ["callbacks.o", "callbacks.elf"])
 def test_functions_are_called_by_their_addresses(file: str) -> None:
     """Those of a table, and those that are handed over; what they access is known, too."""

@@ -14,7 +14,7 @@ from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.compiling.declared import require_declared
-from bfsim.compiling.recipes import Recipe, code_of
+from bfsim.compiling.recipes import AS_BYTES, Recipe, code_of
 from bfsim.compiling.toolchain import blackfin_compiler
 from bfsim.errors import KernelError
 from bfsim.kernel import CompilerProfile, Kernel
@@ -31,7 +31,8 @@ OBJECTS = (".o", ".elf", ".doj", ".dxe")
 """The last two are what VisualDSP++ and CrossCore call an object file and a program."""
 OPTIONS = ("-O2", "-g2", "-gno-statement-frontiers", "-fno-var-tracking")
 """-g2: what parameters the functions have, too, which is held against what Python says of them. The others keep the lines of -g1."""
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
+INCLUDE = re.compile(r'^\ufeff?\s*(#\s*include|\.include)\s*"([^"]+)"', re.MULTILINE)
+"""Of the preprocessor, where a file may begin with a byte order mark, as Windows has it, and of the assembler."""
 
 
 _last: dict[Path, tuple[LoadedImage, set[str]]] = {}
@@ -121,8 +122,9 @@ def _files(path: Path) -> dict[str, bytes]:
         found[name] = octets = _read(path.parent / name)
         if path.suffix in SOURCES:
             folder = posixpath.dirname(name)
-            for each in INCLUDE.findall(octets.decode(errors="replace")):
-                included = posixpath.normpath(posixpath.join(folder, each))
+            for word, each in INCLUDE.findall(octets.decode(errors="replace")):
+                # The assembler looks from where it was started.
+                included = posixpath.normpath(posixpath.join("" if word == ".include" else folder, each))
                 if included not in found and (path.parent / included).is_file():
                     waiting.append(included)
     return found
@@ -138,7 +140,7 @@ def _object_file(path: Path, files: Mapping[str, bytes]) -> tuple[bytes, str]:
 
 def recipe_of_source(files: Mapping[str, bytes], name: str) -> Recipe:
     """Return what the code of the source file `name` is made of; `files`: it and what it includes."""
-    texts = {each: octets.decode(errors="replace") for each, octets in files.items()}
+    texts = {each: octets.decode(errors=AS_BYTES) for each, octets in files.items()}
     return Recipe(texts, (name,), OPTIONS)
 
 

@@ -20,13 +20,15 @@ OPTIONS = ("-std=gnu99", "-g1")
 """-g1: lines, but no word of variables. It changes no code."""
 KEPT_COMPILER = Compiler("bfin-elf", "12.2.0", CPU)
 """Whose code comes with bfsim, and is looked for where no compiler is at hand."""
+AS_BYTES = "surrogateescape"
+"""How texts keep bytes that are not UTF-8: a compiler sees those of the file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
     """Files by name, which of them are compiled, and what the compiler is told beside `OPTIONS`.
 
-    A name may have folders in it, also `..`, as seen from where the files that are compiled are.
+    A name may have folders in it, also `..`, as seen from where the files that are compiled are; a file with the name of a place is read there.
     """
 
     texts: Mapping[str, str]
@@ -37,7 +39,7 @@ class Recipe:
         """Return the name under which the code is kept that a compiler makes of it."""
         made_by = repr(("object code", compiler, *OPTIONS, *self.options, self.sources))
         parts = [made_by, *(part for file in self.texts.items() for part in file)]
-        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+        return hashlib.sha256("\0".join(parts).encode(errors=AS_BYTES)).hexdigest()
 
     def made(self, toolchain: Toolchain) -> bytes:
         """Compile it now. Raises ConfigError with what the compiler says."""
@@ -45,9 +47,10 @@ class Recipe:
             above = max(PurePosixPath(each).parts.count("..") for each in self.texts)
             folder = Path(name, *["folder"] * above)
             for file, text in self.texts.items():
-                path = folder / file
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(text, encoding="utf-8")
+                if not PurePosixPath(file).is_absolute():
+                    path = folder / file
+                    path.parent.mkdir(parents=True, exist_ok=True)
+                    path.write_bytes(text.encode(errors=AS_BYTES))
             return toolchain.build_object(folder, self.sources, (*OPTIONS, *self.options)).read_bytes()
 
 
