@@ -1,15 +1,13 @@
 """Firmware that is given as an object, in a script, a test or a notebook, and the source files that it is from.
 
-Others have imported it, so its sources are found by reading: the files in which its functions and classes stand, and what
-these import from the same folder or package. Of a notebook it is the cells in which functions and kernels stand.
+Others have imported it, so its sources are found by reading: the files in which its functions and classes stand, what these import
+from the same folder or package, and libraries. Of a notebook it is the cells in which functions and kernels stand.
 """
 
 from __future__ import annotations
 
-import ast
 import functools
 import hashlib
-import importlib.util
 import linecache
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,6 +19,7 @@ from typing import Any
 from bfsim import shipped
 from bfsim.importing import ImportedFile, OwnModules, Root, relative_name
 from bfsim.kernel import Kernel
+from bfsim.libraries import add_libraries, imports_of
 from bfsim.loading import SHIPPED, LoadedFirmware, add_files_of_code, entries_of, kernels_of
 from bfsim.locating import located
 from bfsim.machine.peripherals.table import makers_of
@@ -40,6 +39,7 @@ def given_firmware(firmware: Firmware) -> LoadedFirmware:
     own = OwnModules(())
     for each in (home, *namespaces):
         _add_sources(own.sources, each)
+    add_libraries(own.sources, SHIPPED.folder)
     add_files_of_code(own, kernels_of(own) | entries_of(firmware))
     file = _file(home)
     module = located(str(file))[0] if file else home["__name__"]
@@ -100,7 +100,7 @@ def _add_sources(sources: dict[str, ImportedFile], namespace: Namespace) -> None
         text = "".join(linecache.getlines(cell))
         if text and not Path(cell).is_file():
             sources[cell] = ImportedFile(Path(cell), CELL, hashlib.sha256(text.encode()).hexdigest())
-            _add_imported(sources, _imports(text, ""), (Root(Path.cwd()), SHIPPED))
+            _add_imported(sources, imports_of(text, ""), (Root(Path.cwd()), SHIPPED))
 
 
 def _add_imported(sources: dict[str, ImportedFile], modules: Sequence[str], roots: Sequence[Root]) -> None:
@@ -117,7 +117,7 @@ def _add_imported(sources: dict[str, ImportedFile], modules: Sequence[str], root
             sources[module] = ImportedFile(
                 path, relative_name(module, path), hashlib.sha256(written).hexdigest()
             )
-            pending += _imports(written, module if path.name == "__init__.py" else package)
+            pending += imports_of(written, module if path.name == "__init__.py" else package)
 
 
 def _found(module: str, roots: Sequence[Root]) -> ModuleSpec | None:
@@ -130,17 +130,3 @@ def _found(module: str, roots: Sequence[Root]) -> ModuleSpec | None:
         top = f"{top}.{name}"
         spec = PathFinder.find_spec(top, [*spec.submodule_search_locations])
     return spec
-
-
-@functools.lru_cache(maxsize=1024)
-def _imports(text: str | bytes, package: str) -> tuple[str, ...]:
-    """Return all that may be a module in the import statements of a source."""
-    names = []
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Import):
-            names += [each.name for each in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            base = "." * node.level + (node.module or "")
-            base = importlib.util.resolve_name(base, package) if node.level else base
-            names += [base, *(f"{base}.{each.name}" for each in node.names)]
-    return tuple(names)

@@ -89,8 +89,8 @@ class OwnModules(MetaPathFinder):
 
     @property
     def changed(self) -> bool:
-        """Whether one of the files is not what it was when it was imported."""
-        return any(not each.is_current() for each in self.sources.values())
+        """Whether one of the files is not what it was when it was imported, and would be imported anew."""
+        return any(each.is_own and not each.is_current() for each in self.sources.values())
 
     @contextmanager
     def _named(self, tops: set[str]) -> Iterator[None]:
@@ -148,11 +148,15 @@ def _below(tops: set[str]) -> dict[str, ModuleType]:
 
 @dataclass(frozen=True, slots=True)
 class ImportedFile:
-    """A file that was imported, and its name below the folder that it was imported from."""
+    """A file that was imported, and its name below the folder that it was imported from.
+
+    `is_own`: whether it is imported for this firmware alone; Python keeps what it has imported from elsewhere.
+    """
 
     path: Path
     relative: str
     sha256: str
+    is_own: bool = True
 
     def is_current(self) -> bool:
         """Whether the file still has the bytes that were imported."""

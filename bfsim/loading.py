@@ -14,6 +14,7 @@ from bfsim import shipped
 from bfsim.errors import BfsimError, FirmwareError, cut, shown, with_article
 from bfsim.importing import ImportedFile, OwnModules, Root
 from bfsim.kernel import Kernel
+from bfsim.libraries import add_libraries
 from bfsim.locating import located, parted
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.named_kernels import kernels_named
@@ -161,7 +162,9 @@ def _kernels_called(name: str, module: ModuleType) -> list[Kernel]:
 
 def kernels_of(own: OwnModules) -> set[Kernel]:
     """Return every kernel that modules name; of firmware that others have imported, that theirs do."""
-    others = (module for name in own.sources if (module := sys.modules.get(name)))
+    others = (
+        module for name, each in own.sources.items() if each.is_own and (module := sys.modules.get(name))
+    )
     modules = own.modules.values() or others
     return {each for module in modules for each in vars(module).values() if isinstance(each, Kernel)}
 
@@ -230,6 +233,7 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
         return known
     own = OwnModules((root, SHIPPED))
     imported = import_more(module, own)
+    add_libraries(own.sources, SHIPPED.folder)
     add_files_of_code(own, kernels_of(own))
     _imported[module, root] = imported, own
     return imported, own

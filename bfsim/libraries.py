@@ -1,0 +1,63 @@
+"""Modules that firmware imports from elsewhere than its own folder or package: what changes in them changes what runs.
+
+Those of Python and of installed packages are left out: they change when somebody installs others.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import hashlib
+import importlib.util
+import sys
+from itertools import accumulate
+from pathlib import Path
+
+from bfsim.importing import ImportedFile, relative_name
+
+OURS = "bfsim"
+"""Our own package has its version in every identity."""
+INSTALLED = {"site-packages", "dist-packages"}
+"""Folders with installed packages are called so."""
+
+
+def add_libraries(sources: dict[str, ImportedFile], built_in: Path) -> None:
+    """Add to the sources of firmware the libraries that they import, and that these do; those in the folder `built_in` import none.
+
+    They must have been imported.
+    """
+    pending = [*sources.items()]
+    while pending:
+        module, source = pending.pop()
+        if source.path.is_relative_to(built_in) or not source.path.is_file():  # a cell of a notebook is none
+            continue
+        package = module if source.path.name == "__init__.py" else module.rpartition(".")[0]
+        imports = imports_of(source.path.read_bytes(), package)
+        for name in (above for each in imports for above in accumulate(each.split("."), "{}.{}".format)):
+            path = _library(name)
+            if path and name not in sources:
+                sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
+                sources[name] = ImportedFile(path, relative_name(name, path), sha256, is_own=False)
+                pending.append((name, sources[name]))
+
+
+def _library(name: str) -> Path | None:
+    """Return the source of a module that was imported, if it is neither Python's, nor ours, nor of an installed package."""
+    if name.partition(".")[0] in {OURS, *sys.stdlib_module_names}:
+        return None
+    path = Path(getattr(sys.modules.get(name), "__file__", None) or "")
+    return path if path.suffix == ".py" and path.is_file() and INSTALLED.isdisjoint(path.parts) else None
+
+
+@functools.lru_cache(maxsize=1024)
+def imports_of(text: str | bytes, package: str) -> tuple[str, ...]:
+    """Return all that may be a module in the import statements of a source."""
+    names = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            names += [each.name for each in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = "." * node.level + (node.module or "")
+            base = importlib.util.resolve_name(base, package) if node.level else base
+            names += [base, *(f"{base}.{each.name}" for each in node.names)]
+    return tuple(names)
