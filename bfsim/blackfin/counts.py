@@ -6,11 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from llvmlite import ir
 
-from bfsim.blackfin.effects import I8, I64
+from bfsim.blackfin.effects import I8, I64, POINTER
 from bfsim.blackfin.flow import Edge
 from bfsim.blackfin.implied import Implied
 
-POINTER = ir.PointerType()
 COUNT_BYTES = 8
 Numbers = Mapping[tuple[int, bool, Edge | None], int]
 """Of counters, by the address of the block, whether its branch is taken, and the way along which it is entered."""

@@ -18,6 +18,7 @@ from bfsim.blackfin.registers import ASTAT_UNUSED, COPIES, FLAGS, width
 from bfsim.blackfin.value import Value
 
 I8, I32, I64 = ir.IntType(8), ir.IntType(32), ir.IntType(64)
+POINTER = ir.PointerType()
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from llvmlite import ir
 
-from bfsim.blackfin.counts import POINTER
-from bfsim.blackfin.effects import I64
+from bfsim.blackfin.effects import I64, POINTER
 
 REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 
