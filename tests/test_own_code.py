@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pickle
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -98,7 +97,6 @@ def test_the_digest_of_code_is_of_what_runs() -> None:
 
 
 @pytest.mark.toolchain
-@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
 def test_a_run_is_the_same_one_wherever_its_code_was_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -271,7 +269,6 @@ def test_the_cost_of_a_built_in_kernel_is_that_of_its_code(
 
 
 @pytest.mark.toolchain
-@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
 @pytest.mark.parametrize("profile", [GCC, GCC_ADI], ids=lambda each: each.name)
 def test_the_cost_of_a_kernel_is_that_of_its_code_in_a_run(profile: CompilerProfile) -> None:
     """Compiled with its file alone, it takes the cycles that it takes compiled with the whole firmware."""
