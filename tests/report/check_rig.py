@@ -11,7 +11,6 @@ from bfsim.report.check.judge import Outcome, judge
 from bfsim.report.check.update import updated, write_cases
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import MemoryRecord, RunRecord
-from tests.report.records import edge_run
 
 
 def result(run: RunRecord, *objects: Sequence[str]) -> Result:
@@ -66,6 +65,3 @@ def replace_in(path: Path, old: str, new: str) -> None:
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-
-
-__all__ = ["broken", "edge_run", "hold", "measured", "replace_in", "result", "with_memory", "with_results"]
