@@ -47,9 +47,9 @@ def use_line(cache: State, line: int) -> bool:
     return was_there
 
 
-@native_entry("int64", "int64*", "int64*", "int64*")
-def fetch_lines(trace_at: Any, cache_at: Any, lines_at: Any) -> int:
-    """Use the lines of a call; log a fill of each that was not there, behind the accesses of its first cycle. Return how many were missed."""
+@native_entry("void", "int64*", "int64*", "int64*")
+def fetch_lines(trace_at: Any, cache_at: Any, lines_at: Any) -> None:
+    """Use the lines of a call; log a fill of each that was not there, behind the accesses of its first cycle."""
     trace, cache, lines = words_at(trace_at), words_at(cache_at), words_at(lines_at)
     missed_at = LINES_AT + 2 * lines[COUNT]
     missed = 0
@@ -60,7 +60,7 @@ def fetch_lines(trace_at: Any, cache_at: Any, lines_at: Any) -> int:
     first, end = log.LOG + trace[log.KEPT], log.LOG + trace[log.ENTRIES]
     trace[log.ENTRIES] += missed
     if not missed or trace[log.ENTRIES] > trace[log.ROOM]:
-        return missed
+        return
     while first < end and trace[first] >> log.STAMP_BIT == 0:
         first += 1
     for at in range(end - 1, first - 1, -1):
@@ -70,17 +70,16 @@ def fetch_lines(trace_at: Any, cache_at: Any, lines_at: Any) -> int:
         line = lines[missed_at + number]
         trace[first + number] = log.FETCH_LINE << log.KIND_BIT | lines[line] * cache[LINE_BYTES]
         trace[first + number + trace[log.ROOM]] = lines[line + 1]
-    return missed
 
 
-@native_entry("int64", "int64*", "int64*", "int64*")
-def fetch_singly(trace_at: Any, totals_at: Any, code_at: Any) -> int:
-    """Log how many fetches the code needs that was executed since the last time, as one entry; return how many these are."""
+@native_entry("void", "int64*", "int64*", "int64*")
+def fetch_singly(trace_at: Any, totals_at: Any, code_at: Any) -> None:
+    """Log how many fetches the code needs that was executed since the last time, as one entry."""
     trace, totals, code = words_at(trace_at), words_at(totals_at), words_at(code_at)
     executed = 0
     for number in range(code[COUNTERS]):
         executed += totals[number] * code[NBYTES_AT + number]
-    fetches: int = (executed - code[EXECUTED] + FETCH_BYTES - 1) // FETCH_BYTES
+    fetches = (executed - code[EXECUTED] + FETCH_BYTES - 1) // FETCH_BYTES
     code[EXECUTED] = executed
     if fetches:
         at = log.LOG + trace[log.ENTRIES]
@@ -88,4 +87,3 @@ def fetch_singly(trace_at: Any, totals_at: Any, code_at: Any) -> int:
         if trace[log.ENTRIES] <= trace[log.ROOM]:
             trace[at] = fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT
             trace[at + trace[log.ROOM]] = code[SITE]
-    return fetches
