@@ -1,4 +1,4 @@
-"""What a row of each table of a run says: its cells by the names of their columns.
+"""What a row of each table of a run says: its cells by the names of their columns. One of the traffic is a `TrafficRecord` as it is.
 
 Cycles are CCLK cycles; a row has one unit per column, and it is in the column's name.
 """
@@ -132,20 +132,6 @@ class BufferCells(NamedTuple):
     page_misses: int
     page_conflicts: int
     stall_cclk: int
-
-
-class TrafficCells(NamedTuple):
-    """What a master moved to and from a buffer over the whole run."""
-
-    memory: str
-    buffer: str
-    master: str
-    read_bytes: int
-    written_bytes: int
-    page_hits: int
-    page_misses: int
-    page_conflicts: int
-    busy_cclk: int
 
 
 class SpanCells(NamedTuple):

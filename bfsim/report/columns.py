@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -19,11 +20,10 @@ from bfsim.report.cells import (
     SpanCells,
     StageCells,
     StallCells,
-    TrafficCells,
 )
 from bfsim.report.profile.buffers import buffers_of
 from bfsim.spans import Span
-from bfsim.trace import RunRecord
+from bfsim.trace import RunRecord, TrafficRecord
 
 Row = tuple[object, ...]
 """The cells of a row, in the order of its columns."""
@@ -45,7 +45,9 @@ def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
         "accesses": _columns(AccessCells, _accesses(run)),
         "paths": _columns(PathCells, _paths(run)),
         "buffers": _columns(BufferCells, _buffers(run)),
-        "traffic": _columns(TrafficCells, (_row(TrafficCells, each) for each in run.traffic)),
+        "traffic": {
+            each.name: [getattr(row, each.name) for row in run.traffic] for each in fields(TrafficRecord)
+        },
         "spans": _columns(SpanCells, map(_span, spans)),
     }
 
