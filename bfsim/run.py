@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial, wraps
 from inspect import signature
+from itertools import count
 from pathlib import Path
 from threading import RLock
 from types import MappingProxyType
@@ -32,6 +33,7 @@ from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import devices_of, makers_of
 from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import require_cores
+from bfsim.recording import RecordingReader
 from bfsim.recording.stereo_check import StereoCheck
 from bfsim.result import Run
 from bfsim.retiming import retimed
@@ -148,10 +150,7 @@ def simulate(
     with loaded.own.named():
         devices, script_digest = _devices(script, loaded)
     placement = read_placement(ldf, spec, defines, include_dirs)
-    with (
-        loaded.own.named(),
-        opened(recording or shipped.RECORDING) as reader,
-    ):
+    with loaded.own.named(), opened(recording or shipped.RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
         calibration = calibration_of(reader)
         program = loaded.firmware.calibrated(calibration)
@@ -170,10 +169,7 @@ def simulate(
             devices=devices,
             fidelity=fidelity,
         )
-        total = min(frames or reader.frame_count, reader.frame_count)
-        if not total:
-            raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
-        source = DigestedFrames(reader, total)
+        source = DigestedFrames(reader, _frames_to_run(reader, frames))
         check = StereoCheck(reader.rectification)
         identity = identity_of(
             found_board,
@@ -189,19 +185,14 @@ def simulate(
             script_digest,
         )
         if before:
-            before(identity, total)
-        done = 0
+            before(identity, source.total)
+        done = count(1)
 
-        def count(_frame: object) -> None:
-            nonlocal done
-            done += 1
+        def frame_done(_frame: object) -> None:
             sanitizer.is_past_first = True
+            number = next(done)
             if progress:
-                progress(done, total)
-
-        def show(index: int, cameras: tuple[Seen, ...]) -> None:
-            if on_seen:
-                on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
+                progress(number, source.total)
 
         with retimed(
             machine,
@@ -213,18 +204,22 @@ def simulate(
             has_pictures=bool(on_seen),
             has_timeline=bool(on_spans),
         ):
-            left = machine.run(check.watch(source), count, show if on_seen else None, on_time, on_spans)
-    identity = replace(
-        identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
+            show = _shown_to(on_seen, source) if on_seen else None
+            left = machine.run(check.watch(source), frame_done, show, on_time, on_spans)
+    return _record(
+        left,
+        replace(
+            identity,
+            recording_digest=source.digest,
+            firmware_digest=loaded.digest,
+            firmware_files=loaded.files,
+        ),
+        geometry_in_words(program, calibration),
+        (*assumed_geometry(program, calibration), *doubted_cameras(check.warnings), *assumed_clocks(spec)),
+        loaded,
+        placement,
+        tuple(_memories(link_map, spec)),
     )
-    assumptions = (
-        *assumed_geometry(program, calibration),
-        *doubted_cameras(check.warnings),
-        *assumed_clocks(spec),
-    )
-    geometry = geometry_in_words(program, calibration)
-    memories = tuple(_memories(link_map, spec))
-    return _record(left, identity, geometry, assumptions, loaded, placement, memories)
 
 
 def _one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
@@ -243,6 +238,22 @@ def _path_of(what: str, given: object) -> Path | None:
         return Path(given)
     advice = "; write `simulate(firmware=...)`" if isinstance(given, Firmware) else ""
     raise ConfigError(f"{what} must be a file, not {type(given).__name__}{advice}")
+
+
+def _frames_to_run(reader: RecordingReader, most: int | None) -> int:
+    """Return how many frames of a recording are run. Raises RecordingError where it has none."""
+    if not reader.frame_count:
+        raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
+    return min(most or reader.frame_count, reader.frame_count)
+
+
+def _shown_to(
+    on_seen: Callable[[SeenFrame], None], source: DigestedFrames
+) -> Callable[[int, tuple[Seen, ...]], None]:
+    """Return who is told what was seen in a frame, and tells it with the times of its pictures."""
+    return lambda index, cameras: on_seen(
+        SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras)
+    )
 
 
 def _memories(link_map: LinkMap, spec: BoardSpec) -> Iterator[MemoryRecord]:
