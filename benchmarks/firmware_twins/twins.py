@@ -15,9 +15,9 @@ from bfsim.machine_code import Effort
 from bfsim.verifying.player import checksum
 from tinyphoon.stages.blob_detection import segment_row
 from tinyphoon.stages.circle_consensus import agree_on_side
-from tinyphoon.stages.circle_detection import judge_consensus
 from tinyphoon.stages.circle_edges import select_edges_row
 from tinyphoon.stages.circle_fit import fit_circle
+from tinyphoon.stages.circle_judging import judge_consensus
 from tinyphoon.stages.circle_outline import refine_row
 from tinyphoon.stages.circle_votes import draw_lines
 from tinyphoon.stages.colour_reduction import colour_row

@@ -16,7 +16,6 @@ from tests.firmware.circle_references import Edge
 from tests.firmware.pictures import random_uyvy
 from tests.tiers import exhaustive
 from tinyphoon.stages.circle_consensus import agree_on_side, find_consensus
-from tinyphoon.stages.circle_detection import share_of, sixteenths
 from tinyphoon.stages.circle_edges import (
     AREA_WORDS,
     BORDERING,
@@ -41,6 +40,7 @@ from tinyphoon.stages.circle_fit import (
     expect_bulge,
     fit_circle,
 )
+from tinyphoon.stages.circle_judging import share_of, sixteenths
 from tinyphoon.stages.circle_outline import (
     LUMA_LINES,
     REACH_LINES,

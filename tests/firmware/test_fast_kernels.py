@@ -13,17 +13,8 @@ from tests.firmware.pictures import Bytes, three_rows
 from tinyphoon.arithmetic import angle8
 from tinyphoon.stages.colour_reduction import BLACK, SINGLE_COLOURS, colour_row, join_colours
 from tinyphoon.stages.edge_detection import gauss3_row, grey_row, magnitude_row, sobel_row
-from tinyphoon.stages.fast_edges import (
-    colour_words,
-    fast_angle8,
-    gauss3_words,
-    grey_words,
-    magnitude_words,
-    octant_of,
-    root8,
-    sobel_words,
-    words_of,
-)
+from tinyphoon.stages.fast_edges import colour_words, fast_angle8, magnitude_words, octant_of, root8
+from tinyphoon.stages.fast_gradients import gauss3_words, grey_words, sobel_words, words_of
 from tinyphoon.stages.fast_opening import dilate_columns, erode_columns
 from tinyphoon.stages.open_closing import dilate_row, erode_row
 from tinyphoon.tables import arctangent_table, reciprocal_table, root_table

@@ -1,4 +1,4 @@
-"""The scan of `edge_detection.py` by the kernels of `fast_edges.py`: the same colours and candidates."""
+"""The scan of `edge_detection.py` by the kernels of `fast_gradients.py` and `fast_edges.py`: the same colours and candidates."""
 
 from __future__ import annotations
 
@@ -16,13 +16,10 @@ from tinyphoon.stages.fast_edges import (
     after_sighted,
     colour_words,
     first_sighted,
-    gauss3_words,
-    grey_words,
     magnitude_words,
     peak_words,
-    sobel_words,
-    words_of,
 )
+from tinyphoon.stages.fast_gradients import gauss3_words, grey_words, sobel_words, words_of
 from tinyphoon.tables import reciprocal_table, root_table
 
 

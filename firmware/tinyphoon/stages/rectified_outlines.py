@@ -10,7 +10,7 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u32
-from tinyphoon.stages.circle_detection import sixteenths
+from tinyphoon.stages.circle_judging import sixteenths
 from tinyphoon.stages.object_detection import Outlines
 from tinyphoon.stages.rectified_places import ACROSS as COLUMN
 from tinyphoon.stages.rectified_places import DOWN as ROW

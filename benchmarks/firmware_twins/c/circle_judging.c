@@ -1,4 +1,4 @@
-/* Twin of tinyphoon/stages/circle_detection.py: `judge_consensus`. */
+/* Twin of tinyphoon/stages/circle_judging.py: `judge_consensus`. */
 #include "circle_consensus.h"
 #include "circle_edges.h"
 #include "circle_fit.h"
