@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from bfsim.kernel import CompilerProfile, Kernel
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel.types import ArrayType
 from tests.kernel.modules import kernel_of
 from tests.kernel.running import check_against_python
 
 COUNT, LIMIT = 200, 100
+
+Case = tuple[str, int, float]
+"""The kernel `f`, cycles of GCC 12.2's code of its exported C in the GNU simulator, and how near the estimate is, a part of them."""
 
 
 def arguments(kernel: Kernel) -> list[Any]:
@@ -48,3 +51,25 @@ def check_meaning(
         if count is not None:
             given = [count if isinstance(each, int) else each for each in given]
         check_against_python(kernel, given, profile)
+
+
+def beside_gcc(
+    cases: Mapping[str, Case],
+    *,
+    others: Mapping[str, str] | None = None,
+    counts: Sequence[int] = (),
+    helpers: str = "",
+) -> tuple[Callable[..., None], Callable[..., None]]:
+    """Return two tests of each case: the estimate is near what GCC makes, and what is costed is what runs. Of `others` the second alone."""
+    texts = {name: text for name, (text, _, _) in cases.items()} | dict(others or {})
+
+    @pytest.mark.parametrize("name", cases)
+    def near(name: str, tmp_path: Path) -> None:
+        check_estimate(*cases[name], tmp_path, helpers)
+
+    @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
+    @pytest.mark.parametrize("name", texts)
+    def same(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
+        check_meaning(texts[name], profile, tmp_path, counts, helpers)
+
+    return near, same

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import pytest
-
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
-from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.beside_gcc import beside_gcc
 
 WINDOWS = """
 def f(a: u8[:], o: u8[:], n: i32, t: i32):
@@ -100,14 +95,6 @@ CASES: dict[str, tuple[str, int, float]] = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
-    """GCC 12.2's code of the exported C, in cycles of the GNU simulator; the first was 32 % too cheap."""
-    check_estimate(*CASES[name], tmp_path)
-
-
-@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
-@pytest.mark.parametrize("name", CASES)
-def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
-    """What is costed is what runs."""
-    check_meaning(CASES[name][0], profile, tmp_path, (0, 1, 2, 17, 200))
+test_estimates_are_near_what_gcc_makes, test_they_compute_what_python_does = beside_gcc(
+    CASES, counts=(0, 1, 2, 17, 200)
+)

@@ -9,7 +9,7 @@ import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
 from bfsim.kernel.isa import Op
-from tests.kernel.beside_gcc import arguments, check_estimate, check_meaning
+from tests.kernel.beside_gcc import arguments, beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
 
@@ -103,17 +103,9 @@ KEPT = {
 """Loops in which GCC carries nothing, and the loads of an iteration, or of half a one."""
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
-    """GCC 12.2's code of the exported C, in cycles of the GNU simulator."""
-    check_estimate(*CASES[name], tmp_path)
-
-
-@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
-@pytest.mark.parametrize("name", [*CASES, *KEPT])
-def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
-    """What is costed is what runs: what goes along is what would have been loaded."""
-    check_meaning({**CASES, **KEPT}[name][0], profile, tmp_path, (0, 1, 2, 3, 4, 5, 90))
+test_estimates_are_near_what_gcc_makes, test_they_compute_what_python_does = beside_gcc(
+    CASES, others={name: text for name, (text, *_) in KEPT.items()}, counts=(0, 1, 2, 3, 4, 5, 90)
+)
 
 
 def loads(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> int:

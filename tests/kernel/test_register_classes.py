@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
+from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
-from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
 
@@ -81,17 +81,7 @@ CASES = {
 """A kernel, its cycles, and how near to them the estimate is. In the last three, nothing is moved or extended."""
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
-    """GCC 12.2's code of the exported C, in cycles of the GNU simulator."""
-    check_estimate(*CASES[name], tmp_path)
-
-
-@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
-@pytest.mark.parametrize("name", CASES)
-def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
-    """What is costed is what runs."""
-    check_meaning(CASES[name][0], profile, tmp_path)
+test_estimates_are_near_what_gcc_makes, test_they_compute_what_python_does = beside_gcc(CASES)
 
 
 def made(name: str, op: Op, folder: Path) -> tuple[int, int]:

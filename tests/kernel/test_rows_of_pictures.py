@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
+from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.value_ranges import answer, value_range
-from tests.kernel.beside_gcc import arguments, check_estimate, check_meaning
+from tests.kernel.beside_gcc import arguments, beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
 
@@ -130,7 +128,7 @@ def f(a: u8[:], o: u16[:], n: i32) -> i32:
 """
 SQUARE = "a[y * w + x] + a[y * w + x + 1] + a[(y + 1) * w + x] + a[(y + 1) * w + x + 1]"
 
-# of each case: the kernel, cycles of GCC's code in the GNU simulator, and how near the estimate is
+# Without these rules estimates are off by up to 73 %.
 CASES = {
     "a byte": (LOOKED_UP.format("u8", "a[y * w + x]"), 2444, 0.1),
     "a half-word": (LOOKED_UP.format("i16", "a[y * w + x]"), 2647, 0.02),
@@ -150,17 +148,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
-    """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 73 %."""
-    check_estimate(*CASES[name], tmp_path)
-
-
-@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
-@pytest.mark.parametrize("name", CASES)
-def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
-    """What is costed is what runs."""
-    check_meaning(CASES[name][0], profile, tmp_path, (0, 1, 2, 17, 90))
+test_estimates_are_near_what_gcc_makes, test_they_compute_what_python_does = beside_gcc(
+    CASES, counts=(0, 1, 2, 17, 90)
+)
 
 
 RANGES = """

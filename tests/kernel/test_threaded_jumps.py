@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
+from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.isa import Op
-from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 
 HELPERS = """
@@ -54,7 +52,7 @@ def f(a: {}[:], o: u16[:], n: i32) -> i32:
 """
 COUNTS = "if a[(i + dy) * 10 + 5 + dx] > 100:\n                    s += 1"
 
-# of each case: the kernel, cycles of GCC's code in the GNU simulator, how near the estimate is
+# Without these rules estimates are off by up to 61 %.
 CASES = {
     "the middle is left out": (
         AROUND.format(
@@ -87,18 +85,9 @@ OTHERS = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
-    """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 61 %."""
-    check_estimate(*CASES[name], tmp_path, HELPERS)
-
-
-@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
-@pytest.mark.parametrize("name", [*CASES, *OTHERS])
-def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
-    """An iteration is skipped where nothing else happens in it, and no other one."""
-    text = CASES[name][0] if name in CASES else OTHERS[name]
-    check_meaning(text, profile, tmp_path, helpers=HELPERS)
+test_estimates_are_near_what_gcc_makes, test_they_compute_what_python_does = beside_gcc(
+    CASES, others=OTHERS, helpers=HELPERS
+)
 
 
 def test_the_loop_is_not_counted_any_more(tmp_path: Path) -> None:

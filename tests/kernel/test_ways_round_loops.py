@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, tree
+from bfsim.kernel import GCC_O2, tree
 from bfsim.kernel.isa import Op
 from bfsim.kernel.subloops import makes_subloop
-from tests.kernel.beside_gcc import check_estimate, check_meaning
+from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of
 
@@ -110,7 +110,7 @@ def f(a: u8[:], h: u16[:], n: i32) -> i32:
     return s
 """
 
-# of each case: the kernel, cycles of GCC's code in the GNU simulator, and how near the estimate is
+# Without these rules estimates are off by up to 100 %.
 CASES = {
     "runs": (SKIPPING.format(128, RUN), 3374, 0.02),
     "skipped": (SKIPPING.format(128, PIXEL), 2586, 0.02),
@@ -124,17 +124,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_estimates_are_near_what_gcc_makes(name: str, tmp_path: Path) -> None:
-    """GCC 12.2's code of the exported C, in cycles of the GNU simulator; estimates without these rules were off by up to 100 %."""
-    check_estimate(*CASES[name], tmp_path)
-
-
-@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
-@pytest.mark.parametrize("name", CASES)
-def test_they_compute_what_python_does(name: str, profile: CompilerProfile, tmp_path: Path) -> None:
-    """What is costed is what runs."""
-    check_meaning(CASES[name][0], profile, tmp_path, (0, 1, 2, 17, 90))
+test_estimates_are_near_what_gcc_makes, test_they_compute_what_python_does = beside_gcc(
+    CASES, counts=(0, 1, 2, 17, 90)
+)
 
 
 TAKEN = """
