@@ -13,7 +13,6 @@ from bfsim.machine.bus.core_jobs import bytes_of, charge, go_past, next_entry, s
 from bfsim.machine.bus.core_logs import kind_of, site_at
 from bfsim.machine.bus.l2_port import read_l2, test_and_set, try_lock
 from bfsim.machine.bus.memory_owners import owner_for
-from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.runs import cores_quiet_until
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import State
@@ -71,12 +70,15 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     count_access(state, w.CORE_A + core, owner, 1 + more)
     count_traffic(state, w.CORE_A + core, owner, False, nbytes)
     state[w.LAST_CORE] = core
-    edge = aligned(state[job + w.ISSUED_AT], state[w.SCLK])
+    edge = state[w.MASTERS_AT + w.CORE_A + core + w.READY]
     done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
     cycles = wait(state, core, done)
-    waited = min(cycles, max(0, state[w.BEGAN] - edge) // cclk)
-    granted = state[w.BEGAN] + state[w.REFRESH_WAIT]
-    refreshed = min(cycles - waited, (granted - max(edge, state[w.BEGAN])) // cclk)
+    waited = refreshed = 0  # most often; a division takes the host longer than all else here
+    if state[w.BEGAN] > edge:
+        waited = min(cycles, (state[w.BEGAN] - edge) // cclk)
+    if state[w.REFRESH_WAIT] > 0:
+        granted = state[w.BEGAN] + state[w.REFRESH_WAIT]
+        refreshed = min(cycles - waited, (granted - max(edge, state[w.BEGAN])) // cclk)
     reason = (
         w.PAGE_HIT + state[w.PAGE_CLASS]
         if kind == log.LOAD

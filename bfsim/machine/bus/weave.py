@@ -174,9 +174,10 @@ def serve_cores(state: State, until: int) -> int:
     for other in range(w.STORES_A):
         sdram_until = min(sdram_until, state[w.MASTERS_AT + other + w.READY])
     while number != w.NONE and at < l2_until:
-        if state[w.MASTERS_AT + number + w.USES] == w.SDRAM and (at >= sdram_until or hold_up(state, at)):
+        in_sdram = state[w.MASTERS_AT + number + w.USES] == w.SDRAM
+        if in_sdram and (at >= sdram_until or hold_up(state, at)):
             return w.NONE
-        if number < w.CORE_A or not go_ahead(state, number - w.CORE_A, at, l2_until):
+        if in_sdram or number < w.CORE_A or not go_ahead(state, number - w.CORE_A, at, l2_until):
             woken = serve_core_or_stores(state, number, at, l2_until)
             if woken != w.NONE:
                 return woken
