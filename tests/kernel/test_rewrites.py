@@ -171,3 +171,20 @@ def test_a_rotation_that_would_cut_values_off_is_left(tmp_path: Path) -> None:
     kernel = import_text(TWO_LOOPS, tmp_path).f
     kernel.compile(GCC_O2)
     assert kernel(7, 5) == 5
+
+
+HASHED = """
+@kernel
+def slots(pixels: u16[:], keys: i32[:], counts: u16[:]):
+    for p in pixels:
+        slot = i32((u32(p) * u32(0x9E3779B1)) >> 16) & 63
+        if keys[slot] == -1:
+            keys[slot] = p
+        counts[slot] += 1
+"""
+
+
+def test_a_factor_that_is_stored_elsewhere_is_no_other_product(tmp_path: Path) -> None:
+    """What is multiplied is stored in another block, too: a use of it without a result."""
+    kernel = import_text(HASHED, tmp_path).slots
+    assert kernel.counters(GCC_O2)
