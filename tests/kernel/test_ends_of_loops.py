@@ -81,6 +81,21 @@ def f(a: u8[:], o: u8[:], c: i32[:], n: i32, t: i32) -> i32:
             head = (head + 1) & 127
     return head
 """
+PROBES = """
+def f(a: u8[:], keys: i32[:], n: i32, t: i32) -> i32:
+    mask = t - 37
+    new = 0
+    for x in range(n):
+        slot = a[x] & mask
+        probes = 0
+        while keys[slot] != a[x] and keys[slot] > -400:
+            slot = (slot + 1) & mask
+            probes += 1
+            if probes > mask:
+                return -1
+        new += slot
+    return new
+"""
 CASES: dict[str, tuple[str, int, float]] = {
     "the end of a loop stands behind both ways to it, and counts without a hardware loop": (
         WINDOWS,
@@ -91,6 +106,11 @@ CASES: dict[str, tuple[str, int, float]] = {
     "one variable is set by two choices": (STATES, 6299, 0.05),
     "where a loop has written to is computed of how often it went round": (COPIES, 6648, 0.03),
     "of a loop whose test is sure to hold at first, too": (BLOCKS, 804, 0.02),
+    "a loop that goes on up to its bound, which may be the largest number, is not counted": (
+        PROBES,
+        51543,
+        0.06,
+    ),
     "a load is done before a test on whose other side something is stored": (RING, 6179, 0.05),
 }
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import predicate
+from bfsim.kernel.ir_text import is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariables
+from bfsim.kernel.lowering.range_arithmetic import ANY, LARGEST
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.lowering.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -79,12 +81,23 @@ class EndlessLoops:
         return guard is not None and guard.opcode == "icmp" and guard.operands[1].lstrip("-").isdigit()
 
     def _is_inclusive(self, loop: Loop) -> bool:
-        """Whether a loop runs up to `stop + 1`, which is `<= stop`, and `stop` may be the largest number there is."""
+        """Whether a loop runs up to a bound and with it, and that may be the largest number there is; so may the `stop` of `stop + 1`."""
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        bound = self.flow.instruction(test.operands[1]) if test is not None else None
-        if bound is None or bound.opcode != "add" or bound.operands[1] != "1":
+        if test is None or not self.profile.applies(Rule.INCLUSIVE_LOOPS):
             return False
-        return self.profile.applies(Rule.INCLUSIVE_LOOPS) and not self._is_exceeded(bound.operands[0], loop)
+        stop, bound = test.operands[1], self.flow.instruction(test.operands[1])
+        if bound is not None and bound.opcode == "add" and bound.operands[1] == "1":
+            return not self._is_exceeded(bound.operands[0], loop)
+        leaves = self.flow.blocks[self.flow.ending(loop)].successors[0] not in loop.blocks
+        is_inclusive = predicate(test) in (("sgt", "ugt") if leaves else ("sle", "ule"))
+        return is_inclusive and self.flow.is_invariant(stop, loop) and not self._is_known(stop, loop)
+
+    def _is_known(self, stop: str, loop: Loop) -> bool:
+        """Whether a bound is sure not to be the largest number there is."""
+        if is_number(stop) or self._is_exceeded(stop, loop):
+            return True
+        low, high = UnsignedRanges(self.flow).found.get(stop, ANY)
+        return high < LARGEST or low > LARGEST
 
     def _is_exceeded(self, value: str, loop: Loop) -> bool:
         """Whether a test before `loop` has found something larger than a value [simplify_using_initial_values in loop-iv.cc]."""

@@ -58,9 +58,12 @@ def _on_sides(flow: ControlFlow, choice: Instruction, moved: Sequence[Instructio
     """Move operations to the ways to the block that makes them."""
     home, last = flow.defined[choice.result or ""][0], moved[-1]
     blocks, results = dict(flow.blocks), dict[str, str]()
-    for number, (label, value) in enumerate(arms_of(choice).items()):
+    arms = arms_of(choice)
+    for number, (label, value) in enumerate(arms.items()):
         side, names = label, {choice.result or "": value}
-        if len(set(blocks[label].successors)) > 1:
+        if not arms.keys().isdisjoint(
+            blocks[label].successors
+        ):  # the other side of a test that has no block left here
             side = f"{label}.on.{home}"
             put_between(blocks, label, home, side)
         *rows, end = blocks[side].instructions
