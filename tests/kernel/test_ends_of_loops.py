@@ -96,6 +96,25 @@ def f(a: u8[:], keys: i32[:], n: i32, t: i32) -> i32:
         new += slot
     return new
 """
+COMBS = """
+def f(a: i16[:], s: i32[:], o: i16[:], n: i32) -> i32:
+    total = 0
+    phase = 0
+    k = 0
+    for i in range(n):
+        total += a[i]
+        phase += 1
+        if phase == 8:
+            phase = 0
+            v = total
+            for j in range(3):
+                d = v - s[j]
+                s[j] = v
+                v = d
+            o[k] = v >> 4
+            k += 1
+    return k
+"""
 CASES: dict[str, tuple[str, int, float]] = {
     "the end of a loop stands behind both ways to it, and counts without a hardware loop": (
         WINDOWS,
@@ -111,6 +130,7 @@ CASES: dict[str, tuple[str, int, float]] = {
         51543,
         0.06,
     ),
+    "a test for a loop that is written out is guessed as one for a loop": (COMBS, 4111, 0.01),
     "a load is done before a test on whose other side something is stored": (RING, 6179, 0.05),
 }
 

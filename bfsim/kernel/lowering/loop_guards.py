@@ -14,10 +14,15 @@ def loop_guards(flow: ControlFlow) -> Iterator[tuple[str, str]]:
     """Yield the edges that lead to loops, where another way goes round the loop around without them."""
     for around in flow.loops:
         for loop in around.inner:
-            first = _first_of(flow, loop)
-            if first not in flow.dominators[around.latch]:
-                edges = _leading_to(flow, first, around, {first})
-                yield from (edge for edge in edges if edge[0] not in loop.blocks)
+            yield from guards_of(flow, loop, around)
+
+
+def guards_of(flow: ControlFlow, loop: Loop, around: Loop) -> Iterator[tuple[str, str]]:
+    """Yield the edges that lead to one loop in another."""
+    first = _first_of(flow, loop)
+    if first not in flow.dominators[around.latch]:
+        edges = _leading_to(flow, first, around, {first})
+        yield from (edge for edge in edges if edge[0] not in loop.blocks)
 
 
 def _leading_to(flow: ControlFlow, first: str, around: Loop, seen: set[str]) -> Iterator[tuple[str, str]]:

@@ -7,34 +7,65 @@ constant in them, against one iteration. LLVM is asked to unroll those and no ot
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from bfsim.kernel.ir_text import TARGET, Instruction, Routine, placed_rows, read_module
+from bfsim.kernel.ir_text import (
+    TARGET,
+    Instruction,
+    Routine,
+    placed_rows,
+    read_module,
+    with_names,
+    write_module,
+)
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
+from bfsim.kernel.lowering.loop_guards import guards_of
 from bfsim.kernel.lowering.scalar_evolution import Affine, ScalarEvolution
 
 MOST_ITERATIONS = 8  # [max-completely-peel-times]
 COUNTER = 1  # statement that steps what counts the iterations [create_canonical_iv]
 FREE = ("phi", "zext", "sext", "trunc", "freeze")
 LOOP_NOTE = ", !llvm.loop !"
+GUARDED = (27, 73)  # how likely a loop in another one is come to [PRED_LOOP_GUARD in predict.def]
 FULL, DISABLED = "llvm.loop.unroll.full", "llvm.loop.unroll.disable"
 
 
 def marked(text: str) -> str | None:
     """Return the module `text` with a request to unroll on each such loop, and one not to on all others; None if there is none."""
+    text = with_names(text)
+    routines = [(routine, list(_loops(routine))) for routine in read_module(text)]
     wishes = {
         (routine.symbol, loop.latch): FULL if unrolls else DISABLED
-        for routine in read_module(text)
-        for loop, unrolls in _loops(routine)
+        for routine, loops in routines
+        for loop, unrolls in loops
     }
     if FULL not in wishes.values():
         return None
+    text = write_module(text, [_hinted(*each) for each in routines])
     rows, notes = list(_annotated(text, wishes)), len(text)  # numbers that no other note has
     for number, wish in enumerate(wishes.values()):
         own = notes + 2 * number
         rows += [f"!{own} = distinct !{{!{own}, !{own + 1}}}", f'!{own + 1} = !{{!"{wish}"}}']
     return "\n".join(rows)
+
+
+def _hinted(routine: Routine, loops: Sequence[tuple[Loop, bool]]) -> Routine:
+    """Hint at each test that decides whether a loop is come to that is written out: GCC guesses before that."""
+    flow = ControlFlow(routine)
+    unrolled = {loop.latch for loop, unrolls in loops if unrolls}
+    blocks = dict(flow.blocks)
+    for around in flow.loops:
+        for loop in around.inner:
+            for label, way in guards_of(flow, loop, around) if loop.latch in unrolled else ():
+                *rows, end = blocks[label].instructions
+                if not end.weights and end.opcode == "br":
+                    weights = GUARDED if blocks[label].successors[0] == way else GUARDED[::-1]
+                    blocks[label] = replace(
+                        blocks[label], instructions=(*rows, replace(end, weights=weights, hint=""))
+                    )
+    return replace(routine, blocks=tuple(blocks.values()))
 
 
 def _annotated(text: str, wishes: dict[tuple[str, str], str]) -> Iterator[str]:
