@@ -115,6 +115,41 @@ def f(a: i16[:], s: i32[:], o: i16[:], n: i32) -> i32:
             k += 1
     return k
 """
+STEPS = """
+def f(a: u8[:], o: i32[:], n: i32, t: i32) -> i32:
+    i = 0
+    k = 0
+    while i < n - 2:
+        if a[i] < t:
+            i += 1
+        elif a[i + 1] > 2 * t:
+            o[k & 7] = i
+            k += 1
+            i += 1
+        else:
+            k += a[i + 2]
+            i += 3
+    return k
+"""
+BYTES = """
+def f(a: u8[:], o: u8[:], n: i32, t: i32) -> i32:
+    k = 0
+    run = 0
+    for i in range(n):
+        b = a[i]
+        if b < t:
+            run += b
+            if run > 500:
+                run -= 300
+                o[k] = b
+                k += 1
+        elif b > 2 * t:
+            run = 0
+        else:
+            o[k] = b
+            k += 1
+    return k
+"""
 CASES: dict[str, tuple[str, int, float]] = {
     "the end of a loop stands behind both ways to it, and counts without a hardware loop": (
         WINDOWS,
@@ -131,6 +166,8 @@ CASES: dict[str, tuple[str, int, float]] = {
         0.06,
     ),
     "a test for a loop that is written out is guessed as one for a loop": (COMBS, 4111, 0.01),
+    "a step that two blocks end with stands in the code once": (STEPS, 2758, 0.01),
+    "but not where the shorter one comes later": (BYTES, 6707, 0.01),
     "a load is done before a test on whose other side something is stored": (RING, 6179, 0.05),
 }
 

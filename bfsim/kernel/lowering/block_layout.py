@@ -13,6 +13,7 @@ from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.charges import Charge, charge, instead
+from bfsim.kernel.lowering.cross_jumps import CrossJumps
 from bfsim.kernel.lowering.predict import EVEN, Likelihood
 from bfsim.kernel.lowering.traces import Edge, Graph, Layout, laid_out
 
@@ -20,8 +21,8 @@ from bfsim.kernel.lowering.traces import Edge, Graph, Layout, laid_out
 class BlockLayout:
     """Positions of the blocks of one routine.
 
-    `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge, `alike` of an edge the
-    first one that leads to the same block with the same copies: they are one block. `nbytes`: of the code of a block or an edge.
+    `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge. `crossed`: edges and
+    blocks that are one. `nbytes`: of the code of a block or an edge.
     `counted`: the ways back of counted loops, which are jumps.
     `threaded`: where edges lead whose jumps are threaded.
     """
@@ -32,13 +33,18 @@ class BlockLayout:
         likelihood: Likelihood,
         skipped: frozenset[str],
         copies: dict[tuple[str, str], list[Charge]],
-        alike: Mapping[tuple[str, str], tuple[str, str]],
+        crossed: CrossJumps,
         nbytes: Callable[[str], int],
         counted: frozenset[tuple[str, str]],
         threaded: Mapping[tuple[str, str], str],
     ) -> None:
         self.flow, self.likelihood, self.skipped, self.copies = flow, likelihood, skipped, copies
-        self.alike, self.threaded = alike, threaded
+        self.alike, self.tails, self.gone, self.threaded = (
+            crossed.alike,
+            crossed.tails,
+            crossed.gone,
+            threaded,
+        )
         self.names = [*self._named(copies)]
         layout = self._laid_out(nbytes, counted)
         self.order, self.copied = layout.order, layout.copied
@@ -49,7 +55,7 @@ class BlockLayout:
         names = []
         for label in self.flow.order:
             names += [edge_name(edge) for edge in copies if edge[1] == label and self.alike[edge] == edge]
-            if label not in self.skipped:
+            if label not in self.skipped and label not in self.gone:
                 names.append(label)
         return names
 
@@ -57,6 +63,8 @@ class BlockLayout:
         """Where a block or an edge's copies lead."""
         if name not in self.flow.blocks:
             return (self.landing(name.split(">")[1]),)
+        if name in self.tails:
+            return (self.landing(self.tails[name]),)
         found = []
         for way in self.flow.blocks[name].successors:
             own = (name, way) in self.copies
@@ -67,10 +75,8 @@ class BlockLayout:
 
     def landing(self, label: str) -> str:
         """Where a jump to `label` ends: behind blocks that hold no code."""
-        while label in self.skipped:
-            ways = self.flow.blocks[label].successors
-            label = self.likelihood.second_parts.get(label) or next(each for each in ways if each != label)
-        return label
+        label = landing(self.flow, self.skipped, self.likelihood.second_parts, label)
+        return self.landing(self.tails[label]) if label in self.gone else label
 
     def _laid_out(self, nbytes: Callable[[str], int], counted: frozenset[tuple[str, str]]) -> Layout:
         count = {name: self._frequency(name) for name in self.names}
@@ -116,7 +122,8 @@ class BlockLayout:
 
     def _frequency(self, name: str) -> float:
         if name in self.flow.blocks:
-            return self.likelihood.frequency[name]
+            heads = (each for each, tail in self.tails.items() if tail == name)
+            return self.likelihood.frequency[name] + sum(map(self._frequency, heads))
         edges = (edge for edge in self.copies if self.alike[edge] == edge_of(name))
         return sum(self.likelihood.frequency[edge[0]] * self.likelihood.taken[edge] for edge in edges)
 
@@ -153,6 +160,10 @@ class BlockLayout:
 
     def on(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         """Return the cost of going from the end of `label` to the block `target`, its edge's copies included."""
+        if label in self.tails:
+            tail = self.tails[label]
+            there = [] if label in self.gone else self.jump(label, self.landing(tail), line)
+            return [*there, *self.on(tail, self.flow.blocks[tail].successors[0], line)]
         if (label, target) not in self.copies:
             return self.jump(label, self.landing(self.threaded.get((label, target), target)), line)
         return [*self.jump(label, self._copied(label, target), line), *self._behind(label, target, line)]
@@ -187,6 +198,14 @@ class BlockLayout:
         if self.falls(label, ways[0]):
             return 0
         return 0 if self.likelihood.taken[label, self.flow.blocks[label].successors[0]] < EVEN else 1
+
+
+def landing(flow: ControlFlow, skipped: frozenset[str], second_parts: Mapping[str, str], label: str) -> str:
+    """Return where a jump to `label` ends, behind `skipped` blocks."""
+    while label in skipped:
+        ways = flow.blocks[label].successors
+        label = second_parts.get(label) or next(each for each in ways if each != label)
+    return label
 
 
 def _likely_cclk(falls: bool) -> int:

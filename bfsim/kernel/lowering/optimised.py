@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, arms_of, is_number
+from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, is_number
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
+from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of, landing
 from bfsim.kernel.lowering.bundles import bundled
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
+from bfsim.kernel.lowering.cross_jumps import CrossJumps
 from bfsim.kernel.lowering.hardware_loops import HardwareLoops
 from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.jump_tables import MARK, first_entry
@@ -47,12 +49,19 @@ class _OptimisedLowering:
             edge: [self._charge(instruction) for instruction in steps]
             for edge, steps in self.allocation.on_edges.items()
         }
+        skipped = frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys())
+        self.crossed = CrossJumps(
+            self.context,
+            self.code,
+            self.allocation,
+            partial(landing, self.flow, skipped, self.context.second_parts),
+        )
         self.layout = BlockLayout(
             self.flow,
             self.context.likelihood,
-            frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys()),
+            skipped,
             copies,
-            dict(self._alike()),
+            self.crossed,
             self._nbytes,
             frozenset(self._way_back(loop) for loop in self._counted()),
             dict(self._threaded()),
@@ -63,6 +72,8 @@ class _OptimisedLowering:
     def _nbytes(self, name: str) -> int:
         """Code bytes of a block with its branch or return, or of the copies on an edge."""
         nbytes = sum(each.code_bytes for each in self._code_at(name))
+        if name in self.crossed.tails:
+            return nbytes - sum(each.code_bytes for each in self._code_at(self.crossed.tails[name]))
         block = self.flow.blocks.get(name)
         if block is not None and block.terminator.opcode == "ret":
             cost = BlockCost()
@@ -74,22 +85,6 @@ class _OptimisedLowering:
             return nbytes
         branches = len(set(block.successors)) > 1
         return nbytes + (COSTS[Op.BRANCH_TAKEN].nbytes if branches else 0)
-
-    def _alike(self) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
-        """Edges with copies, and the first one that leads to the same block with the same ones [try_crossjump_to_edge in cfgcleanup.cc]."""
-        first: dict[object, tuple[str, str]] = {}
-        for edge, steps in self.allocation.on_edges.items():
-            label, home = edge
-            phis = (each for each in self.flow.blocks[home].instructions if each.opcode == "phi")
-            values = (
-                (self._register(each.result or ""), self._register(arms_of(each)[label])) for each in phis
-            )
-            copied = frozenset(each for each in values if each[0] != each[1])
-            yield edge, first.setdefault((home, copied, tuple(each.op for each in steps)), edge)
-
-    def _register(self, value: str) -> str:
-        name = self.context.name(value)
-        return self.allocation.register.get(name, name)
 
     def _threaded(self) -> Iterator[tuple[tuple[str, str], str]]:
         """Edges from blocks that set a flag which ends their loop, and where that leads."""
