@@ -35,6 +35,7 @@ from bfsim.kernel.lowering.rewrites import rewritten, rewritten_early
 from bfsim.kernel.lowering.rotations import held, released
 from bfsim.kernel.lowering.skipped_iterations import with_skipped_iterations
 from bfsim.kernel.lowering.switches import with_switches
+from bfsim.kernel.lowering.threaded_choices import with_threaded_choices
 from bfsim.kernel.lowering.threaded_hints import with_threaded_hints
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.narrowed_divisions import with_rounded_names
@@ -79,6 +80,7 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
     module = llvm.parse_assembly(rewritten_early(str(module), profile))
     if profile.applies(Rule.JUMP_TABLES):
         module = with_switches(module, profile)
+    module = with_threaded_choices(module)
     generic.run(PASSES, module)
     module = _rotated(module, profile)
     generic.run(LATER_PASSES, module)

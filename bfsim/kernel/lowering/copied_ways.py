@@ -1,0 +1,193 @@
+"""Ways that are copied for what is known on them, while variables are in memory, where blocks can be copied as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from itertools import count
+
+from bfsim.kernel.ir_text import (
+    HIDES,
+    INVERTED,
+    BasicBlock,
+    Instruction,
+    Routine,
+    is_number,
+    predicate,
+    renamed,
+)
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.edges import going_to
+from bfsim.kernel.lowering.jump_tables import MARK
+
+MOST_COPIED = 100
+"""Instructions, but loads and stores of variables, of the ways that are copied from a block [param_max_fsm_thread_path_insns]."""
+RELATIONS = {"eq": int.__eq__, "slt": int.__lt__, "sgt": int.__gt__}
+TRUTHS = {"false": 0, "true": 1}
+Known = frozenset[tuple[str, int]]
+"""What is known to be in variables, by their names."""
+Node = tuple[str, Known]
+"""A block, and what is known before it."""
+
+
+@dataclass(slots=True)
+class Ways:
+    """Where a block leads with what is known before it, and what is known behind it."""
+
+    block: BasicBlock
+    ways: tuple[str, ...]
+    known: Known
+    is_past: bool
+    """Whether it is a test that is to be passed, and where that leads is known."""
+    is_set: bool
+    """Whether a variable is set to a number there: ways begin there, and none goes on."""
+
+
+@dataclass
+class CopiedWays:
+    """Copies ways of a routine that lead past tests. `variables`: of which something may be known; `leading`: blocks that lead to the tests."""
+
+    flow: ControlFlow
+    blocks: dict[str, BasicBlock] = field(init=False)
+    variables: set[str] = field(init=False, default_factory=set)
+    leading: set[str] = field(init=False, default_factory=set)
+    copies: dict[tuple[str, Known], str] = field(init=False, default_factory=dict)
+    numbers: count[int] = field(init=False, default_factory=count)
+
+    def __post_init__(self) -> None:
+        self.blocks = dict(self.flow.blocks)
+
+    def routine(self) -> Routine:
+        """Return the routine with the copies."""
+        return replace(self.flow.routine, blocks=tuple(self.blocks.values()))
+
+    def is_past(self, block: BasicBlock, way: str) -> bool:
+        """Whether a block makes a test that is to be passed, where it leads this way for sure."""
+        raise NotImplementedError
+
+    def goes_on(self, found: Ways) -> bool:
+        """Whether a way that is copied goes on behind a block."""
+        raise NotImplementedError
+
+    def lead(self, label: str) -> None:
+        """Lead a block that sets a number past the tests of it."""
+        block = self.flow.blocks[label]
+        found = self.ways(block, frozenset())
+        if not found.is_set:
+            return
+        goals = {
+            way: goal
+            for way in dict.fromkeys(block.successors)  # in order, for copies are numbered
+            if (goal := self._copy(way, found.known)) != way
+        }
+        for way, goal in goals.items():
+            self.blocks[label] = going_to(self.blocks[label], way, goal)
+
+    def copied_to(self, variables: set[str]) -> set[str]:
+        """Return variables, and those from which they are copied."""
+        found, waiting = set(variables), [*variables]
+        while waiting:
+            wanted = waiting.pop()
+            for each in self.flow.users.get(wanted, ()):
+                source = self.flow.instruction(each.operands[0]) if each.opcode == "store" else None
+                is_copy = source is not None and source.opcode == "load" and each.operands[-1] == wanted
+                if source is not None and is_copy and source.operands[-1] not in found:
+                    found.add(source.operands[-1])
+                    waiting.append(source.operands[-1])
+        return found
+
+    def ways(self, block: BasicBlock, known: Known) -> Ways:
+        """Go through a block with what is known before it."""
+        variables, values, is_set = dict(known), dict[str, int](), False
+
+        def value(name: str) -> int | None:
+            return int(name) if is_number(name) else TRUTHS.get(name, values.get(name))
+
+        for each in block.instructions:
+            result, found = each.result or "", None
+            if each.opcode == "store" and each.operands[-1] in self.variables:
+                variables.pop(each.operands[-1], None)
+                is_set |= is_number(each.operands[0]) or each.operands[0] in TRUTHS
+                if (stored := value(each.operands[0])) is not None:
+                    variables[each.operands[-1]] = stored
+            elif each.opcode == "load":
+                found = variables.get(each.operands[-1])
+            elif each.opcode in ("zext", "sext") or HIDES in each.text:
+                found = value(each.operands[0])
+            elif each.opcode == "icmp":
+                found = answered(predicate(each), *map(value, each.operands[:2]))
+            if found is not None:
+                values[result] = found
+        ways, end = block.successors, block.terminator
+        decided = values.get(end.operands[0]) if end.operands else None
+        if decided is not None:
+            ways = (ways[0 if decided else 1],)
+        is_past = decided is not None and self.is_past(block, ways[0])
+        return Ways(block, ways, frozenset(variables.items()), is_past, is_set)
+
+    def _copy(self, label: str, known: Known) -> str:
+        """Return a copy of the ways from a block with what is known, or the block where none of them leads past the chain."""
+        nodes = dict[tuple[str, Known], Ways]()
+        waiting = [(label, known)]
+        while waiting:
+            node = waiting.pop()
+            if node not in nodes and node[0] in self.leading and node[1]:
+                found = nodes[node] = self.ways(self.flow.blocks[node[0]], node[1])
+                if self.goes_on(found):
+                    waiting += [(way, found.known) for way in found.ways]
+        leads_past = self.short_ways(
+            {node: each for node, each in nodes.items() if node in self._leading_past(nodes)}, (label, known)
+        )
+        rows = [
+            row
+            for node in leads_past
+            for row in nodes[node].block.instructions
+            if row.opcode not in ("load", "store")
+        ]
+        if (label, known) not in leads_past or len(rows) > MOST_COPIED:
+            return label
+        new = sorted(leads_past - self.copies.keys(), key=lambda each: (each[0], sorted(each[1])))
+        for node in new:
+            self.copies[node] = f"{node[0].removesuffix(MARK)}.in{next(self.numbers)}"
+        for node in new:
+            self._add(self.copies[node], nodes[node])
+        return self.copies[label, known]
+
+    def short_ways(self, nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
+        """Those of the nodes, from each of which a way leads past a test, that are on a way from the first one which is short enough."""
+        return {*nodes}
+
+    def _leading_past(self, nodes: Mapping[Node, Ways]) -> set[Node]:
+        leads_past = {node for node, each in nodes.items() if each.is_past}
+        while more := {
+            node
+            for node, each in nodes.items()
+            if node not in leads_past and any((way, each.known) in leads_past for way in each.ways)
+        }:
+            leads_past |= more
+        return leads_past
+
+    def _add(self, label: str, of: Ways) -> None:
+        """Add the copy of a block; where the number is known its test is left out."""
+        ending = label.rsplit(".", 1)[1]
+        names = {each.result: f"{each.result}.{ending}" for each in of.block.instructions if each.result}
+        rows = [
+            renamed(replace(each, result=names.get(each.result or "")), names)
+            for each in of.block.instructions
+        ]
+        end = of.block.terminator
+        if len(of.ways) == 1:
+            text = f"br label %{of.ways[0]}"
+            rows[-1] = Instruction(None, "br", text, (), end.line, location=end.location)
+        block = replace(of.block, label=label, instructions=tuple(rows))
+        for way in set(of.ways):
+            block = going_to(block, way, self.copies.get((way, of.known), way))
+        self.blocks[label] = block
+
+
+def answered(relation: str, one: int | None, other: int | None) -> int | None:
+    """Return whether a relation holds between two numbers, None where one is not known."""
+    if one is None or other is None or relation[0] == "u":
+        return None
+    holds = RELATIONS.get(relation) or RELATIONS[INVERTED[relation]]
+    return int(holds(one, other) == (relation in RELATIONS))
