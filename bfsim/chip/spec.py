@@ -19,7 +19,9 @@ from bfsim.errors import ConfigError
 class SdramSpec:
     """An SDRAM part as the board's boot code sets its controller up. `word_bytes`: width of the data bus.
 
-    `rows_refreshed` rows are refreshed every `refresh_ms`, one at a time.
+    In SCLK cycles, `nCL` pass from a read to its data (CAS latency), `nRCD` from the activation of a row to its first access, `nRP` from
+    a precharge to the next activation, `nRAS` at least from an activation to the precharge, `nWR` from the last word written to it.
+    `turn_round_sclk` pass between a read and a write behind it. `rows_refreshed` rows are refreshed every `refresh_ms`, one at a time.
     """
 
     part: str

@@ -43,21 +43,21 @@ INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
 """Relations by those that hold where they do not."""
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 ENTERS = "bfsim.enters."
-"""Before the symbol of a kernel: a call that does nothing, where the code of an inlined kernel begins."""
+"""Before the symbol of a kernel, names a call that does nothing, where the code of that kernel begins, which is inlined."""
 STEPS = "bfsim.steps"
 """A call that does nothing, with start, stop and step of the loop behind it, whose step is no constant: `guards` checks them."""
 STEPPING = re.compile(
     rf"^  (?:tail )?call void @{re.escape(STEPS)}\(i32 ([^,]+), i32 ([^,]+), i32 ([^,)]+)\)"
 )
 OF_VARIABLE = "cut.variable"
-"""Names what is cut of a variable to be stored, and what LLVM makes of it: before that, in C, it is a word."""
+"""In the name of what a store cuts off a local variable, and of what LLVM makes of that: in C the variable is a whole word until then."""
 HIDES = "bfsim.hides"
 """A call that returns its number, of which LLVM is to know nothing."""
 ENTRY = re.compile(rf"^  (?:tail )?call void @{re.escape(ENTERS)}([\w.$-]+)\(")
 
 
 class SourceLine(NamedTuple):
-    """Where an operation comes from: a line of the kernel `routine`, and through which inlined call, 0 if through none."""
+    """Where an operation comes from: a line of the kernel `routine`. `site`: LLVM's number of the call that was inlined, 0 if none was."""
 
     routine: str
     line: int

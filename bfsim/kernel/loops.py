@@ -12,11 +12,12 @@ from functools import cached_property
 
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 
-NEAR_OVERFLOW = (1 << 31) - (
-    1 << 16
-)  # who compares with so large a number asks whether an i32 is about to wrap
-COPIED = ".copied"  # ending of the label of a loop's second test, where it is made before the loop
-OUTER = ".outer"  # ending of the label that LLVM gives the outer of two loops which it has made of one
+NEAR_OVERFLOW = (1 << 31) - (1 << 16)
+"""Who compares with so large a number asks whether an i32 is about to wrap."""
+COPIED = ".copied"
+"""Ends the names of what is copied from the header of a loop to stand in front of it: a label, and values."""
+OUTER = ".outer"
+"""Ends the label that LLVM gives the outer of two loops which it has made of one."""
 
 
 @dataclass(slots=True)
@@ -41,7 +42,7 @@ class Loop:
 
 @dataclass
 class ControlFlow:
-    """Control flow of one routine. `joins_split`: whether loops that LLVM has split are known again."""
+    """Control flow of one routine. `joins_split`: whether two loops that LLVM has made of one are taken for that one (`is_split`)."""
 
     routine: Routine
     joins_split: bool = True
@@ -239,7 +240,6 @@ def pointee_nbytes(instruction: Instruction) -> int:
     """Bytes that an index of 1 moves a `getelementptr`; 1 for anything else."""
     if instruction.opcode != "getelementptr":
         return 1
-    element = re.search(
-        r"i(\d+)\]*,", instruction.text
-    )  # of an array type, its element: the last index counts
+    # of an array type, its element: the last index counts
+    element = re.search(r"i(\d+)\]*,", instruction.text)
     return int(element.group(1)) // 8 if element else 1

@@ -37,11 +37,7 @@ class IntType:
         return 0, (1 << self.bits) - 1
 
     def __getitem__(self, item: object) -> ArrayType:
-        if item != slice(None):
-            raise TypeError(
-                f"an array type must be written {self.name}[:]: one dimension, no size: a[y * width + x]"
-            )
-        return ArrayType(self)
+        return _array_of(self, item)
 
     def __call__(self, value: int) -> int:
         low, high = self.bounds
@@ -69,11 +65,7 @@ class FloatType:
         return np.dtype(f"f{self.nbytes}")
 
     def __getitem__(self, item: object) -> ArrayType:
-        if item != slice(None):
-            raise TypeError(
-                f"an array type must be written {self.name}[:]: one dimension, no size: a[y * width + x]"
-            )
-        return ArrayType(self)
+        return _array_of(self, item)
 
     def __call__(self, value: float) -> float:
         return float(np.float32(value))
@@ -123,6 +115,15 @@ Value = Number | BoolType | PairType
 
 
 NUMBERS: dict[str, Number] = {each.name: each for each in (i8, u8, i16, u16, i32, u32, f32)}
+
+
+def _array_of(element: Number, item: object) -> ArrayType:
+    """Return the type that `element[item]` names. Raises TypeError unless that is written u8[:]."""
+    if item != slice(None):
+        raise TypeError(
+            f"an array type must be written {element.name}[:]: one dimension, no size: a[y * width + x]"
+        )
+    return ArrayType(element)
 
 
 def type_named(name: str) -> Number | ArrayType:

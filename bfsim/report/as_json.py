@@ -78,11 +78,6 @@ def json_chunks(run: RunRecord, seen: Seen | None = None) -> Iterator[str]:
     yield f"{after}\n"
 
 
-def json_text(run: RunRecord, seen: Seen | None = None) -> str:
-    """Return `json_chunks` as one text."""
-    return "".join(json_chunks(run, seen))
-
-
 def _text(plain: Mapping[str, Any]) -> str:
     text = json.dumps(plain, indent=2, ensure_ascii=False)
     return _NUMBERS.sub(lambda found: f"[{', '.join(found[1].split())}]".replace(",,", ","), text)

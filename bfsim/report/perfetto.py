@@ -35,11 +35,6 @@ _TRACKS = ("frames", "stages", "work", "interrupts")
 """Tracks of a core from top to bottom; the others follow by name."""
 
 
-def ns_of(cclk: int, cclk_hz: Fraction) -> int:
-    """Return the last whole ns at or before a cycle."""
-    return cclk * NS * cclk_hz.denominator // cclk_hz.numerator
-
-
 def cycle_of(ns: int, cclk_hz: Fraction) -> int:
     """Return the cycle that `ns_of` gave `ns` for, at up to 1 GHz."""
     return -(-ns * cclk_hz.numerator // (NS * cclk_hz.denominator))

@@ -15,6 +15,11 @@ _MOST_KNOWN = 1 << 14
 NS = 1_000_000_000
 
 
+def ns_of(cclk: int, cclk_hz: Fraction) -> int:
+    """Return the last whole ns at or before a cycle."""
+    return cclk * NS * cclk_hz.denominator // cclk_hz.numerator
+
+
 class Track:
     """One track, as a sequence of packets: its clock counts ns from the packet before, and its names are told once.
 
@@ -25,7 +30,7 @@ class Track:
     def __init__(self, uuid: int, cclk_hz: Fraction, write: Callable[[bytes], None]) -> None:
         self._uuid = uuid
         self._write = write
-        self._ns_of = NS * cclk_hz.denominator, cclk_hz.numerator
+        self._cclk_hz = cclk_hz
         self._ns = 0
         self._iids: dict[tuple[str, str], int] = {}
         self._beginnings: dict[tuple[str, tuple[str, ...]], Any] = {}
@@ -103,8 +108,7 @@ class Track:
 
     def _append(self, octets: bytes, cclk: int) -> None:
         """Write a packet, with its time."""
-        factor, divisor = self._ns_of
-        ns = cclk * factor // divisor
+        ns = ns_of(cclk, self._cclk_hz)
         octets += _stamp(ns - self._ns)
         self._ns = ns
         self._write(_head(len(octets)) + octets)

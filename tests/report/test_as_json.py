@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 from types import MappingProxyType
 
-from bfsim.report.as_json import SCHEMA, as_json, json_text
+from bfsim.report.as_json import SCHEMA, as_json, json_chunks
 from bfsim.report.digest import cycle_digest
 from bfsim.trace import LineCost, StallReason
 from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
@@ -21,7 +21,7 @@ def test_json_keeps_every_record_and_adds_the_budget() -> None:
         traffic=(traffic("SDRAM", "MDMA1", 5),),
         missed=(2,),
     )
-    plain = json.loads(json_text(run))
+    plain = json.loads("".join(json_chunks(run)))
     assert plain["schema"] == SCHEMA
     assert plain["digests"]["cycles"] == cycle_digest(run.frames)
     assert [each["index"] for each in plain["frames"]] == [0, 1]

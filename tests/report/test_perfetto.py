@@ -14,7 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
-from bfsim.report.perfetto import PerfettoTrace, cycle_of, ns_of
+from bfsim.report.perfetto import PerfettoTrace, cycle_of
+from bfsim.report.perfetto_track import ns_of
 from bfsim.run import Feed, simulate
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import StallReason

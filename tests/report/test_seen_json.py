@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bfsim.report.as_json import json_text
+from bfsim.report.as_json import json_chunks
 from bfsim.report.seen_json import SeenStore, seen_json
 from tests import seen_frames as made
 from tests.report.records import edge_run
@@ -69,12 +69,12 @@ def test_places_in_an_area_count_in_the_whole_picture() -> None:
 def test_each_frame_has_its_own() -> None:
     """By its number in the recording; without anything seen nothing is added."""
     run = edge_run(100, 200)
-    text = json_text(run, {1: seen_json(made.frame(1), with_features=False)})
+    text = "".join(json_chunks(run, {1: seen_json(made.frame(1), with_features=False)}))
     frames = json.loads(text)["frames"]
     assert "seen" not in frames[0]
     assert frames[1]["seen"]["edges_3d_mm"][1] == [-10, 5, 1500]
     assert "[-10, 5, 1500]" in text  # a line each, not a line a number
-    assert json.loads(json_text(run)) == json.loads(json_text(run, {}))
+    assert list(json_chunks(run)) == list(json_chunks(run, {}))
 
 
 def test_a_store_keeps_each_frame_outside_of_memory() -> None:
