@@ -1,10 +1,7 @@
-"""Recordings made from images, raw frames, y4m and video: the right bytes, or an error that says where."""
+"""Recordings made from images and raw frames: the right bytes, or an error that says where."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Sequence
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +13,10 @@ from bfsim.errors import RecordingError
 from bfsim.recording import (
     RecordingReader,
     RectificationTables,
-    StereoFrame,
-    StereoGeometry,
 )
 from bfsim.recording.importer import import_recording, load_rectification
 from bfsim.recording.planes import YuvPlanes
+from tests.recording.pictures import frames_of, noise, save_grey
 
 PRIMARIES = {"red": (255, 0, 0), "green": (0, 255, 0), "blue": (0, 0, 255), "white": (255, 255, 255)}
 # BT.601, full range, by the equations of JFIF 1.02: (U, Y, V).
@@ -30,72 +26,6 @@ PRIMARIES_UYV = {
     "blue": (255, 29, 107),
     "white": (128, 255, 128),
 }
-
-
-def frames_of(path: Path) -> list[StereoFrame]:
-    """Return all frames of a recording."""
-    with RecordingReader(path) as reader:
-        return list(reader.frames())
-
-
-def save_grey(path: Path, level: int, size: tuple[int, int] = (8, 4)) -> None:
-    """Save an image of one grey level."""
-    path.parent.mkdir(exist_ok=True)
-    Image.new("L", size, level).save(path)
-
-
-def noise(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
-    """Return random bytes."""
-    return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
-
-
-def test_pictures_of_one_camera_alone_are_skipped_and_listed(tmp_path: Path) -> None:
-    """Frames that either camera missed: the others go together by their numbers."""
-    for side, numbers in (("left", (1, 2, 3, 5)), ("right", (2, 4, 5))):
-        for number in numbers:
-            save_grey(tmp_path / side / f"{side}_{number}.png", 10 * number + (side == "right"))
-    made = import_recording([tmp_path / "left", tmp_path / "right"], tmp_path / "a.mcap")
-    levels = [(each.left[0, 1], each.right[0, 1]) for each in frames_of(tmp_path / "a.mcap")]
-    assert levels == [(20, 21), (50, 51)]
-    assert [each.name for each in made.skipped] == ["left/left_1.png", "left/left_3.png", "right/right_4.png"]
-    assert {each.reason for each in made.skipped} == {"has no picture of the other camera"}
-
-
-def test_two_folders_in_natural_order(tmp_path: Path) -> None:
-    """Image 2 comes before image 10, other files are no images, and grey has no colour."""
-    for k in (1, 2, 10):
-        save_grey(tmp_path / "left" / f"im{k}.png", k)
-        save_grey(tmp_path / "right" / f"im{k}.bmp", 100 + k)
-    (tmp_path / "left" / "im1.txt").write_text("a label")
-    geometry = StereoGeometry(386, 30, 60, 20)
-    summary = import_recording(
-        [tmp_path / "left", tmp_path / "right"],
-        tmp_path / "a.mcap",
-        fps=25,
-        geometry=geometry,
-        description="x",
-    )
-    assert (summary.width, summary.height, summary.frame_count, summary.fps) == (8, 4, 3, 25)
-    frames = frames_of(tmp_path / "a.mcap")
-    assert [frame.left[0].tolist() for frame in frames] == [[128, k] * 8 for k in (1, 2, 10)]
-    assert [frame.right[3, 1] for frame in frames] == [101, 102, 110]
-    assert [(frame.left_ns, frame.right_ns) for frame in frames] == [(k * 40_000_000,) * 2 for k in range(3)]
-    with RecordingReader(tmp_path / "a.mcap") as reader:
-        assert (reader.geometry, reader.description) == (geometry, "x")
-
-
-def test_pattern_and_single_files(tmp_path: Path) -> None:
-    """Left and right images may share a folder, picked by pattern or one by one."""
-    for k in range(2):
-        save_grey(tmp_path / "both" / f"l{k}.png", k)
-        save_grey(tmp_path / "both" / f"r{k}.png", 10 + k)
-    import_recording([tmp_path / "both" / "l*.png", tmp_path / "both" / "r*.png"], tmp_path / "a.mcap")
-    assert [(frame.left[0, 1], frame.right[0, 1]) for frame in frames_of(tmp_path / "a.mcap")] == [
-        (0, 10),
-        (1, 11),
-    ]
-    import_recording([tmp_path / "both" / "l1.png", tmp_path / "both" / "r0.png"], tmp_path / "b.mcap")
-    assert [(frame.left[0, 1], frame.right[0, 1]) for frame in frames_of(tmp_path / "b.mcap")] == [(1, 10)]
 
 
 @pytest.mark.parametrize("colour", PRIMARIES)
@@ -115,18 +45,6 @@ def test_colour_is_the_mean_of_a_pair(tmp_path: Path) -> None:
     Image.fromarray(pixels).save(tmp_path / "a.png")
     import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True)
     assert frames_of(tmp_path / "a.mcap")[0].left.tolist() == [[(85 + 255) // 2, 76, (255 + 107) // 2, 29]]
-
-
-def test_side_by_side(tmp_path: Path) -> None:
-    """The left half of each picture is the left camera's."""
-    halves = np.hstack([np.full((4, 8), 10, np.uint8), np.full((4, 8), 200, np.uint8)])
-    save_grey(tmp_path / "im" / "0.png", 0)
-    Image.fromarray(halves).save(tmp_path / "im" / "0.png")
-    summary = import_recording([tmp_path / "im"], tmp_path / "a.mcap", side_by_side=True)
-    assert (summary.width, summary.height) == (8, 4)
-    (frame,) = frames_of(tmp_path / "a.mcap")
-    assert set(frame.left[:, 1::2].flat) == {10}
-    assert set(frame.right[:, 1::2].flat) == {200}
 
 
 def test_raw_uyvy_keeps_every_byte(tmp_path: Path) -> None:
@@ -253,40 +171,6 @@ def test_raw_frames_of_a_sensor_have_the_colours_of_their_filters(tmp_path: Path
         assert set(frame.left[2:4].reshape(-1, 4)[1:3].flat) == {u, y, v}
 
 
-@pytest.mark.parametrize(
-    ("colourspace", "chroma_shape", "expected"),
-    [
-        ("C420jpeg", (2, 4), lambda u: u.repeat(2, axis=0)[:3]),
-        ("C422", (3, 4), lambda u: u),
-        ("C444", (3, 8), lambda u: ((u[:, 0::2].astype(int) + u[:, 1::2] + 1) // 2).astype(np.uint8)),
-        ("Cmono", (0, 0), lambda u: np.full((3, 4), 128, np.uint8)),
-    ],
-)
-def test_y4m(
-    tmp_path: Path, colourspace: str, chroma_shape: tuple[int, int], expected: Callable[..., Any]
-) -> None:
-    """Each colour layout, an odd number of rows, parameters on FRAME, and the frame rate of the header."""
-    y, u, v = noise((3, 8)), noise(chroma_shape, 1), noise(chroma_shape, 2)
-    frame_bytes = y.tobytes() + u.tobytes() + v.tobytes()
-    header = f"YUV4MPEG2 W8 H3 F30000:1001 Ip A1:1 {colourspace} XYSCSS=X\n".encode()
-    (tmp_path / "a.y4m").write_bytes(header + b"FRAME\n" + frame_bytes + b"FRAME Ip\n" + frame_bytes)
-    summary = import_recording([tmp_path / "a.y4m"], tmp_path / "a.mcap", mono=True)
-    assert (summary.frame_count, summary.fps) == (2, Fraction(30000, 1001))
-    frames = frames_of(tmp_path / "a.mcap")
-    np.testing.assert_array_equal(frames[1].left[:, 1::2], y)
-    np.testing.assert_array_equal(frames[1].left[:, 0::4], expected(u))
-    np.testing.assert_array_equal(frames[1].left[:, 2::4], expected(v))
-    assert frames[1].left_ns == 33_366_667
-
-
-def test_y4m_of_limited_range_is_stretched(tmp_path: Path) -> None:
-    """Black 16 and white 235 become 0 and 255 when the header says that they are black and white."""
-    pixels = bytes([16, 235, 126, 0]) + bytes([128, 240]) * 2
-    (tmp_path / "a.y4m").write_bytes(b"YUV4MPEG2 W4 H1 F25:1 C422 XCOLORRANGE=LIMITED\nFRAME\n" + pixels)
-    import_recording([tmp_path / "a.y4m"], tmp_path / "a.mcap", mono=True)
-    assert frames_of(tmp_path / "a.mcap")[0].left.tolist() == [[128, 0, 128, 255, 255, 128, 255, 0]]
-
-
 def test_resize_keeps_shapes(tmp_path: Path) -> None:
     """A tall image is cut to the camera's aspect ratio about its centre, then scaled; odd widths are fine."""
     tall = np.zeros((30, 15), np.uint8)
@@ -332,173 +216,6 @@ def test_rectification_tables_of_other_kinds(tmp_path: Path, monkeypatch: pytest
         load_rectification(tmp_path / "far.npy", tmp_path / "far.npy").check(8, 4)
 
 
-def test_video_without_pyav(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without the optional package the error says which command brings it."""
-    monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(RecordingError, match=r'a\.mp4: .* pip install "bfsim\[video\]"'):
-        import_recording([tmp_path / "a.mp4"], tmp_path / "a.mcap", mono=True)
-
-
-def test_video(tmp_path: Path) -> None:
-    """A video in limited range arrives in full range, with its frame rate."""
-    av = pytest.importorskip("av", reason="needs the optional extra: video")
-    with av.open(tmp_path / "a.mkv", "w") as container:
-        stream = container.add_stream("ffv1", rate=12)
-        stream.width, stream.height, stream.pix_fmt = 32, 16, "yuv420p"
-        for level in (16, 235):
-            planes = np.vstack([np.full((16, 32), level, np.uint8), np.full((8, 32), 128, np.uint8)])
-            container.mux(stream.encode(av.VideoFrame.from_ndarray(planes, format="yuv420p")))
-        container.mux(stream.encode())
-    summary = import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True)
-    assert (summary.frame_count, summary.fps) == (2, 12)
-    frames = frames_of(tmp_path / "a.mcap")
-    assert [set(frame.left[:, 1::2].flat) for frame in frames] == [{0}, {255}]
-    assert set(frames[0].left[:, 0::4].flat) == {128}
-
-
-def video(path: Path, times_ms: Sequence[int]) -> None:
-    """Write grey pictures with these times."""
-    av = pytest.importorskip("av", reason="needs the optional extra: video")
-    with av.open(path, "w") as container:
-        stream = container.add_stream("ffv1", rate=30)
-        stream.width, stream.height, stream.pix_fmt = 32, 16, "yuv420p"
-        stream.codec_context.time_base = Fraction(1, 1000)
-        for time_ms in times_ms:
-            frame = av.VideoFrame.from_ndarray(np.full((24, 32), 99, np.uint8), format="yuv420p")
-            frame.pts, frame.time_base = time_ms, Fraction(1, 1000)
-            container.mux(stream.encode(frame))
-        container.mux(stream.encode())
-
-
-def test_uneven_videos_of_two_cameras_must_have_been_taken_at_once(tmp_path: Path) -> None:
-    """Where they were, each has its own times; where one has lost a picture, those of a number are no pair."""
-    left, right, late = (tmp_path / f"{name}.mkv" for name in ("left", "right", "late"))
-    video(left, [0, 33, 233, 266])
-    video(right, [0, 34, 236, 270])
-    video(late, [0, 233, 266, 299])
-    import_recording([left, right], tmp_path / "a.mcap")
-    assert [each.right_ns // 10**6 for each in frames_of(tmp_path / "a.mcap")] == [0, 34, 236, 270]
-    with pytest.raises(
-        RecordingError, match=r"left\.mkv and .*late\.mkv: pictures 1 must be taken at once, not 200 ms"
-    ):
-        import_recording([left, late], tmp_path / "b.mcap")
-    assert import_recording([left, late], tmp_path / "b.mcap", fps=30).frame_count == 4
-
-
-@pytest.mark.parametrize(
-    ("times_ms", "recorded_ms", "note"),
-    [
-        ([0, 33, 67, 100], [0, 33 + 1 / 3, 66 + 2 / 3, 100], ""),
-        (
-            [7, 40, 240, 273],
-            [0, 33, 233, 266],
-            "pictures are 33 to 200 ms apart, as there; `--fps` spaces them",
-        ),
-        ([0, 67, 133, 200], [0, 67, 133, 200], "pictures are 66 to 67 ms apart, as there"),
-    ],
-)
-def test_pictures_of_a_video_come_when_they_came(
-    tmp_path: Path, times_ms: list[int], recorded_ms: list[float], note: str
-) -> None:
-    """Phones take a picture when there is light enough: of a rate that the video does not keep it was recorded, without a word."""
-    video(tmp_path / "a.mkv", times_ms)
-    notes = import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True).notes
-    assert [note in each for each in notes] == ([True] if note else [])
-    assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "a.mcap")] == pytest.approx(recorded_ms)
-    even = import_recording([tmp_path / "a.mkv"], tmp_path / "even.mcap", mono=True, fps=10)
-    assert (even.fps, even.notes) == (10, ())
-    assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "even.mcap")] == [0, 100, 200, 300]
-
-
-def animation(path: Path, format: str) -> None:
-    """Write three pictures that differ."""
-    pictures = [Image.fromarray(each) for each in noise((3, 4, 8, 3))]
-    pictures[0].save(path, format, save_all=True, append_images=pictures[1:], duration=100)
-
-
-@pytest.mark.parametrize("name", ["a.gif", "a.apng"])
-def test_all_pictures_of_an_animation_are_a_video(tmp_path: Path, name: str) -> None:
-    """A GIF was refused by its name, and of a PNG with three pictures one came."""
-    pytest.importorskip("av", reason="needs the optional extra: video")
-    animation(tmp_path / name, "GIF" if name == "a.gif" else "PNG")
-    summary = import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True)
-    assert (summary.frame_count, summary.fps) == (3, 10)
-
-
-def test_gifs_in_a_folder_are_pictures(tmp_path: Path) -> None:
-    """They were passed over by their name; an animation among them is none, as any file of several pictures."""
-    for side in ("left", "right"):
-        (tmp_path / side).mkdir()
-        for number, level in enumerate((10, 200)):
-            Image.new("L", (8, 4), level).save(tmp_path / side / f"{number}.gif")
-        animation(tmp_path / side / "9.gif", "GIF")
-    summary = import_recording([tmp_path / "left", tmp_path / "right"], tmp_path / "a.mcap")
-    assert [frame.left[0, 1] for frame in frames_of(tmp_path / "a.mcap")] == [10, 200]
-    assert {each.name for each in summary.skipped} == {"9.gif"}
-    assert summary.skipped[0].reason.startswith("image must be one picture, not 3")
-
-
-@pytest.mark.parametrize(("name", "format"), [("a.png", "PNG"), ("a.webp", "WEBP"), ("a.tiff", "TIFF")])
-def test_a_picture_of_several_is_refused(tmp_path: Path, name: str, format: str) -> None:
-    """The first one came, and the others were lost without a word."""
-    animation(tmp_path / name, format)
-    with pytest.raises(
-        RecordingError, match=r"a\.\w+: image must be one picture, not 3; `--format video` reads"
-    ):
-        import_recording([tmp_path / name], tmp_path / "a.mcap", mono=True)
-
-
-def test_a_picture_that_a_decoder_stumbles_over_is_skipped(tmp_path: Path) -> None:
-    """Pillow raises a TypeError of a TIFF with a number of another type, which ended the import."""
-    for name in ("bad.tif", "whole.tif"):
-        save_grey(tmp_path / "im" / name, 7)
-    damaged = bytearray((tmp_path / "im" / "bad.tif").read_bytes())
-    damaged[72] = 2
-    (tmp_path / "im" / "bad.tif").write_bytes(damaged)
-    summary = import_recording([tmp_path / "im"], tmp_path / "a.mcap", mono=True)
-    assert summary.frame_count == 1
-    assert [each.name for each in summary.skipped] == ["bad.tif"]
-    assert summary.skipped[0].reason.startswith("image must be whole, but Pillow stops in it (TypeError: ")
-
-
-def test_a_jpeg_with_a_copy_behind_it_is_one_picture(tmp_path: Path) -> None:
-    """Phones put a smaller copy behind the picture."""
-    animation(tmp_path / "a.jpg", "MPO")
-    assert import_recording([tmp_path / "a.jpg"], tmp_path / "a.mcap", mono=True).frame_count == 1
-
-
-@pytest.mark.parametrize(("degrees", "corner"), [(90, (15, 0)), (180, (7, 15)), (-90, (0, 7))])
-def test_video_of_a_turned_camera_is_upright(tmp_path: Path, degrees: int, corner: tuple[int, int]) -> None:
-    """A phone stores its pictures as its sensor lies; the bright upper left corner goes where the video says."""
-    av = pytest.importorskip("av", reason="needs the optional extra: video")
-    picture = np.zeros((8, 16, 3), np.uint8)
-    picture[0, :2] = 255
-    with av.open(tmp_path / "a.mp4", "w") as container:
-        stream = container.add_stream("mpeg4", rate=25)
-        stream.width, stream.height, stream.pix_fmt = 16, 8, "yuv420p"
-        stream.set_display_rotation(degrees)
-        container.mux(stream.encode(av.VideoFrame.from_ndarray(picture)))
-        container.mux(stream.encode())
-    import_recording([tmp_path / "a.mp4"], tmp_path / "a.mcap", mono=True)
-    luma = frames_of(tmp_path / "a.mcap")[0].left[:, 1::2]
-    assert luma.shape == ((8, 16) if degrees == 180 else (16, 8))
-    assert luma[corner] == luma.max() > 200
-
-
-def test_a_file_with_sound_alone_is_no_video(tmp_path: Path) -> None:
-    """The error says what is in it."""
-    av = pytest.importorskip("av", reason="needs the optional extra: video")
-    with av.open(tmp_path / "a.mkv", "w") as container:
-        stream = container.add_stream("pcm_s16le", rate=8000)
-        sound = av.AudioFrame.from_ndarray(np.zeros((1, 64), np.int16), layout="mono")
-        sound.sample_rate = 8000
-        container.mux(stream.encode(sound))
-    with pytest.raises(
-        RecordingError, match=r"a\.mkv: file must be whole and have a video stream, not audio"
-    ):
-        import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True)
-
-
 def test_existing_recording_needs_force(tmp_path: Path) -> None:
     """A recording is not overwritten by accident."""
     save_grey(tmp_path / "a.png", 7)
@@ -528,55 +245,6 @@ def test_progress(tmp_path: Path) -> None:
         [tmp_path / "im"], tmp_path / "a.mcap", mono=True, progress=lambda *now: heard.append(now)
     )
     assert heard == [(1, 3), (2, 3), (3, 3)]
-
-
-def test_mixed_sizes_and_stray_files(tmp_path: Path) -> None:
-    """Upright and lying pictures come to one size; what is no picture is listed, and takes no frame."""
-    (tmp_path / "im").mkdir()
-    save_grey(tmp_path / "im" / "0.png", 10, (30, 40))
-    save_grey(tmp_path / "im" / "1.png", 20, (64, 48))
-    save_grey(tmp_path / "im" / "3.png", 30, (7, 5))
-    (tmp_path / "im" / "2.png").write_text("no image")
-    (tmp_path / "im" / "notes.txt").write_text("a label")
-    for fit, levels in (({"resize": (8, 6)}, [10, 20, 30]), ({"crop": (8, 6)}, [10, 20])):
-        summary = import_recording([tmp_path / "im"], tmp_path / "a.mcap", mono=True, force=True, **fit)
-        frames = frames_of(tmp_path / "a.mcap")
-        assert [set(frame.left[:, 1::2].flat) for frame in frames] == [{level} for level in levels]
-        assert [frame.left_ns for frame in frames] == [round(k * 1e9 / 30) for k in range(len(levels))]
-        assert [each.name for each in summary.skipped][:2] == ["notes.txt", "2.png"]
-    assert summary.skipped[2].reason.startswith("7x5 is too small for `--crop` 8x6")
-    assert summary.source_sizes == ((30, 40), (64, 48))
-
-
-def test_one_bad_picture_takes_its_pair_along(tmp_path: Path) -> None:
-    """What follows stays with its own partner."""
-    for k in range(3):
-        save_grey(tmp_path / "left" / f"{k}.png", k)
-        save_grey(tmp_path / "right" / f"{k}.png", 100 + k)
-    (tmp_path / "left" / "0.png").write_bytes(b"")
-    summary = import_recording([tmp_path / "left", tmp_path / "right"], tmp_path / "a.mcap")
-    frames = frames_of(tmp_path / "a.mcap")
-    assert [(frame.left[0, 1], frame.right[0, 1]) for frame in frames] == [(1, 101), (2, 102)]
-    assert [each.name for each in summary.skipped] == ["0.png"]
-
-
-def test_a_link_that_leads_nowhere_is_a_picture_that_cannot_be_read(tmp_path: Path) -> None:
-    """Data sets kept by git-annex have those where a picture was not fetched."""
-    save_grey(tmp_path / "left" / "0.png", 1)
-    (tmp_path / "left" / "1.png").symlink_to("nowhere.png")
-    (tmp_path / "left" / "2.png").symlink_to(tmp_path / "left" / "2.png")
-    summary = import_recording([tmp_path / "left"], tmp_path / "a.mcap", mono=True)
-    assert summary.frame_count == 1
-    assert [each.name for each in summary.skipped] == ["1.png", "2.png"]
-    assert "No such file" in summary.skipped[0].reason
-
-
-def test_a_pattern_in_a_folder_with_brackets(tmp_path: Path) -> None:
-    """Brackets of a folder that is there are its name; those of the rest are a pattern."""
-    for k in (1, 2, 3):
-        save_grey(tmp_path / "run [1]" / f"left_{k}.png", k)
-    import_recording([str(tmp_path / "run [1]" / "left_[12].png")], tmp_path / "a.mcap", mono=True)
-    assert [frame.left[0, 1] for frame in frames_of(tmp_path / "a.mcap")] == [1, 2]
 
 
 @pytest.mark.parametrize("layout", ["444", "422", "420"])

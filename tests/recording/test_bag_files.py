@@ -1,0 +1,150 @@
+"""Files that are no bag, or a damaged one, and what a bag must not do: grow in memory, make code, or be overwritten."""
+
+from __future__ import annotations
+
+import sys
+import tracemalloc
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+
+from bfsim.errors import RecordingError
+from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording.importer import import_recording
+from tests.recording.bag_imports import each_kind, imported
+from tests.recording.bags import (
+    Ros,
+    grey_pair,
+)
+
+
+@each_kind
+def test_a_bag_is_not_overwritten_by_its_recording(kind: str, tmp_path: Path) -> None:
+    """`record import drive.mcap drive.mcap --force` put the pictures in the place of all that the bag had."""
+    ros = Ros(kind)
+    path = ros.write(tmp_path, grey_pair(ros, range(2)))
+    file = path if path.is_file() else next(each for each in path.iterdir() if each.suffix != ".yaml")
+    before = file.read_bytes()
+    with pytest.raises(
+        RecordingError, match="must be a file of its own, not one that it is made of|not one of pictures"
+    ):
+        import_recording([path], file, force=True)
+    assert file.read_bytes() == before
+
+
+def test_a_recording_is_no_bag_and_a_bag_no_recording(tmp_path: Path) -> None:
+    """Both are MCAP; each is told what it is by its schemas."""
+    own = tmp_path / "own.mcap"
+    with RecordingWriter(own, width=8, height=4) as writer:
+        writer.add(np.zeros((4, 16), np.uint8), np.zeros((4, 16), np.uint8), 0, 0)
+    with pytest.raises(RecordingError, match="it is a recording already, which `bfsim run` plays"):
+        import_recording([own], tmp_path / "a.mcap")
+    ros = Ros("mcap")
+    (bag,) = ros.write(tmp_path, grey_pair(ros, range(2))).glob("*.mcap")
+    with pytest.raises(RecordingError, match="`bfsim record import` makes a recording of a bag of ROS"):
+        RecordingReader(bag)
+
+
+@each_kind
+def test_a_cut_bag_is_refused(kind: str, tmp_path: Path) -> None:
+    """Wherever it was cut, with its name; nothing is left of the recording."""
+    ros = Ros(kind)
+    path = ros.write(tmp_path, grey_pair(ros, range(4)))
+    file = path if path.is_file() else next(path.glob("*.[md]*[p3]"))
+    whole = file.read_bytes()
+    for part in (0, 7, 100, len(whole) // 3, len(whole) // 2, len(whole) - 20):
+        file.write_bytes(whole[:part])
+        with pytest.raises(RecordingError, match="drive"):
+            import_recording([path], tmp_path / "out.mcap")
+    assert not (tmp_path / "out.mcap").exists()
+
+
+@pytest.mark.exhaustive
+@each_kind
+def test_a_damaged_bag_is_refused_or_read(kind: str, tmp_path: Path) -> None:
+    """Some bytes are others: no traceback, and no picture of another size."""
+    ros = Ros(kind)
+    path = ros.write(tmp_path, grey_pair(ros, range(4)))
+    file = path if path.is_file() else next(path.glob("*.[md]*[p3]"))
+    whole = file.read_bytes()
+    refused = 0
+    random = Random(15)
+    for _ in range(60):
+        octets = bytearray(whole)
+        for _ in range(random.choice((1, 2, 8))):
+            octets[random.randrange(len(octets))] = random.choice((0, 1, 127, 255, random.randrange(256)))
+        file.write_bytes(octets)
+        try:
+            summary = import_recording([path], tmp_path / "out.mcap", force=True)
+        except RecordingError as error:
+            refused += 1
+            assert len(str(error)) < 1000
+        else:
+            assert (summary.width, summary.height) == (8, 4)
+    assert refused
+
+
+def test_other_files_are_no_bags(tmp_path: Path) -> None:
+    """By name, and by what is in them."""
+    for name, octets in (
+        ("a.bag", b""),
+        ("b.bag", b"#ROSBAG V1.2\n"),
+        ("c.db3", b"SQLite format 3\0"),
+        ("d.mcap", b"mcap"),
+    ):
+        (tmp_path / name).write_bytes(octets)
+        with pytest.raises(RecordingError, match=f"{name}: bag must be whole and of ROS"):
+            import_recording([tmp_path / name], tmp_path / "out.mcap")
+    with pytest.raises(RecordingError, match="none.bag: bag must be a file or a folder, but is not there"):
+        import_recording([tmp_path / "none.bag"], tmp_path / "out.mcap")
+    (tmp_path / "metadata.yaml").write_text("!!python/object/apply:os.system ['touch pwned']\n")
+    with pytest.raises(RecordingError, match="bag must be whole and of ROS"):
+        import_recording([tmp_path], tmp_path.parent / "out.mcap")
+    assert not Path("pwned").exists()
+
+
+def test_nothing_is_made_of_the_definitions_in_a_bag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """rosbags would make code of them; an Image of one's own is refused."""
+    ros = Ros("ros1")
+    path = ros.write(tmp_path, grey_pair(ros, range(2)))
+    octets = path.read_bytes()
+    assert len(imported(path)) == 2
+
+    def refuse(*_: object) -> None:
+        raise AssertionError("a definition was compiled")
+
+    monkeypatch.setattr("rosbags.typesys.store.Typestore.register", refuse)
+    assert len(imported(path)) == 2
+    path.write_bytes(octets.replace(b"060021388200f6f0f447d0fcd9c64743", b"1" * 32))
+    with pytest.raises(
+        RecordingError, match="must have sensor_msgs/msg/Image as ROS defines it, not another"
+    ):
+        imported(path)
+
+
+def test_without_rosbags_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is optional."""
+    ros = Ros("ros1")
+    path = ros.write(tmp_path, grey_pair(ros, range(2)))
+    monkeypatch.setitem(sys.modules, "rosbags", None)
+    with pytest.raises(RecordingError, match=r'pip install "bfsim\[ros\]"'):
+        imported(path)
+
+
+@pytest.mark.exhaustive
+def test_memory_does_not_grow_with_the_bag(tmp_path: Path) -> None:
+    """Four times as many pictures, the same peak."""
+    ros = Ros("ros1")
+    peaks = []
+    for count in (10, 40):
+        folder = tmp_path / str(count)
+        folder.mkdir()
+        path = ros.write(folder, grey_pair(ros, range(count), size=(320, 240)))
+        imported(path.parent / path.name, mono=False)
+        tracemalloc.start()
+        import_recording([path], folder / "again.mcap")
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.2 * peaks[0]
