@@ -80,7 +80,8 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
     module = llvm.parse_assembly(rewritten_early(str(module), profile))
     if profile.applies(Rule.JUMP_TABLES):
         module = with_switches(module, profile)
-    module = with_threaded_choices(module)
+    if profile.applies(Rule.THREADED_CHOICES):
+        module = with_threaded_choices(module)
     generic.run(PASSES, module)
     module = _rotated(module, profile)
     generic.run(LATER_PASSES, module)

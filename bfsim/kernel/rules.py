@@ -115,6 +115,9 @@ class Rule(StrEnum):
     NARROW_BITS = "narrow values are masked and joined bit by bit before they are extended"
     SUMMED_INDICES = "an index that is a sum is added up before it becomes an address, unless elements are bytes and one access uses it"
 
+    CODE_HOISTING = "what every way from a test computes is computed before it, if one of its sides does so"
+    THREADED_CHOICES = "a way on which a number was chosen leads past later tests of it"
+
 
 GCC: dict[Rule, str] = {
     Rule.COPIED_HEADERS: "should_duplicate_loop_header_p in tree-ssa-loop-ch.cc",
@@ -147,6 +150,8 @@ GCC: dict[Rule, str] = {
     Rule.JUMP_TABLES: "gimple-if-to-switch.cc",
     Rule.CONSTANT_TABLES: "switch_conversion in tree-switch-conversion.cc",
     Rule.STATE_MACHINES: "tree-ssa-threadbackward.cc",
+    Rule.CODE_HOISTING: "do_hoist_insertion in tree-ssa-pre.cc",
+    Rule.THREADED_CHOICES: "tree-ssa-threadbackward.cc",
     Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
@@ -237,6 +242,8 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.EXPANSION_ORDER: (),
     Rule.BYTE_ADDRESSES: (),
     Rule.NARROW_BITS: (),
+    Rule.CODE_HOISTING: (),  # from kernels that are not measured here: tests/kernel/test_code_that_decides.py
+    Rule.THREADED_CHOICES: (),
     Rule.BIT_TESTS: (),
     Rule.CONSTANT_TABLES: (),
     Rule.STATE_MACHINES: (),

@@ -84,6 +84,7 @@ SWITCHES = {
     split_tests: Rule.SPLIT_TESTS,
     split_loads: Rule.MERGED_LOADS,
     without_partial_redundancies: Rule.PARTIAL_REDUNDANCIES,
+    with_hoisted_code: Rule.CODE_HOISTING,
     without_redundant_loads: Rule.CARRIED_LOADS,
     with_early_loads: Rule.SINKING,
     sink: Rule.SINKING,
@@ -111,7 +112,9 @@ def rewritten_early(text: str, profile: CompilerProfile) -> str:
 
 
 def _rewritten_early(routine: Routine, profile: CompilerProfile) -> Routine:
-    routine = with_range_tests(without_repeated_loads(routine))
+    routine = without_repeated_loads(routine)
+    if profile.applies(Rule.BIT_TESTS):
+        routine = with_range_tests(routine)
     if profile.applies(Rule.REMAINDERS):
         routine = with_remainders(routine)
     if profile.applies(Rule.NARROW_CHOICES):

@@ -15,6 +15,7 @@ from bfsim.kernel import generic
 from bfsim.kernel.ir_text import HIDES, BasicBlock, Routine, read_module, with_names, write_module
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.constant_tables import chosen, load_chosen
+from bfsim.kernel.lowering.direct_conditions import with_direct_conditions
 from bfsim.kernel.lowering.edges import come_to_from, going_to
 from bfsim.kernel.lowering.hidden_numbers import DECLARED, hide
 from bfsim.kernel.lowering.jump_tables import MARK, has_table
@@ -53,7 +54,7 @@ def _threaded(module: llvm.ModuleRef) -> llvm.ModuleRef:
 
 def _marked(routine: Routine, tables: list[str], profile: CompilerProfile) -> Routine:
     """Return `routine` with its chains marked; those that only choose constants are loads from `tables`, which are added."""
-    flow = ControlFlow(routine)
+    flow = ControlFlow(with_direct_conditions(routine))
     switches = [each for each in chains(flow, is_alone) if has_table(flow, each) and each[0].bits == WORD]
     if not switches:
         return routine
