@@ -1,7 +1,8 @@
 """How many registers of each bank are taken at once, from which follows how many a function saves; and which arguments stay on the stack.
 
-A constant that is no immediate takes a register beside the operands of its instruction. The register of an operand that is done with may
-be that of the result; in a loop, unless the operand was moved to a pointer register for that [order_regs_for_reload in reload1.cc of GCC 12].
+A constant that is no immediate takes a register beside the operands of its instruction: from its first use in a block to its last one, and all the
+time in the loops that use it. The register of an operand that is done with may be that of the result; in a loop, unless the operand was moved to a
+pointer register for that [order_regs_for_reload in reload1.cc of GCC 12].
 
 To save one more register costs a store and a load. So where all others are taken, an argument on the stack that is used seldom stays
 there, and is loaded wherever it is used [assign_hard_reg in ira-color.cc].
@@ -31,7 +32,12 @@ class TakenRegisters:
 
     def __init__(self, webs: Webs, pressure: Pressure) -> None:
         self.webs, self.flow, self.code, self.bank = webs, webs.flow, webs.code, webs.bank
-        self.in_loops = {name for loop in self.flow.loops for name in pressure.constants_in(loop)}
+        self.in_loops = defaultdict[str, set[str]](set)
+        """Of each block: constants that loops around it have in registers, which are loaded before the outermost one."""
+        for loop in self.flow.loops:
+            if self.flow.loops_of(loop.header)[-1] is loop:
+                for label in self.flow.inside(loop):
+                    self.in_loops[label] |= pressure.constants_in(loop).keys()
         self.on_stack = set(webs.context.parameters()[isa.REGISTER_ARGUMENTS :])
         self.staying: set[str] = set()
         """Arguments that stay on the stack."""
@@ -55,13 +61,13 @@ class TakenRegisters:
 
     def most(self, bank: RegisterBank) -> int:
         """How many of a bank are taken at once."""
-        constants = len(self.in_loops) if bank is DATA else 0
-        return min(max(map(len, self._points(bank)), default=0) + constants, AVAILABLE[bank])
+        return min(max(map(len, self._points(bank)), default=0), AVAILABLE[bank])
 
     def _points(self, bank: RegisterBank) -> Iterator[set[str]]:
         for label in self.flow.blocks:
             for taken in self._taken(label):
-                yield {name for name in taken - self.staying if self._bank(name) is bank}
+                everything = (taken | self.in_loops[label]) - self.staying
+                yield {name for name in everything if self._bank(name) is bank}
 
     def _bank(self, name: str) -> RegisterBank | None:
         return DATA if name.startswith("#") else self.bank.get(self.webs.find(name))
@@ -75,14 +81,27 @@ class TakenRegisters:
         alive = {self._key(name) for name in self.webs.live.out[label]}
         yield set(alive)
         in_loop = self.flow.innermost(label) is not None
-        for instruction in reversed(self.code.of[label]):
+        constants = self._constants(label)
+        for number, instruction in reversed([*enumerate(self.code.of[label])]):
             behind = set(alive)
             if instruction.result:
                 alive.discard(self._key(instruction.result))
             alive.update(self._key(name) for name, _ in instruction.uses if not name.startswith("#"))
-            yield set(alive) if in_loop else alive | _constants(instruction)
+            yield (
+                set(alive)
+                if in_loop
+                else alive | {name for name, uses in constants.items() if number in uses}
+            )
             if in_loop and (moved := self._kept_from_result(instruction)):
                 yield behind | moved | {self._key(instruction.result or "")}
+
+    def _constants(self, label: str) -> dict[str, range]:
+        """Constants that a block has in registers, and from which of its instructions to which: one that is used again stays [cse.cc]."""
+        found: dict[str, range] = {}
+        for number, instruction in enumerate(self.code.of[label]):
+            for name in _constants(instruction):
+                found[name] = range(found.get(name, range(number, 0)).start, number + 1)
+        return found
 
     def _kept_from_result(self, instruction: MachineInstruction) -> set[str]:
         """Operands that were moved to a pointer register for a result in one."""
