@@ -33,7 +33,10 @@ class _Caller:
         lengths = tuple(map(len, arrays))
         if lengths not in self.calls:
             copies = [each.copy() for each in arrays]
-            self.calls[lengths] = ObjectCall(self.compiled, copies, self.kernel.check, self.totals), copies
+            self.calls[lengths] = (
+                ObjectCall(self.compiled, copies, self.kernel.arguments.check, self.totals),
+                copies,
+            )
         call, copies = self.calls[lengths]
         for copy, array in zip(copies, arrays, strict=True):
             copy[:] = array

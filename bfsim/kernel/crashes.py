@@ -92,8 +92,7 @@ def take_signals() -> None:
 def watch(running: int, function: Function) -> None:
     """Name the kernel `function` in a crash while the word at the address `running` is not 0."""
     if os.name == "posix":
-        place = f"{function.file}:{function.first_line}"
-        _push(running, f"while the kernel {function.name} ({place}) was running; {ADVICE}\n")
+        _push(running, f"while the kernel {function.name} ({function.place}) was running; {ADVICE}\n")
 
 
 def _push(running: int, text: str) -> None:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cached_property, wraps
-from itertools import combinations
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import BfsimWarning, KernelError
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.arguments import Arguments
 from bfsim.kernel.costs import costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.function import Function
@@ -24,8 +24,7 @@ from bfsim.kernel.jit import CompiledKernel, compile_kernel
 from bfsim.kernel.prepared_call import PreparedCall
 from bfsim.kernel.profile import DEFAULT, GCC_O0, RUN_AS_COMPILED, CompilerProfile, profile_named
 from bfsim.kernel.reading import read_kernel
-from bfsim.kernel.types import ArrayType, FloatType, IntType
-from bfsim.kernel.work import Work, is_single
+from bfsim.kernel.work import Work
 from bfsim.machine_code import Effort
 from bfsim.machine_code.endless import ended_by_signals
 
@@ -114,22 +113,17 @@ class Kernel:
     @property
     def place(self) -> str:
         """Where it is defined, as file:line."""
-        return f"{self.function.file}:{self.function.first_line}"
+        return self.function.place
 
     @cached_property
+    def arguments(self) -> Arguments:
+        """What a call must be given."""
+        return Arguments(self.function)
+
+    @property
     def array_positions(self) -> tuple[int, ...]:
         """Which parameters are arrays."""
-        return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, ArrayType))
-
-    @cached_property
-    def integer_positions(self) -> tuple[int, ...]:
-        """Which parameters are integers."""
-        return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, IntType))
-
-    @cached_property
-    def float_positions(self) -> tuple[int, ...]:
-        """Which parameters are single floats."""
-        return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, FloatType))
+        return self.arguments.array_positions
 
     def compile(
         self,
@@ -182,13 +176,17 @@ class Kernel:
         `memory`: of the board, where object code finds arrays that lie in it without a copy.
         """
         for position, array in zip(self.array_positions, arrays, strict=True):
-            self.check_array(position, array)
+            self.arguments.check_array(position, array)
         if not isinstance(code, CompiledKernel):
             from bfsim.kernel.objects.calls import ObjectCall  # most firmware is Python
 
-            return ObjectCall(code, arrays, self.check, totals, access_trace, first_site, stack, memory)
-        self._check_overlaps(arrays)
-        return PreparedCall(self.function, code, arrays, self.check, totals, access_trace, first_site)
+            return ObjectCall(
+                code, arrays, self.arguments.check, totals, access_trace, first_site, stack, memory
+            )
+        self.arguments.check_overlaps(arrays)
+        return PreparedCall(
+            self.function, code, arrays, self.arguments.check, totals, access_trace, first_site
+        )
 
     def _refuse_floats(self, profile: CompilerProfile) -> None:
         if profile.floats is not None:
@@ -209,87 +207,6 @@ class Kernel:
     def arrays_of(self) -> Callable[[Sequence[Any]], Any]:
         """Picks the array arguments out of all: a tuple, or the argument itself when there is one."""
         return itemgetter(*self.array_positions) if self.array_positions else lambda _arguments: ()
-
-    @cached_property
-    def _ranges(self) -> tuple[tuple[int, int, int], ...]:
-        """(position, smallest, largest) of each integer parameter."""
-        kinds = [(each, self.function.parameters[each].type) for each in self.integer_positions]
-        return tuple((position, *kind.bounds) for position, kind in kinds if isinstance(kind, IntType))
-
-    def check(self, arguments: Sequence[object]) -> None:
-        """Raise KernelError unless there is one argument per parameter and every integer fits its type."""
-        if len(arguments) != len(self.function.parameters):
-            names = ", ".join(each.name for each in self.function.parameters)
-            counted = "1 argument" if len(arguments) == 1 else f"{len(arguments)} arguments"
-            raise KernelError(f"{self.name} must get {names}, not {counted} ({self.place})")
-        for position, low, high in self._ranges:
-            value = arguments[position]
-            if not isinstance(value, (int, np.integer)) or not low <= value <= high:
-                name = self.function.parameters[position].name
-                raise KernelError(
-                    f"{name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})"
-                )
-        for position in self.float_positions:
-            if not is_single(arguments[position]):
-                name = self.function.parameters[position].name
-                raise KernelError(
-                    f"{name} must be a float of 32 bits, not {arguments[position]!r} ({self.name}, {self.place})"
-                )
-
-    def check_array(self, position: int, array: object) -> None:
-        """Raise KernelError unless `array` is what parameter number `position` takes."""
-        wanted, is_written = self._elements[position]
-        if not (isinstance(array, np.ndarray) and array.dtype == wanted and array.ndim == 1):
-            raise self._misfit(position, array)
-        flags = array.flags
-        if not (flags.c_contiguous and flags.aligned and (flags.writeable or not is_written)):
-            raise self._misfit(position, array)
-
-    @cached_property
-    def _elements(self) -> dict[int, tuple[np.dtype[Any], bool]]:
-        """Of each array parameter the type of its elements, and whether the kernel stores into it."""
-        parameters = [(each, self.function.parameters[each]) for each in self.array_positions]
-        return {
-            position: (each.type.element.dtype, each.name in self.function.written)
-            for position, each in parameters
-            if isinstance(each.type, ArrayType)
-        }
-
-    def _misfit(self, position: int, array: object) -> KernelError:
-        """Return what is wrong with an array for a parameter that does not take it."""
-        parameter, (wanted, _) = self.function.parameters[position], self._elements[position]
-        where = f"({parameter.name} of {self.name}, {self.place})"
-        if not isinstance(array, np.ndarray):
-            what = f"be an array {parameter.type}, not {type(array).__name__}"
-        elif array.dtype == wanted and array.ndim == 1 and not array.flags.c_contiguous:
-            step = array.strides[0] // wanted.itemsize
-            what = f"be one contiguous row of {wanted}, not a view in steps of {step} elements; pass a copy, array.copy()"
-        elif array.dtype != wanted or array.ndim != 1:
-            shape = "x".join(map(str, array.shape))
-            what = f"be one contiguous row of {wanted}, not {array.dtype} of shape {shape}"
-        elif not array.flags.aligned:
-            what = f"lie at a multiple of {wanted.itemsize} bytes"
-        else:
-            what = "be writeable, because the kernel stores into it"
-        return KernelError(f"{parameter.name} must {what} {where}")
-
-    def _check_overlaps(self, arrays: Sequence[NDArray[Any]]) -> None:
-        """Raise KernelError if an array that is written lies over one of wider or narrower elements, unless one is of bytes.
-
-        The compiled code may have loaded such an element before the store, as C compilers may.
-        """
-        if len({each.itemsize for each in arrays} - {1}) < 2:  # of one width, beside bytes
-            return
-        named = list(zip(self.array_positions, arrays, strict=True))
-        for (position, one), (behind, other) in combinations(named, 2):
-            names = [self.function.parameters[each].name for each in (position, behind)]
-            if one.itemsize == other.itemsize or 1 in (one.itemsize, other.itemsize):
-                continue
-            if not self.function.written.isdisjoint(names) and np.may_share_memory(one, other):
-                raise KernelError(
-                    f"{names[0]} ({one.dtype}) and {names[1]} ({other.dtype}) must not share memory, for the kernel stores "
-                    f"into it: C compilers take it that elements of different widths do not ({self.name}, {self.place})"
-                )
 
     def sanitize(self, arguments: Sequence[Any]) -> None:
         """Run the kernel as it is written, unoptimised, with every index and divisor checked, and undo what it stored.
@@ -321,7 +238,7 @@ class Kernel:
             )
         if _IN_PYTHON.get() and self.definition:
             return self.definition(*arguments)
-        self.check(arguments)
+        self.arguments.check(arguments)
         return self._run(arguments, self.compile(DEFAULT)).value
 
     def cost(self, *arguments: Any, profile: str = DEFAULT.name) -> int:
@@ -331,7 +248,7 @@ class Kernel:
         the compiler; with `gcc` and `gcc-adi` it is the cost of the code that GCC makes of the kernel, or with a warning an estimate where
         there is none. Raises KernelError for arguments that do not fit, and ConfigError with what GCC says if it refuses.
         """
-        self.check(arguments)
+        self.arguments.check(arguments)
         compiler = profile_named(profile)
         work = self._run(arguments, self._own(compiler) or self.compile(compiler))
         return work.issue_cclk + work.stall_cclk

@@ -61,6 +61,11 @@ class Function:
         """Return the symbol alone, which stands for it in the text of a call."""
         return self.symbol
 
+    @property
+    def place(self) -> str:
+        """Where it is defined, as file:line."""
+        return f"{self.file}:{self.first_line}"
+
     @cached_property
     def _body(self) -> Body:
         return self.read()

@@ -150,7 +150,7 @@ def _check_callees(source: KernelSource, function: Function) -> None:
 
             source.refuse(
                 parsed(source.text),
-                f"it needs two different kernels named {each.name}, {each.file}:{each.first_line} "
-                f"and {known[each.symbol].file}:{known[each.symbol].first_line}",
+                f"it needs two different kernels named {each.name}, {each.place} and "
+                f"{known[each.symbol].place}",
                 "rename one",
             )

@@ -59,7 +59,7 @@ def _translated(kernel: Kernel, arguments: Sequence[Argument], loaded: LoadedCod
     found = loaded.compiled(kernel.function)
     copies = copied(arguments)
     arrays = [each for each in copies if isinstance(each, np.ndarray)]
-    work = ObjectCall(found, arrays, kernel.check, found.new_totals()).run(*copies)
+    work = ObjectCall(found, arrays, kernel.arguments.check, found.new_totals()).run(*copies)
     return Played(work.issue_cclk, checksum(copies, work.value))
 
 

@@ -48,7 +48,7 @@ class Sampler:
 
 
 def _copied(kernel: Kernel, arguments: Sequence[Row | int]) -> tuple[Argument, ...]:
-    floats = kernel.float_positions
+    floats = kernel.arguments.float_positions
     return tuple(
         each.array.copy() if isinstance(each, Row) else float(each) if number in floats else each
         for number, each in enumerate(arguments)

@@ -114,7 +114,7 @@ def _run_beside(
         if not np.array_equal(array.view(np.uint8), copied):
             raise KernelError(
                 f"{name} must be writeable, because the kernel stores into it ({name} of {function.name}, "
-                f"{function.file}:{function.first_line})"
+                f"{function.place})"
             )
     return work
 

@@ -213,7 +213,7 @@ class CallCache:
                 raise FirmwareError(
                     f"kernel {kernel.name} must get what a wait gives, `(yield from {wait})`, not the wait `{wait}`"
                 )
-        kernel.check(arguments)
+        kernel.arguments.check(arguments)
         rows = []
         for position in kernel.array_positions:
             row = arguments[position]
