@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.function import Function
-from bfsim.kernel.types import ArrayType, FloatType
+from bfsim.kernel.types import ArrayType, FloatType, Number
 from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 
 FIRST_ARGUMENT = 1
@@ -63,58 +63,26 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
 def entry_point(function: Function, program: Program, entry: str, *, traced: bool, checked: bool) -> str:
     """Return the entry point of `function`: call it, settle what its callees counted, leave the cycles and the value."""
     counters = program.counters
+    called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
     rows = [
         f"  %counts = alloca [{max(1, len(counters))} x i64]",
         "  %totals = load ptr, ptr %arguments",
         "  store ptr %totals, ptr @bfsim.totals",
         "  store i64 0, ptr @bfsim.cclk",
     ]
-    values, slot = [], FIRST_ARGUMENT
-
-    def take(kind: str) -> str:
-        nonlocal slot
-        rows.append(f"  %p{slot} = getelementptr i64, ptr %arguments, i64 {slot}")
-        rows.append(f"  %a{slot} = load {kind}, ptr %p{slot}")
-        slot += 1
-        return f"%a{slot - 1}"
-
-    for parameter in function.parameters:
-        if isinstance(parameter.type, ArrayType):
-            values.append(f"ptr {take('ptr')}")
-            values.append(f"i32 {take('i32')}")
-            continue
-        word = take("i64")
-        if isinstance(parameter.type, FloatType):
-            rows += [
-                f"  {word}.low = trunc i64 {word} to i32",
-                f"  {word}.float = bitcast i32 {word}.low to float",
-            ]
-            values.append(f"float {word}.float")
-        else:
-            rows.append(f"  {word}.low = trunc i64 {word} to i32")
-            values.append(f"i32 {word}.low")
+    words = _Words(rows)
+    handed = [value for each in function.parameters for value in words.handed(each.type)]
     rows += _begin(entry, checked=checked)
+    handed.append("ptr %counts")
     if traced:
-        rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
+        rows.append(f"  store ptr {words.take('ptr')}, ptr @bfsim.state")
         rows.append("  store i64 0, ptr @bfsim.clock")
-    handed = ["ptr %counts", *([f"i64 {take('i64')}"] if traced else [])]
-    called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
+        handed.append(f"i64 {words.take('i64')}")
     for number in called:
         rows.append(f"  %count.{number} = getelementptr i64, ptr %counts, i64 {number}")
         rows.append(f"  store i64 0, ptr %count.{number}")
-    call = f"@{function.symbol}({', '.join([*values, *handed])})"
-    if isinstance(function.result, FloatType):
-        rows.append(f"  %value = call float {call}")
-        rows.append("  %bits = bitcast float %value to i32")
-        rows.append("  %wide = zext i32 %bits to i64")
-    elif function.result:
-        rows.append(f"  %value = call i32 {call}")
-        rows.append(f"  %wide = {'sext' if function.result.signed else 'zext'} i32 %value to i64")
-    else:
-        rows.append(f"  call void {call}")
-    if function.result:
-        rows += _leave("%wide", VALUE)
     rows += [
+        *_call(function, ", ".join(handed)),
         *_callees(called, counters),
         f"  store volatile i64 0, ptr @{running_name(entry)}",
         "  %cclk = load i64, ptr @bfsim.cclk",
@@ -127,6 +95,50 @@ def entry_point(function: Function, program: Program, entry: str, *, traced: boo
     body = "\n".join(rows)
     head = "declare i32 @_setjmp(ptr) returns_twice\n" if checked else ""
     return f"{head}define i64 @{entry}(ptr %data, ptr %arguments, ptr %left) {{\n{body}\n}}\n"
+
+
+class _Words:
+    """The words of the arguments, which are taken one after the other by `rows`."""
+
+    def __init__(self, rows: list[str]) -> None:
+        self._rows = rows
+        self._next = FIRST_ARGUMENT
+
+    def take(self, kind: str) -> str:
+        """Return the value of the next word."""
+        number = self._next
+        self._next += 1
+        self._rows.append(f"  %p{number} = getelementptr i64, ptr %arguments, i64 {number}")
+        self._rows.append(f"  %a{number} = load {kind}, ptr %p{number}")
+        return f"%a{number}"
+
+    def handed(self, kind: Number | ArrayType) -> list[str]:
+        """Return what a function is handed for a parameter of a type."""
+        if isinstance(kind, ArrayType):
+            return [f"ptr {self.take('ptr')}", f"i32 {self.take('i32')}"]
+        word = self.take("i64")
+        self._rows.append(f"  {word}.low = trunc i64 {word} to i32")
+        if not isinstance(kind, FloatType):
+            return [f"i32 {word}.low"]
+        self._rows.append(f"  {word}.float = bitcast i32 {word}.low to float")
+        return [f"float {word}.float"]
+
+
+def _call(function: Function, handed: str) -> list[str]:
+    """Call a function, and leave its value if it has one."""
+    call = f"@{function.symbol}({handed})"
+    if not function.result:
+        return [f"  call void {call}"]
+    if isinstance(function.result, FloatType):
+        value = [
+            f"  %value = call float {call}",
+            "  %bits = bitcast float %value to i32",
+            "  %wide = zext i32 %bits to i64",
+        ]
+    else:
+        extend = "sext" if function.result.signed else "zext"
+        value = [f"  %value = call i32 {call}", f"  %wide = {extend} i32 %value to i64"]
+    return [*value, *_leave("%wide", VALUE)]
 
 
 def _leave(value: str, number: int) -> list[str]:
