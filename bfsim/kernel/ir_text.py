@@ -2,6 +2,8 @@
 
 Passes of our own (`rewrites`) take a routine and return another one; what is costed, and what is compiled for the host, is read from
 the text that they leave. Of the notes behind an instruction, its source line and its branch weights are kept.
+
+In this file: what the text has, how it is said anew with other names and values, how it is read, and how it is written.
 """
 
 from __future__ import annotations
@@ -188,6 +190,41 @@ def without_marks(routine: Routine) -> Routine:
     return replace(routine, blocks=tuple(blocks))
 
 
+def arms_of(phi: Instruction) -> dict[str, str]:
+    """Return the values of a phi by the labels of the blocks that they come from."""
+    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+
+
+def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
+    """Return a phi of other values, by the labels of the blocks that they come from."""
+    text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())
+    return replace(phi, text=f"phi {phi.text.split()[1]} {text}", operands=tuple(arms.values()))
+
+
+def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
+    """Return an instruction that reads what `names` has in place of the values named there."""
+    if not any(name in names for name in each.operands):
+        return each
+    text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
+    return replace(each, text=text, operands=tuple(names.get(name, name) for name in each.operands))
+
+
+def written(result: str, text: str, operands: tuple[str, ...], at: Instruction) -> Instruction:
+    """Return the instruction `text`, of the same place in the source as the instruction `at`."""
+    return Instruction(result, text.split(maxsplit=1)[0], text, operands, at.line, location=at.location)
+
+
+def is_number(value: str) -> bool:
+    """Whether a value is an integer of the text."""
+    return value.lstrip("-").isdigit()
+
+
+def predicate(compare: Instruction) -> str:
+    """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
+    words = compare.text.split()
+    return words[2] if words[1] in ("samesign", "fast") else words[1]
+
+
 def read_module(text: str) -> tuple[Routine, ...]:
     """Read every function definition of an LLVM module."""
     weights_of = {
@@ -210,16 +247,6 @@ def read_module(text: str) -> tuple[Routine, ...]:
                 Routine(first.routine, parameters, _blocks(_joined(body), first, lines_of, weights_of))
             )
     return tuple(routines)
-
-
-def _source_lines(text: str) -> dict[str, SourceLine]:
-    """Return the source line of each note of one, by the note's number.
-
-    Line 0 is LLVM's word for code merged from several lines: it is no note, so that the code stays with the line before it.
-    """
-    routines = {found[1]: found[2] for found in map(SUBPROGRAM.match, text.splitlines()) if found}
-    notes = [found for found in map(LOCATION.match, text.splitlines()) if found and found[2] != "0"]
-    return {each[1]: SourceLine(routines[each[3]], int(each[2]), int(each[4] or 0)) for each in notes}
 
 
 def inlined_through(text: str) -> dict[int, tuple[str, ...]]:
@@ -246,54 +273,14 @@ def placed_rows(text: str) -> Iterator[tuple[str, str, str]]:
         yield symbol, label, row
 
 
-def with_names(text: str) -> str:
-    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change.
+def _source_lines(text: str) -> dict[str, SourceLine]:
+    """Return the source line of each note of one, by the note's number.
 
-    The names are other ones than those of an earlier time.
+    Line 0 is LLVM's word for code merged from several lines: it is no note, so that the code stays with the line before it.
     """
-    mark = ".n"
-    while f"%{mark}" in text:
-        mark += "n"
-    return NUMBERED.sub(lambda found: f"%{mark}{found[1]}" if found[1] else f"{mark}{found[2]}", text)
-
-
-def write_module(text: str, routines: Sequence[Routine]) -> str:
-    """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies.
-
-    Weights that stand in no note yet are noted.
-    """
-    notes = dict[tuple[int, ...], str]()
-    first = max(map(int, NOTE.findall(text)), default=-1) + 1
-
-    def noted(each: Instruction) -> Instruction:
-        if not each.weights or each.hint:
-            return each
-        return replace(each, hint=notes.setdefault(each.weights, str(first + len(notes))))
-
-    bodies = [
-        replace(
-            routine,
-            blocks=tuple(
-                replace(block, instructions=tuple(map(noted, block.instructions))) for block in routine.blocks
-            ),
-        )
-        for routine in routines
-    ]
-    words = (
-        f'!{number} = !{{!"branch_weights", {", ".join(f"i32 {each}" for each in weights)}}}'
-        for weights, number in notes.items()
-    )
-    return "\n".join((*_rows(text, iter(bodies)), *words))
-
-
-def _rows(text: str, routines: Iterator[Routine]) -> Iterator[str]:
-    rows = iter(text.splitlines())
-    for row in rows:
-        yield row
-        if DEFINE.match(row):
-            for block in next(routines).blocks:
-                yield from block.rows()
-            yield next(each for each in rows if each == "}")
+    routines = {found[1]: found[2] for found in map(SUBPROGRAM.match, text.splitlines()) if found}
+    notes = [found for found in map(LOCATION.match, text.splitlines()) if found and found[2] != "0"]
+    return {each[1]: SourceLine(routines[each[3]], int(each[2]), int(each[4] or 0)) for each in notes}
 
 
 def _matches(pattern: re.Pattern[str], text: str) -> list[tuple[str, str]]:
@@ -365,36 +352,51 @@ def _is_constant(word: str) -> bool:
     return bool(re.fullmatch(r"-?\d+|true|false|null|poison|-?\d+\.\d+e[+-]\d+|0x[0-9A-F]+", word))
 
 
-def arms_of(phi: Instruction) -> dict[str, str]:
-    """Return the values of a phi by the labels of the blocks that they come from."""
-    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+def with_names(text: str) -> str:
+    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change.
+
+    The names are other ones than those of an earlier time.
+    """
+    mark = ".n"
+    while f"%{mark}" in text:
+        mark += "n"
+    return NUMBERED.sub(lambda found: f"%{mark}{found[1]}" if found[1] else f"{mark}{found[2]}", text)
 
 
-def written(result: str, text: str, operands: tuple[str, ...], at: Instruction) -> Instruction:
-    """Return the instruction `text`, of the same place in the source as the instruction `at`."""
-    return Instruction(result, text.split(maxsplit=1)[0], text, operands, at.line, location=at.location)
+def write_module(text: str, routines: Sequence[Routine]) -> str:
+    """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies.
+
+    Weights that stand in no note yet are noted.
+    """
+    notes = dict[tuple[int, ...], str]()
+    first = max(map(int, NOTE.findall(text)), default=-1) + 1
+
+    def noted(each: Instruction) -> Instruction:
+        if not each.weights or each.hint:
+            return each
+        return replace(each, hint=notes.setdefault(each.weights, str(first + len(notes))))
+
+    bodies = [
+        replace(
+            routine,
+            blocks=tuple(
+                replace(block, instructions=tuple(map(noted, block.instructions))) for block in routine.blocks
+            ),
+        )
+        for routine in routines
+    ]
+    words = (
+        f'!{number} = !{{!"branch_weights", {", ".join(f"i32 {each}" for each in weights)}}}'
+        for weights, number in notes.items()
+    )
+    return "\n".join((*_rows(text, iter(bodies)), *words))
 
 
-def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
-    """Return a phi of other values, by the labels of the blocks that they come from."""
-    text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())
-    return replace(phi, text=f"phi {phi.text.split()[1]} {text}", operands=tuple(arms.values()))
-
-
-def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
-    """Return an instruction that reads what `names` has in place of the values named there."""
-    if not any(name in names for name in each.operands):
-        return each
-    text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
-    return replace(each, text=text, operands=tuple(names.get(name, name) for name in each.operands))
-
-
-def is_number(value: str) -> bool:
-    """Whether a value is an integer of the text."""
-    return value.lstrip("-").isdigit()
-
-
-def predicate(compare: Instruction) -> str:
-    """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
-    words = compare.text.split()
-    return words[2] if words[1] in ("samesign", "fast") else words[1]
+def _rows(text: str, routines: Iterator[Routine]) -> Iterator[str]:
+    rows = iter(text.splitlines())
+    for row in rows:
+        yield row
+        if DEFINE.match(row):
+            for block in next(routines).blocks:
+                yield from block.rows()
+            yield next(each for each in rows if each == "}")
