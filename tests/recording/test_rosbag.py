@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from bfsim.errors import RecordingError
+from bfsim.recording import RecordingReader
 from bfsim.recording.importer import import_recording
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.ros_images import ENCODINGS
