@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
+from typing import ClassVar
 
 from bfsim.kernel.ir_text import (
     HIDES,
@@ -22,6 +23,8 @@ from bfsim.kernel.lowering.jump_tables import MARK
 
 MOST_COPIED = 100
 """Instructions, but loads and stores of variables, of the ways that are copied from a block [param_max_fsm_thread_path_insns]."""
+MOST_NODES = 300
+"""[ours] Of blocks with what is known before them, on the ways from one block."""
 RELATIONS = {"eq": int.__eq__, "slt": int.__lt__, "sgt": int.__gt__}
 TRUTHS = {"false": 0, "true": 1}
 Known = frozenset[tuple[str, int]]
@@ -46,6 +49,9 @@ class Ways:
 @dataclass
 class CopiedWays:
     """Copies ways of a routine that lead past tests. `variables`: of which something may be known; `leading`: blocks that lead to the tests."""
+
+    ending: ClassVar[str] = "in"
+    """Of the names of copies, before a number: others that copies of copies have are others."""
 
     flow: ControlFlow
     blocks: dict[str, BasicBlock] = field(init=False)
@@ -131,6 +137,8 @@ class CopiedWays:
         waiting = [(label, known)]
         while waiting:
             node = waiting.pop()
+            if len(nodes) > MOST_NODES:
+                return label
             if node not in nodes and node[0] in self.leading and node[1]:
                 found = nodes[node] = self.ways(self.flow.blocks[node[0]], node[1])
                 if self.goes_on(found):
@@ -148,7 +156,7 @@ class CopiedWays:
             return label
         new = sorted(leads_past - self.copies.keys(), key=lambda each: (each[0], sorted(each[1])))
         for node in new:
-            self.copies[node] = f"{node[0].removesuffix(MARK)}.in{next(self.numbers)}"
+            self.copies[node] = f"{node[0].removesuffix(MARK)}.{self.ending}{next(self.numbers)}"
         for node in new:
             self._add(self.copies[node], nodes[node])
         return self.copies[label, known]

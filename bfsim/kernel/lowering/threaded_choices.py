@@ -111,6 +111,8 @@ def _threaded(routine: Routine, tests: set[str]) -> Routine:
 class _Choices(CopiedWays):
     """Copies ways to tests of numbers that were chosen before."""
 
+    ending = "so"
+
     def __init__(self, flow: ControlFlow, tests: set[str]) -> None:
         super().__init__(flow)
         self.tests = tests
@@ -151,7 +153,10 @@ class _Choices(CopiedWays):
         """A way is copied up to a test, of which GCC makes no copy, if that is not too much."""
         cost = {node: self._cost(each) for node, each in nodes.items()}
         before = _least({first: 0} if first in nodes else {}, nodes, cost)
-        back = {node: [each for each in nodes if node in _behind(nodes[each])] for node in nodes}
+        back: dict[Node, list[Node]] = {node: [] for node in nodes}
+        for node, of in nodes.items():
+            for way in _behind(of) & nodes.keys():
+                back[way].append(node)
         past = {node: cost[node] for node, each in nodes.items() if each.is_past}
         found = dict(past)
         waiting = [*past]
