@@ -114,9 +114,9 @@ class Rule(StrEnum):
     BYTE_ADDRESSES = "of an array of bytes that comes in a data register, addresses are added up there if they are all that uses it"
     NARROW_BITS = "narrow values are masked and joined bit by bit before they are extended"
     SUMMED_INDICES = "an index that is a sum is added up before it becomes an address, unless elements are bytes and one access uses it"
-
     CODE_HOISTING = "what every way from a test computes is computed before it, if one of its sides does so"
     THREADED_CHOICES = "a way on which a number was chosen leads past later tests of it"
+    CROSS_JUMPS = "what ends two blocks stands in the code once, if it is all of one"
 
 
 GCC: dict[Rule, str] = {
@@ -152,6 +152,7 @@ GCC: dict[Rule, str] = {
     Rule.STATE_MACHINES: "tree-ssa-threadbackward.cc",
     Rule.CODE_HOISTING: "do_hoist_insertion in tree-ssa-pre.cc",
     Rule.THREADED_CHOICES: "tree-ssa-threadbackward.cc",
+    Rule.CROSS_JUMPS: "try_crossjump_to_edge in cfgcleanup.cc",
     Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
@@ -244,6 +245,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.NARROW_BITS: (),
     Rule.CODE_HOISTING: (),  # from kernels that are not measured here: tests/kernel/test_code_that_decides.py
     Rule.THREADED_CHOICES: (),
+    Rule.CROSS_JUMPS: (),  # tests/kernel/test_ends_of_loops.py
     Rule.BIT_TESTS: (),
     Rule.CONSTANT_TABLES: (),
     Rule.STATE_MACHINES: (),

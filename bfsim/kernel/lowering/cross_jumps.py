@@ -13,10 +13,9 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction
 from bfsim.kernel.lowering.registers import Allocation
+from bfsim.kernel.rules import Rule
 
 Edge = tuple[str, str]
-
-
 COPYING = {Op.MOVE, Op.LOAD8, Op.LOAD16, Op.LOAD32, Op.STORE8, Op.STORE16, Op.STORE32}
 """What does the same wherever it is, with the same operands."""
 
@@ -34,7 +33,8 @@ class CrossJumps:
         """`landing`: where a jump to a block ends, behind those that hold no code."""
         self.context, self.flow, self.code, self.allocation = context, context.flow, code, allocation
         self.alike = dict(self._alike())
-        self.tails = dict(self._tails(landing))
+        crosses = context.profile.applies(Rule.CROSS_JUMPS)
+        self.tails = dict(self._tails(landing)) if crosses else {}
         self.gone = frozenset(
             label for label, tail in self.tails.items() if len(code.of[label]) == len(code.of[tail])
         )
