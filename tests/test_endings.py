@@ -17,8 +17,10 @@ from tests.tiers import exhaustive
 
 # a run that is in the midst of a drawing when the signal comes, however late that is
 SLOW = """
-import os, time
+import os, signal, time
 import bfsim.report.overlay.files as files
+
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup ignores it
 
 drawn = files.overlay_of
 

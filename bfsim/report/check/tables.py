@@ -38,7 +38,8 @@ def verdict_line(outcome: Outcome) -> str:
     """Return the outcome in one line."""
     rate = next(iter(outcome.figures["frame_rate",].values))
     count = f"{len(outcome.broken)} of {len(outcome.verdicts)} limits broken"
-    kept = f"all {len(outcome.verdicts)} limits kept"
+    limits = len(outcome.verdicts)
+    kept = "its limit kept" if limits == 1 else f"all {limits} limits kept"
     word = "Passed" if outcome.passed else "FAILED"
     return f"{word}: {outcome.case.name}: {kept if outcome.passed else count}, {rate:.2f} frames/s{of_one_frame(outcome.run)}."
 
