@@ -93,7 +93,7 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
     if profile.applies(Rule.SKIPPED_ITERATIONS):
         text = with_skipped_iterations(with_rounded_names(text, function))
     for _ in range(UNROLLED_NESTING):
-        if (unrolling := marked(text)) is None:
+        if (unrolling := marked(text, guesses=profile.applies(Rule.LOOP_GUARDS))) is None:
             break
         module = llvm.parse_assembly(unrolling)
         generic.run(("loop_unroll", *CLEANING), module)

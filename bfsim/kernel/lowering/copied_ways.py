@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import ClassVar
@@ -100,6 +100,16 @@ class CopiedWays:
                 if source is not None and is_copy and source.operands[-1] not in found:
                     found.add(source.operands[-1])
                     waiting.append(source.operands[-1])
+        return found
+
+    def blocks_before(self, first: Iterable[str], found: set[str], inside: Container[str]) -> set[str]:
+        """Return `found` and the other blocks inside from which ways lead to the first ones, none through what is found already."""
+        found, waiting = set(found), [*first]
+        while waiting:
+            for before in self.flow.predecessors[waiting.pop()]:
+                if before not in found and before in inside:
+                    found.add(before)
+                    waiting.append(before)
         return found
 
     def ways(self, block: BasicBlock, known: Known) -> Ways:

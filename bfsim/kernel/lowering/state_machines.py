@@ -51,18 +51,10 @@ class _Threading(CopiedWays):
         }
         firsts = [each for each in sorted(tests) if not tests.intersection(self.flow.predecessors[each])]
         loop = self.flow.innermost(firsts[0]) if firsts else None
-        self.variables, self.leading = self.copied_to({variable, *kept}), self._leading_to(firsts)
+        chains = {label for label in self.flow.blocks if label.endswith(MARK)}
+        self.variables = self.copied_to({variable, *kept})
+        self.leading = self.blocks_before(firsts, chains, self.flow.blocks)
         self.copies.clear()
         for label in sorted(loop.blocks) if loop else ():
             if not label.endswith(MARK):
                 self.lead(label)
-
-    def _leading_to(self, firsts: list[str]) -> set[str]:
-        """Return the blocks from which there is a way to the first ones of a chain, and those of chains."""
-        found, waiting = {label for label in self.flow.blocks if label.endswith(MARK)}, [*firsts]
-        while waiting:
-            for before in self.flow.predecessors[waiting.pop()]:
-                if before not in found:
-                    found.add(before)
-                    waiting.append(before)
-        return found

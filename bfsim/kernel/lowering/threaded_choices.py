@@ -129,21 +129,12 @@ class _Choices(CopiedWays):
             self.variables = self.copied_to(
                 {each.operands[-1] for each in asked if each is not None and each.opcode == "load"}
             )
-            self.leading = self._leading(tests, set(inside) - {loop.header if loop else ""})
+            behind = set(inside) - {loop.header if loop else ""}
+            passed = behind.intersection(tests)
+            self.leading = self.blocks_before(passed, passed, behind)
             self.copies.clear()
             for label in inside:
                 self.lead(label)
-
-    def _leading(self, tests: list[str], inside: set[str]) -> set[str]:
-        """Blocks inside of a loop from which there is a way to the tests."""
-        found = inside.intersection(tests)
-        waiting = [*found]
-        while waiting:
-            for before in self.flow.predecessors[waiting.pop()]:
-                if before not in found and before in inside:
-                    found.add(before)
-                    waiting.append(before)
-        return found
 
     def is_past(self, block: BasicBlock, way: str) -> bool:
         """Whether a block makes such a test."""

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from bfsim.kernel.ir_text import (
     TARGET,
+    BasicBlock,
     Instruction,
     Routine,
     placed_rows,
@@ -22,18 +23,23 @@ from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.loop_guards import guards_of
+from bfsim.kernel.lowering.predict import LOOP_GUARD
 from bfsim.kernel.lowering.scalar_evolution import Affine, ScalarEvolution
 
 MOST_ITERATIONS = 8  # [max-completely-peel-times]
 COUNTER = 1  # statement that steps what counts the iterations [create_canonical_iv]
 FREE = ("phi", "zext", "sext", "trunc", "freeze")
 LOOP_NOTE = ", !llvm.loop !"
-GUARDED = (27, 73)  # how likely a loop in another one is come to [PRED_LOOP_GUARD in predict.def]
+GUARDED = (round(100 * (1 - LOOP_GUARD)), round(100 * LOOP_GUARD))
+"""Weights of the way to a loop in another one, and of the way without it."""
 FULL, DISABLED = "llvm.loop.unroll.full", "llvm.loop.unroll.disable"
 
 
-def marked(text: str) -> str | None:
-    """Return the module `text` with a request to unroll on each such loop, and one not to on all others; None if there is none."""
+def marked(text: str, *, guesses: bool) -> str | None:
+    """Return the module `text` with a request to unroll on each such loop, and one not to on all others; None if there is none.
+
+    `guesses`: tests that lead to such loops are guessed to fail.
+    """
     text = with_names(text)
     routines = [(routine, list(_loops(routine))) for routine in read_module(text)]
     wishes = {
@@ -43,7 +49,8 @@ def marked(text: str) -> str | None:
     }
     if FULL not in wishes.values():
         return None
-    text = write_module(text, [_hinted(*each) for each in routines])
+    if guesses:
+        text = write_module(text, [_hinted(*each) for each in routines])
     rows, notes = list(_annotated(text, wishes)), len(text)  # numbers that no other note has
     for number, wish in enumerate(wishes.values()):
         own = notes + 2 * number
@@ -53,19 +60,24 @@ def marked(text: str) -> str | None:
 
 def _hinted(routine: Routine, loops: Sequence[tuple[Loop, bool]]) -> Routine:
     """Hint at each test that decides whether a loop is come to that is written out: GCC guesses before that."""
-    flow = ControlFlow(routine)
-    unrolled = {loop.latch for loop, unrolls in loops if unrolls}
-    blocks = dict(flow.blocks)
-    for around in flow.loops:
-        for loop in around.inner:
-            for label, way in guards_of(flow, loop, around) if loop.latch in unrolled else ():
-                *rows, end = blocks[label].instructions
-                if not end.weights and end.opcode == "br":
-                    weights = GUARDED if blocks[label].successors[0] == way else GUARDED[::-1]
-                    blocks[label] = replace(
-                        blocks[label], instructions=(*rows, replace(end, weights=weights, hint=""))
-                    )
-    return replace(routine, blocks=tuple(blocks.values()))
+    flow, unrolled = ControlFlow(routine), {loop.latch for loop, unrolls in loops if unrolls}
+    guards = dict(
+        guard
+        for around in flow.loops
+        for loop in around.inner
+        if loop.latch in unrolled
+        for guard in guards_of(flow, loop, around)
+    )
+    return replace(routine, blocks=tuple(_guessed(each, guards.get(each.label)) for each in routine.blocks))
+
+
+def _guessed(block: BasicBlock, way: str | None) -> BasicBlock:
+    """Return a block with the guess that its test seldom leads this way, if there is no other guess."""
+    *rows, end = block.instructions
+    if way is None or end.weights or end.opcode != "br":
+        return block
+    weights = GUARDED if block.successors[0] == way else GUARDED[::-1]
+    return replace(block, instructions=(*rows, replace(end, weights=weights, hint="")))
 
 
 def _annotated(text: str, wishes: dict[tuple[str, str], str]) -> Iterator[str]:
