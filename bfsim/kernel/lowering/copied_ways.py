@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
-from typing import ClassVar
 
 from bfsim.kernel.ir_text import (
     HIDES,
@@ -46,18 +45,27 @@ class Ways:
     """Whether a variable is set to a number there: ways begin there, and none goes on."""
 
 
+def _all(nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
+    return {*nodes}
+
+
 @dataclass
 class CopiedWays:
-    """Copies ways of a routine that lead past tests. `variables`: of which something may be known; `leading`: blocks that lead to the tests."""
-
-    ending: ClassVar[str] = "in"
-    """Of the names of copies, before a number: others that copies of copies have are others."""
+    """Copies ways of a routine that lead past tests; what tests those are, and which ways are copied, say the functions that it is given."""
 
     flow: ControlFlow
+    is_past: Callable[[BasicBlock, str], bool]
+    """Whether a block makes a test that is to be passed, where it leads to this block for sure."""
+    goes_on: Callable[[Ways], bool]
+    """Whether a way that is copied goes on behind a block."""
+    short_ways: Callable[[Mapping[Node, Ways], Node], set[Node]] = _all
+    """Of the nodes from each of which a way leads past a test: those on a way from the first one that is short enough to be copied."""
+    ending: str = "in"
+    """Of the names of copies, before a number: others that copies of copies have are others."""
     blocks: dict[str, BasicBlock] = field(init=False)
     variables: set[str] = field(init=False, default_factory=set)
     leading: set[str] = field(init=False, default_factory=set)
-    copies: dict[tuple[str, Known], str] = field(init=False, default_factory=dict)
+    copies: dict[Node, str] = field(init=False, default_factory=dict)
     numbers: count[int] = field(init=False, default_factory=count)
 
     def __post_init__(self) -> None:
@@ -67,18 +75,19 @@ class CopiedWays:
         """Return the routine with the copies."""
         return replace(self.flow.routine, blocks=tuple(self.blocks.values()))
 
-    def is_past(self, block: BasicBlock, way: str) -> bool:
-        """Whether a block makes a test that is to be passed, where it leads this way for sure."""
-        raise NotImplementedError
+    def lead(self, labels: Iterable[str], leading: set[str], variables: set[str]) -> None:
+        """Lead those of the blocks that set a number past the tests of it.
 
-    def goes_on(self, found: Ways) -> bool:
-        """Whether a way that is copied goes on behind a block."""
-        raise NotImplementedError
+        `leading`: blocks that lead to the tests. `variables`: of which something may be known.
+        """
+        self.leading, self.variables = leading, variables
+        self.copies.clear()
+        for label in labels:
+            self._lead(label)
 
-    def lead(self, label: str) -> None:
-        """Lead a block that sets a number past the tests of it."""
+    def _lead(self, label: str) -> None:
         block = self.flow.blocks[label]
-        found = self.ways(block, frozenset())
+        found = self._ways(block, frozenset())
         if not found.is_set:
             return
         goals = {
@@ -89,30 +98,7 @@ class CopiedWays:
         for way, goal in goals.items():
             self.blocks[label] = going_to(self.blocks[label], way, goal)
 
-    def copied_to(self, variables: set[str]) -> set[str]:
-        """Return variables, and those from which they are copied."""
-        found, waiting = set(variables), [*variables]
-        while waiting:
-            wanted = waiting.pop()
-            for each in self.flow.users.get(wanted, ()):
-                source = self.flow.instruction(each.operands[0]) if each.opcode == "store" else None
-                is_copy = source is not None and source.opcode == "load" and each.operands[-1] == wanted
-                if source is not None and is_copy and source.operands[-1] not in found:
-                    found.add(source.operands[-1])
-                    waiting.append(source.operands[-1])
-        return found
-
-    def blocks_before(self, first: Iterable[str], found: set[str], inside: Container[str]) -> set[str]:
-        """Return `found` and the other blocks inside from which ways lead to the first ones, none through what is found already."""
-        found, waiting = set(found), [*first]
-        while waiting:
-            for before in self.flow.predecessors[waiting.pop()]:
-                if before not in found and before in inside:
-                    found.add(before)
-                    waiting.append(before)
-        return found
-
-    def ways(self, block: BasicBlock, known: Known) -> Ways:
+    def _ways(self, block: BasicBlock, known: Known) -> Ways:
         """Go through a block with what is known before it."""
         variables, values, is_set = dict(known), dict[str, int](), False
 
@@ -143,18 +129,19 @@ class CopiedWays:
 
     def _copy(self, label: str, known: Known) -> str:
         """Return a copy of the ways from a block with what is known, or the block where none of them leads past the chain."""
-        nodes = dict[tuple[str, Known], Ways]()
+        nodes = dict[Node, Ways]()
         waiting = [(label, known)]
         while waiting:
             node = waiting.pop()
             if len(nodes) > MOST_NODES:
                 return label
             if node not in nodes and node[0] in self.leading and node[1]:
-                found = nodes[node] = self.ways(self.flow.blocks[node[0]], node[1])
+                found = nodes[node] = self._ways(self.flow.blocks[node[0]], node[1])
                 if self.goes_on(found):
                     waiting += [(way, found.known) for way in found.ways]
+        past = _leading_past(nodes)
         leads_past = self.short_ways(
-            {node: each for node, each in nodes.items() if node in self._leading_past(nodes)}, (label, known)
+            {node: each for node, each in nodes.items() if node in past}, (label, known)
         )
         rows = [
             row
@@ -170,20 +157,6 @@ class CopiedWays:
         for node in new:
             self._add(self.copies[node], nodes[node])
         return self.copies[label, known]
-
-    def short_ways(self, nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
-        """Those of the nodes, from each of which a way leads past a test, that are on a way from the first one which is short enough."""
-        return {*nodes}
-
-    def _leading_past(self, nodes: Mapping[Node, Ways]) -> set[Node]:
-        leads_past = {node for node, each in nodes.items() if each.is_past}
-        while more := {
-            node
-            for node, each in nodes.items()
-            if node not in leads_past and any((way, each.known) in leads_past for way in each.ways)
-        }:
-            leads_past |= more
-        return leads_past
 
     def _add(self, label: str, of: Ways) -> None:
         """Add the copy of a block; where the number is known its test is left out."""
@@ -201,6 +174,45 @@ class CopiedWays:
         for way in set(of.ways):
             block = going_to(block, way, self.copies.get((way, of.known), way))
         self.blocks[label] = block
+
+
+def _leading_past(nodes: Mapping[Node, Ways]) -> set[Node]:
+    """Those from which a way leads past a test."""
+    leading = {node for node, each in nodes.items() if each.is_past}
+    while more := {
+        node
+        for node, each in nodes.items()
+        if node not in leading and any((way, each.known) in leading for way in each.ways)
+    }:
+        leading |= more
+    return leading
+
+
+def copied_to(flow: ControlFlow, variables: set[str]) -> set[str]:
+    """Return variables, and those from which they are copied."""
+    found, waiting = set(variables), [*variables]
+    while waiting:
+        wanted = waiting.pop()
+        for each in flow.users.get(wanted, ()):
+            source = flow.instruction(each.operands[0]) if each.opcode == "store" else None
+            is_copy = source is not None and source.opcode == "load" and each.operands[-1] == wanted
+            if source is not None and is_copy and source.operands[-1] not in found:
+                found.add(source.operands[-1])
+                waiting.append(source.operands[-1])
+    return found
+
+
+def blocks_before(
+    flow: ControlFlow, first: Iterable[str], found: set[str], inside: Container[str]
+) -> set[str]:
+    """Return `found` and the other blocks inside from which ways lead to the first ones, none through what is found already."""
+    found, waiting = set(found), [*first]
+    while waiting:
+        for before in flow.predecessors[waiting.pop()]:
+            if before not in found and before in inside:
+                found.add(before)
+                waiting.append(before)
+    return found
 
 
 def answered(relation: str, one: int | None, other: int | None) -> int | None:

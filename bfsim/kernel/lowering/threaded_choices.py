@@ -7,8 +7,9 @@ those of `state_machines`, and none past the start of a loop.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 
 import llvmlite.binding as llvm
 
@@ -26,7 +27,15 @@ from bfsim.kernel.ir_text import (
     write_module,
 )
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.copied_ways import TRUTHS, CopiedWays, Node, Ways, answered
+from bfsim.kernel.lowering.copied_ways import (
+    TRUTHS,
+    CopiedWays,
+    Node,
+    Ways,
+    answered,
+    blocks_before,
+    copied_to,
+)
 from bfsim.kernel.lowering.number_tests import CONVERSIONS
 
 MOST_ON_A_WAY = 7
@@ -101,92 +110,67 @@ def _tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
 
 
 def _threaded(routine: Routine, tests: set[str]) -> Routine:
+    """Return `routine` with each block that sets a number that is tested led past the tests of it, loop by loop."""
     if not tests:
         return routine
-    choices = _Choices(ControlFlow(routine), tests)
-    choices.thread()
-    return choices.routine()
+    flow = ControlFlow(routine)
+    ways = CopiedWays(
+        flow,
+        is_past=lambda block, _way: block.label in tests,
+        goes_on=lambda _found: True,  # what is known of other numbers may lead past other tests
+        short_ways=partial(_short_ways, flow),
+        ending="so",
+    )
+    loops = {loop.header if (loop := flow.innermost(each)) else "": loop for each in sorted(tests)}
+    for loop in loops.values():
+        inside = [label for label in flow.order if flow.innermost(label) is loop]
+        asked = [_tested(flow, flow.blocks[label]) for label in inside if label in tests]
+        behind = set(inside) - {loop.header if loop else ""}
+        passed = behind & tests
+        variables = {each.operands[-1] for each in asked if each is not None and each.opcode == "load"}
+        ways.lead(inside, blocks_before(flow, passed, passed, behind), copied_to(flow, variables))
+    return ways.routine()
 
 
-class _Choices(CopiedWays):
-    """Copies ways to tests of numbers that were chosen before."""
-
-    ending = "so"
-
-    def __init__(self, flow: ControlFlow, tests: set[str]) -> None:
-        super().__init__(flow)
-        self.tests = tests
-
-    def thread(self) -> None:
-        """Lead each block that sets such a number past the tests of it, loop by loop."""
-        loops = {
-            loop.header if (loop := self.flow.innermost(each)) else "": loop for each in sorted(self.tests)
-        }
-        for loop in loops.values():
-            inside = [label for label in self.flow.order if self.flow.innermost(label) is loop]
-            tests = [label for label in inside if label in self.tests]
-            asked = [_tested(self.flow, self.flow.blocks[label]) for label in tests]
-            self.variables = self.copied_to(
-                {each.operands[-1] for each in asked if each is not None and each.opcode == "load"}
-            )
-            behind = set(inside) - {loop.header if loop else ""}
-            passed = behind.intersection(tests)
-            self.leading = self.blocks_before(passed, passed, behind)
-            self.copies.clear()
-            for label in inside:
-                self.lead(label)
-
-    def is_past(self, block: BasicBlock, way: str) -> bool:
-        """Whether a block makes such a test."""
-        return block.label in self.tests
-
-    def short_ways(self, nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
-        """A way is copied up to a test, of which GCC makes no copy, if that is not too much."""
-        cost = {node: self._cost(each) for node, each in nodes.items()}
-        before = _least({first: 0} if first in nodes else {}, nodes, cost)
-        back: dict[Node, list[Node]] = {node: [] for node in nodes}
-        for node, of in nodes.items():
-            for way in _behind(of) & nodes.keys():
-                back[way].append(node)
-        past = {node: cost[node] for node, each in nodes.items() if each.is_past}
-        found = dict(past)
-        waiting = [*past]
-        while waiting:
-            node = waiting.pop()
-            for each in back[node]:
-                if found[node] + cost[each] < found.get(each, MOST_ON_A_WAY + 1):
-                    found[each] = found[node] + cost[each]
-                    waiting.append(each)
-        return {node for node in before if before[node] + found.get(node, MOST_ON_A_WAY + 1) <= MOST_ON_A_WAY}
-
-    def _cost(self, of: Ways) -> int:
-        """What a copy of a block costs, without accesses of variables and what decides where it leads if that is known."""
-        rows = [each for each in of.block.instructions if not self._is_free(each)]
-        decides = sum(each.opcode in ("icmp", "br") for each in rows[-2:])
-        return len(rows) - (decides if len(of.ways) == 1 else 0)
-
-    def _is_free(self, each: Instruction) -> bool:
-        if each.opcode in ("load", "store"):
-            place = self.flow.instruction(each.operands[-1])
-            return place is not None and place.opcode == "alloca"
-        return each.opcode in CONVERSIONS
-
-    def goes_on(self, found: Ways) -> bool:
-        """What is known of other numbers may lead past other tests."""
-        return True
+def _short_ways(flow: ControlFlow, nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
+    """A way is copied up to a test, of which GCC makes no copy, if that is not too much."""
+    cost = {node: _cost(flow, each) for node, each in nodes.items()}
+    ahead = {node: {(way, of.known) for way in of.ways} & nodes.keys() for node, of in nodes.items()}
+    back: dict[Node, set[Node]] = {node: set() for node in nodes}
+    for node, ways in ahead.items():
+        for way in ways:
+            back[way].add(node)
+    up_to = _least([first] if first in nodes else [], ahead, cost)
+    from_here = _least([node for node, each in nodes.items() if each.is_past], back, cost)
+    return {
+        node
+        for node in up_to.keys() & from_here.keys()
+        if up_to[node] + from_here[node] - cost[node] <= MOST_ON_A_WAY
+    }
 
 
-def _behind(of: Ways) -> set[Node]:
-    return {(way, of.known) for way in of.ways}
-
-
-def _least(first: dict[Node, int], nodes: Mapping[Node, Ways], cost: Mapping[Node, int]) -> dict[Node, int]:
-    """The least that ways from the first node to each other one cost before it."""
-    found, waiting = dict(first), [*first]
+def _least(ends: Iterable[Node], ways: Mapping[Node, set[Node]], cost: Mapping[Node, int]) -> dict[Node, int]:
+    """The least that ways from the ends to each node cost with both, where that is not too much."""
+    found = {node: cost[node] for node in ends}
+    waiting = [*found]
     while waiting:
         node = waiting.pop()
-        for each in _behind(nodes[node]) & nodes.keys():
-            if found[node] + cost[node] < found.get(each, MOST_ON_A_WAY + 1):
-                found[each] = found[node] + cost[node]
+        for each in ways[node]:
+            if found[node] + cost[each] < found.get(each, MOST_ON_A_WAY + 1):
+                found[each] = found[node] + cost[each]
                 waiting.append(each)
     return found
+
+
+def _cost(flow: ControlFlow, of: Ways) -> int:
+    """What a copy of a block costs, without accesses of variables and what decides where it leads if that is known."""
+    rows = [each for each in of.block.instructions if not _is_free(flow, each)]
+    decides = sum(each.opcode in ("icmp", "br") for each in rows[-2:])
+    return len(rows) - (decides if len(of.ways) == 1 else 0)
+
+
+def _is_free(flow: ControlFlow, each: Instruction) -> bool:
+    if each.opcode in ("load", "store"):
+        place = flow.instruction(each.operands[-1])
+        return place is not None and place.opcode == "alloca"
+    return each.opcode in CONVERSIONS
