@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel.counters import Counter
-from bfsim.kernel.ir_text import KERNEL_CALL, Entrance, Routine, SourceLine
+from bfsim.kernel.ir_reading import KERNEL_CALL
+from bfsim.kernel.ir_text import Entrance, Routine, SourceLine
 from bfsim.kernel.loops import ControlFlow
 
 if TYPE_CHECKING:

@@ -17,15 +17,8 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.emit import emit
 from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import inlined_calls
-from bfsim.kernel.ir_text import (
-    HIDES,
-    Entrance,
-    Routine,
-    SourceLine,
-    inlined_through,
-    read_module,
-    without_marks,
-)
+from bfsim.kernel.ir_reading import inlined_through, read_module
+from bfsim.kernel.ir_text import HIDES, Entrance, Routine, SourceLine, without_marks
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised

@@ -16,7 +16,8 @@ from bfsim import store
 from bfsim.kernel import generic, keys
 from bfsim.kernel.emit import emit_alone
 from bfsim.kernel.function import Function
-from bfsim.kernel.ir_text import Instruction, read_module, without_marks
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import Instruction, without_marks
 from bfsim.kernel.loops import ControlFlow, pointee_nbytes
 from bfsim.kernel.lowering.frequencies import frequencies
 from bfsim.kernel.lowering.predict import Likelihood

@@ -14,7 +14,7 @@ from itertools import takewhile
 
 from bfsim.kernel import tree
 from bfsim.kernel.entry import RETURN
-from bfsim.kernel.ir_text import DEFINE, KERNEL_CALL, LABEL, STEPPING
+from bfsim.kernel.ir_reading import DEFINE, KERNEL_CALL, LABEL, STEPPING
 from bfsim.kernel.pointers import Origin, Pointers, nbytes_of
 
 ACCESS = re.compile(r"^(  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr )(%[\w.$-]+)(.*)$")

@@ -21,7 +21,7 @@ from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.function import Function
 from bfsim.kernel.guards import Guarded
 from bfsim.kernel.intrinsics.meaning import defined
-from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, STEPPING, read_module
+from bfsim.kernel.ir_reading import DEFINE, ENTRY, KERNEL_CALL, LABEL, STEPPING, read_module
 from bfsim.kernel.tracing import CLOCK, ROUTINES, SITE, Tracing, hand_clock, take_clock
 
 # [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long

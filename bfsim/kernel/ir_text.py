@@ -1,39 +1,23 @@
-"""LLVM IR as data: functions, blocks and instructions, read from LLVM's own text and written back as such.
+"""LLVM IR as data: functions, blocks and instructions, each with its text, and how they are said anew with other names and values.
 
 Passes of our own (`rewrites`) take a routine and return another one; what is costed, and what is compiled for the host, is read from
-the text that they leave. Of the notes behind an instruction, its source line and its branch weights are kept.
-
-In this file: what the text has, how it is said anew with other names and values, how it is read, and how it is written.
+the text that they leave (`ir_reading`, `ir_writing`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from bfsim.kernel.intrinsics import BY_NAME, PREFIX, Intrinsic
 
-DEFINE = re.compile(r"^define .*?@([\w.$-]+)\((.*)\)")
-LABEL = re.compile(r"^([\w.$-]+):")
-RESULT = re.compile(r"^  (%[\w.$-]+) = (.*)$")
 NAME = re.compile(r"%[\w.$-]+")
-NUMBERED = re.compile(r"%(\d+)\b|^(\d+)(?=:)", re.MULTILINE)
 TARGET = re.compile(r"label (%[\w.$-]+)")
-DEBUG = re.compile(r", !dbg !(\d+)")
-LOCATION = re.compile(
-    r"^!(\d+) = (?:distinct )?!DILocation\(line: (\d+),(?: column: \d+,)? scope: !(\d+)(?:, inlinedAt: !(\d+))?"
-)
-SUBPROGRAM = re.compile(r'^!(\d+) = distinct !DISubprogram\(name: "([\w.$-]+)"')
-PROFILE = re.compile(r", !prof !(\d+)")
-WEIGHTS = re.compile(r"^!(\d+) = !\{!\"branch_weights\"(.*)\}")
-NOTE = re.compile(r"^!(\d+) = ", re.MULTILINE)
-WEIGHT = re.compile(r"i32 (-?\d+)")  # LLVM writes unsigned numbers as signed ones
 PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
 CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
-KERNEL_CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
 NO_HINT = (1 << 20, 1)
 """Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
@@ -43,19 +27,14 @@ SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
 INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
             "ult": "uge", "uge": "ult", "ule": "ugt", "ugt": "ule", "eq": "ne", "ne": "eq"}  # fmt: skip
 """Relations by those that hold where they do not."""
-OPCODE_NOISE = {"tail", "musttail", "notail"}
 ENTERS = "bfsim.enters."
 """Before the symbol of a kernel, names a call that does nothing, where the code of that kernel begins, which is inlined."""
 STEPS = "bfsim.steps"
 """A call that does nothing, with start, stop and step of the loop behind it, whose step is no constant: `guards` checks them."""
-STEPPING = re.compile(
-    rf"^  (?:tail )?call void @{re.escape(STEPS)}\(i32 ([^,]+), i32 ([^,]+), i32 ([^,)]+)\)"
-)
 OF_VARIABLE = "cut.variable"
 """In the name of what a store cuts off a local variable, and of what LLVM makes of that: in C the variable is a whole word until then."""
 HIDES = "bfsim.hides"
 """A call that returns its number, of which LLVM is to know nothing."""
-ENTRY = re.compile(rf"^  (?:tail )?call void @{re.escape(ENTERS)}([\w.$-]+)\(")
 
 
 class SourceLine(NamedTuple):
@@ -223,180 +202,3 @@ def predicate(compare: Instruction) -> str:
     """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
     words = compare.text.split()
     return words[2] if words[1] in ("samesign", "fast") else words[1]
-
-
-def read_module(text: str) -> tuple[Routine, ...]:
-    """Read every function definition of an LLVM module."""
-    weights_of = {
-        number: tuple(int(each) & 0xFFFFFFFF for each in WEIGHT.findall(row))
-        for number, row in _matches(WEIGHTS, text)
-    }
-    lines_of = _source_lines(text)
-    routines = []
-    rows = iter(text.splitlines())
-    for row in rows:
-        if found := DEFINE.match(row):
-            body = []
-            for inner in rows:
-                if inner == "}":
-                    break
-                body.append(inner)
-            parameters = tuple(NAME.findall(found.group(2)))
-            first = SourceLine(found.group(1), 1)
-            routines.append(
-                Routine(first.routine, parameters, _blocks(_joined(body), first, lines_of, weights_of))
-            )
-    return tuple(routines)
-
-
-def inlined_through(text: str) -> dict[int, tuple[str, ...]]:
-    """Return through which routines each inlined call came, by its number: the one that it was inlined into comes first."""
-    lines_of = _source_lines(text)
-    found: dict[int, tuple[str, ...]] = {}
-    for site in {line.site for line in lines_of.values()} - {0}:
-        through, number = [], site
-        while number and (line := lines_of.get(str(number))):
-            through.append(line.routine)
-            number = line.site
-        found[site] = tuple(reversed(through))
-    return found
-
-
-def placed_rows(text: str) -> Iterator[tuple[str, str, str]]:
-    """Yield each row of a module, with the symbol of the routine and the label of the block that it stands in."""
-    symbol = label = ""
-    for row in text.splitlines():
-        if found := DEFINE.match(row):
-            symbol = found.group(1)
-        elif found := LABEL.match(row):
-            label = found.group(1)
-        yield symbol, label, row
-
-
-def _source_lines(text: str) -> dict[str, SourceLine]:
-    """Return the source line of each note of one, by the note's number.
-
-    Line 0 is LLVM's word for code merged from several lines: it is no note, so that the code stays with the line before it.
-    """
-    routines = {found[1]: found[2] for found in map(SUBPROGRAM.match, text.splitlines()) if found}
-    notes = [found for found in map(LOCATION.match, text.splitlines()) if found and found[2] != "0"]
-    return {each[1]: SourceLine(routines[each[3]], int(each[2]), int(each[4] or 0)) for each in notes}
-
-
-def _matches(pattern: re.Pattern[str], text: str) -> list[tuple[str, str]]:
-    return [(m.group(1), m.group(2)) for m in map(pattern.match, text.splitlines()) if m]
-
-
-def _joined(body: list[str]) -> list[str]:
-    """Put the cases of a switch, which LLVM writes on lines of their own, behind it."""
-    rows: list[str] = []
-    for row in body:
-        if row.startswith(("    i", "  ]")):
-            rows[-1] += " " + row.strip()
-        else:
-            rows.append(row)
-    return rows
-
-
-def _blocks(
-    rows: list[str], line: SourceLine, lines_of: dict[str, SourceLine], weights_of: dict[str, tuple[int, ...]]
-) -> tuple[BasicBlock, ...]:
-    """Read the blocks of a routine; `line` is its first one."""
-    blocks: list[BasicBlock] = []
-    label, instructions, enters = "", list[Instruction](), list[Entrance]()
-    for row in rows:
-        if found := LABEL.match(row):
-            label, instructions, enters = found.group(1), [], []
-        elif found := ENTRY.match(row):
-            debug = DEBUG.search(row)
-            location = debug.group(1) if debug else ""
-            enters.append(Entrance(found.group(1), lines_of.get(location, line), location))
-        elif row.startswith("  "):
-            debug = DEBUG.search(row)
-            location = debug.group(1) if debug else ""
-            line = lines_of.get(location, line)
-            found_hint = PROFILE.search(row)
-            hint = found_hint.group(1) if found_hint else ""
-            weights = weights_of.get(hint, ())
-            instructions.append(_instruction(row, line, weights, location, hint if weights else ""))
-            if instructions[-1].opcode in ("br", "ret", "switch", "unreachable"):
-                blocks.append(BasicBlock(label, tuple(instructions), tuple(enters)))
-    return tuple(blocks)
-
-
-def _instruction(
-    row: str, line: SourceLine, weights: tuple[int, ...], location: str, hint: str
-) -> Instruction:
-    text = DEBUG.sub("", row).split(", !")[0].strip()
-    found = RESULT.match(row)
-    result = found.group(1) if found else None
-    body = text.split(" = ", 1)[1] if result else text
-    words = [word for word in body.split() if word not in OPCODE_NOISE]
-    return Instruction(result, words[0], body, _operands(words[0], body), line, weights, location, hint)
-
-
-def _operands(opcode: str, body: str) -> tuple[str, ...]:
-    if opcode == "phi":
-        return tuple(value for value, _ in PHI_ARM.findall(body))
-    if opcode == "call":
-        inside = body[body.index("(", body.index("@")) + 1 : body.rindex(")")]
-        return tuple(part.split()[-1] for part in inside.split(",") if part.strip())
-    if opcode in ("br", "switch"):
-        return tuple(NAME.findall(body.split("label %", maxsplit=1)[0]))
-    body = re.sub(r", align \d+$", "", body)
-    return tuple(part.split()[-1] for part in re.split(r",(?![^(]*\))", body.replace(" to ", ", "))
-                 if part.split() and (part.split()[-1].startswith(("%", "@")) or _is_constant(part.split()[-1])))  # fmt: skip
-
-
-def _is_constant(word: str) -> bool:
-    return bool(re.fullmatch(r"-?\d+|true|false|null|poison|-?\d+\.\d+e[+-]\d+|0x[0-9A-F]+", word))
-
-
-def with_names(text: str) -> str:
-    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change.
-
-    The names are other ones than those of an earlier time.
-    """
-    mark = ".n"
-    while f"%{mark}" in text:
-        mark += "n"
-    return NUMBERED.sub(lambda found: f"%{mark}{found[1]}" if found[1] else f"{mark}{found[2]}", text)
-
-
-def write_module(text: str, routines: Sequence[Routine]) -> str:
-    """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies.
-
-    Weights that stand in no note yet are noted.
-    """
-    notes = dict[tuple[int, ...], str]()
-    first = max(map(int, NOTE.findall(text)), default=-1) + 1
-
-    def noted(each: Instruction) -> Instruction:
-        if not each.weights or each.hint:
-            return each
-        return replace(each, hint=notes.setdefault(each.weights, str(first + len(notes))))
-
-    bodies = [
-        replace(
-            routine,
-            blocks=tuple(
-                replace(block, instructions=tuple(map(noted, block.instructions))) for block in routine.blocks
-            ),
-        )
-        for routine in routines
-    ]
-    words = (
-        f'!{number} = !{{!"branch_weights", {", ".join(f"i32 {each}" for each in weights)}}}'
-        for weights, number in notes.items()
-    )
-    return "\n".join((*_rows(text, iter(bodies)), *words))
-
-
-def _rows(text: str, routines: Iterator[Routine]) -> Iterator[str]:
-    rows = iter(text.splitlines())
-    for row in rows:
-        yield row
-        if DEFINE.match(row):
-            for block in next(routines).blocks:
-                yield from block.rows()
-            yield next(each for each in rows if each == "}")

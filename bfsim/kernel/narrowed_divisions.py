@@ -11,7 +11,7 @@ from bfsim.kernel import tree
 from bfsim.kernel.divisions import ROUNDED
 from bfsim.kernel.emit import sites_of
 from bfsim.kernel.function import Function
-from bfsim.kernel.ir_text import DEFINE, SUBPROGRAM
+from bfsim.kernel.ir_reading import DEFINE, SUBPROGRAM
 from bfsim.kernel.types import i32
 
 NARROWED = re.compile(r"^  %(\d+) = [us](?:div|rem) i(?:8|16) .*!dbg !(\d+)")

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from bfsim.kernel.access_trace import ARENA, END, WRITE
 from bfsim.kernel.call_paths import Program, Site
-from bfsim.kernel.ir_text import DEFINE, LABEL
+from bfsim.kernel.ir_reading import DEFINE, LABEL
 from bfsim.kernel.lowering.charges import Access
 
 POINTER = re.compile(r"ptr (%[\w.$-]+)")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bfsim.kernel import GCC_O2, CompilerProfile
 from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
 from tests.kernel.modules import kernel_of

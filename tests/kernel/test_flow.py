@@ -7,7 +7,8 @@ from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costing import cost, optimised
 from bfsim.kernel.costs import Costs
 from bfsim.kernel.instrument import instrument
-from bfsim.kernel.ir_text import Instruction, read_module
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution

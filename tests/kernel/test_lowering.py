@@ -12,7 +12,7 @@ from benchmarks.twins.lines import grow_segments
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O2, Kernel, profile_named
 from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank

@@ -9,7 +9,7 @@ import pytest
 from benchmarks.twins.lines import grow_segments
 from bfsim.kernel import GCC_O2, Kernel
 from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
 from tests.kernel.lowered import context, lowered

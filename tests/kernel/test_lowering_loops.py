@@ -9,7 +9,7 @@ import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, keys
 from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import COPIED, ControlFlow
 from bfsim.kernel.lowering.moves import _is_circular

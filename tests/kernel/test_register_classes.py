@@ -8,7 +8,7 @@ import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2
 from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
 from tests.kernel.beside_gcc import beside_gcc

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from bfsim.kernel import GCC_O2, VDSP_O2
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.value_ranges import answer, value_range

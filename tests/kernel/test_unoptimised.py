@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 
 from bfsim.kernel import Kernel
 from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_text import Routine, read_module
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import Routine
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import BlockCost, Charge
 from bfsim.kernel.lowering.unoptimised import lower

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.range_arithmetic import ANY, COMPUTED, WORDS, Range, within
 from bfsim.kernel.lowering.unsigned_ranges import UnsignedRanges

@@ -21,7 +21,7 @@ from bfsim.kernel.ir_text import (
     renamed,
     with_values,
     written,
-)  # fmt: skip
+)
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.edges import put_between
 from bfsim.kernel.lowering.scalar_evolution import Affine

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import Routine
+from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.lowering.bit_tests import with_bit_tests
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills

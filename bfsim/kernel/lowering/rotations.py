@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bfsim.kernel.ir_text import Routine, placed_rows, read_module
+from bfsim.kernel.ir_reading import placed_rows, read_module
+from bfsim.kernel.ir_text import Routine
 from bfsim.kernel.loops import ControlFlow
 
 HOLDS = "@bfsim.holds()"

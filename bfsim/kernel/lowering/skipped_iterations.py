@@ -12,17 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from operator import ge, gt, le, lt, ne
 
-from bfsim.kernel.ir_text import (
-    BasicBlock,
-    Instruction,
-    Routine,
-    arms_of,
-    predicate,
-    read_module,
-    renamed,
-    with_names,
-    write_module,
-)
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, predicate, renamed
+from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.edges import without_way
 

@@ -12,7 +12,9 @@ from dataclasses import replace
 import llvmlite.binding as llvm
 
 from bfsim.kernel import generic
-from bfsim.kernel.ir_text import HIDES, BasicBlock, Routine, read_module, with_names, write_module
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import HIDES, BasicBlock, Routine
+from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.constant_tables import chosen, load_chosen
 from bfsim.kernel.lowering.direct_conditions import with_direct_conditions

@@ -14,18 +14,9 @@ from functools import partial
 import llvmlite.binding as llvm
 
 from bfsim.kernel import generic
-from bfsim.kernel.ir_text import (
-    BasicBlock,
-    Instruction,
-    Routine,
-    arms_of,
-    is_number,
-    predicate,
-    read_module,
-    renamed,
-    with_names,
-    write_module,
-)
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, predicate, renamed
+from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.copied_ways import (
     TRUTHS,

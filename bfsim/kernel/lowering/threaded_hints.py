@@ -10,17 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import (
-    NO_HINT,
-    BasicBlock,
-    Instruction,
-    Routine,
-    arms_of,
-    predicate,
-    read_module,
-    with_names,
-    write_module,
-)
+from bfsim.kernel.ir_reading import read_module
+from bfsim.kernel.ir_text import NO_HINT, BasicBlock, Instruction, Routine, arms_of, predicate
+from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow
 
 

@@ -9,16 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import (
-    TARGET,
-    BasicBlock,
-    Instruction,
-    Routine,
-    placed_rows,
-    read_module,
-    with_names,
-    write_module,
-)
+from bfsim.kernel.ir_reading import placed_rows, read_module
+from bfsim.kernel.ir_text import TARGET, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
