@@ -7,7 +7,7 @@ the text that they leave (`ir_reading`, `ir_writing`).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -169,15 +169,31 @@ def without_marks(routine: Routine) -> Routine:
     return replace(routine, blocks=tuple(blocks))
 
 
+def each_arm(phi: Instruction) -> list[tuple[str, str]]:
+    """Return (value, label of the block it comes from) of a phi; of a block that leads there by two cases of a switch, twice."""
+    return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]
+
+
 def arms_of(phi: Instruction) -> dict[str, str]:
     """Return the values of a phi by the labels of the blocks that they come from."""
-    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+    return {label: value for value, label in each_arm(phi)}
+
+
+def phi_of(result: str, kind: str, arms: Iterable[tuple[str, str]], at: Instruction) -> Instruction:
+    """Return the phi of values of an LLVM type, each with the label of its block, of the same place in the source as `at`."""
+    arms = [*arms]
+    text = ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
+    return written(result, f"phi {kind} {text}", tuple(value for value, _ in arms), at)
+
+
+def with_each_arm(phi: Instruction, arms: Iterable[tuple[str, str]]) -> Instruction:
+    """Return a phi of other values, each with the label of the block that it comes from."""
+    return phi_of(phi.result or "", phi.text.split()[1], arms, phi)
 
 
 def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
     """Return a phi of other values, by the labels of the blocks that they come from."""
-    text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())
-    return replace(phi, text=f"phi {phi.text.split()[1]} {text}", operands=tuple(arms.values()))
+    return with_each_arm(phi, ((value, label) for label, value in arms.items()))
 
 
 def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:

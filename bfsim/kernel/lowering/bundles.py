@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from bfsim.kernel.ir_text import each_arm
 from bfsim.kernel.lowering.block_schedule import BlockSchedule, is_kept
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.local_registers import LocalRegisters
@@ -21,7 +22,7 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
         for block in context.flow.routine.blocks
         for each in block.instructions
         if each.opcode == "phi"
-        for value, _ in context.arms(each)
+        for value, _ in each_arm(each)
     }
     found = set[tuple[str, int]]()
     for labels in _merged(context):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, phi_of
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.preheaders import with_preheader
 from bfsim.kernel.lowering.widths import BYTE
@@ -121,8 +121,8 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
         made = list(_before(flow, carried, arms_of(carried.index)[entering]))
         first = made[-1].result
     kind = "ptr" if each.opcode == "getelementptr" else _kind(each)
-    text = f"phi {kind} [ {first}, %{entering} ], [ {carried.following}, %{loop.latch} ]"
-    phi = Instruction(each.result, "phi", text, (first or "", carried.following), each.line)
+    arms = [(first or "", entering), (carried.following, loop.latch)]
+    phi = phi_of(each.result or "", kind, arms, replace(each, location=""))
     alone = _address(flow, each) if each.opcode == "load" else None
     gone = [each, *([alone] if alone is not None and flow.users[alone.result or ""] == [each] else [])]
     blocks = []

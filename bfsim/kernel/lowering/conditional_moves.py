@@ -7,7 +7,7 @@ choice is in the register of the choice already: it is not copied, and if it is 
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import Instruction, arms_of
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import is_computed_narrow, stored_bits
 from bfsim.kernel.lowering.widths import WORD
@@ -43,7 +43,7 @@ def _is_narrow(flow: ControlFlow, phi: Instruction) -> bool:
     narrowed = len(users) == 1 and users[0].opcode == "trunc"
     if narrowed:
         users = flow.users.get(users[0].result or "", [])
-    is_statement = any(label.startswith(("%then", "%else")) for _, label in PHI_ARM.findall(phi.text))
+    is_statement = any(label.startswith(("then", "else")) for label in arms_of(phi))
     return (
         len(users) == 1
         and users[0].opcode == "store"
@@ -90,7 +90,7 @@ def _places(flow: ControlFlow, value: str, phi: Instruction) -> set[str]:
             if user is phi or user.opcode in CASTS:
                 continue
             if user.opcode == "phi":
-                found |= {label[1:] for arm, label in PHI_ARM.findall(user.text) if arm == name}
+                found |= {label for label, arm in arms_of(user).items() if arm == name}
             elif user.result in flow.defined:
                 found.add(flow.defined[user.result][0])
             else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, is_number
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, each_arm, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.demanded_values import DemandedValues
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
@@ -97,7 +97,7 @@ class Context:
     def others(self, phi: Instruction) -> list[tuple[str, str]]:
         """Arms of a phi that come from elsewhere than from a branchless `if` that computes it."""
         own = {label for each in self.conversions_of(phi) for label in (each.label, *each.arms)}
-        return [(value, label) for value, label in self.arms(phi) if label not in own]
+        return [(value, label) for value, label in each_arm(phi) if label not in own]
 
     def converted(self, conversion: ConvertedIf) -> str:
         """Name of what a branchless `if` computes: a value of its own where other ways lead to the phi as well."""
@@ -209,7 +209,3 @@ class Context:
         """What any instruction with one of these opcodes takes."""
         instructions = (each for block in self.routine.blocks for each in block.instructions)
         return {operand for each in instructions if each.opcode in opcodes for operand in each.operands}
-
-    def arms(self, phi: Instruction) -> list[tuple[str, str]]:
-        """(value, label of the block it comes from) of a phi."""
-        return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import Instruction, Routine
+from bfsim.kernel.ir_text import Instruction, Routine, phi_of
 from bfsim.kernel.isa import BYTE_BITS
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.idioms import filling_loops, fills_of
@@ -43,7 +43,7 @@ def count_fills(routine: Routine) -> Routine:
         *rows, end = blocks[header].instructions
         one = replace(end, hint="", weights=())
         added = [
-            _made(one, turn, f"phi i32 [ 0, %{before} ], [ {next_turn}, %{header} ]", "0", next_turn),
+            phi_of(turn, "i32", [("0", before), (next_turn, header)], one),
             *rows,
             _made(one, next_turn, f"add nuw i32 {turn}, 1", turn, "1"),
             _made(one, word_filled(header), f"icmp eq i32 {turn}, {FILL_WORD_BYTES // nbytes - 1}", turn),

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, arms_of, with_values
+from bfsim.kernel.ir_text import BasicBlock, Instruction, arms_of, each_arm, with_each_arm, with_values
 
 
 def going_to(block: BasicBlock, old: str, new: str) -> BasicBlock:
@@ -61,14 +61,10 @@ def bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: st
     changed = []
     for phi in blocks[end].instructions:
         if phi.opcode == "phi":
-            arms = PHI_ARM.findall(phi.text)
-            ways = [(value, source) for value, source in arms if source != f"%{label}"]
-            ways += [
-                (value, f"%{each}") for value, source in arms if source == f"%{label}" for each in before
-            ]
-            kind = phi.text.split()[1]
-            text = f"phi {kind} " + ", ".join(f"[ {value}, {source} ]" for value, source in ways)
-            changed.append(replace(phi, text=text, operands=tuple(value for value, _ in ways)))
+            arms = each_arm(phi)
+            ways = [(value, source) for value, source in arms if source != label]
+            ways += [(value, each) for value, source in arms if source == label for each in before]
+            changed.append(with_each_arm(phi, ways))
         else:
             changed.append(phi)
     blocks[end] = replace(blocks[end], instructions=tuple(changed))

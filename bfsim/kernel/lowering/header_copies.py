@@ -11,7 +11,17 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bfsim.kernel.gimple_size import TEST_SIZE, statement_size
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate, renamed
+from bfsim.kernel.ir_text import (
+    BasicBlock,
+    Instruction,
+    Routine,
+    arms_of,
+    each_arm,
+    phi_of,
+    predicate,
+    renamed,
+    with_each_arm,
+)
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
 from bfsim.kernel.lowering.bits_set import STATEMENTS as WORD_COUNT
 from bfsim.kernel.lowering.bits_set import counted_word
@@ -134,9 +144,9 @@ def _uses_are_near(flow: ControlFlow, header: BasicBlock, inside: str, way_out: 
             ):
                 return False
         for each in block.instructions if block.label != header.label else ():
-            for value, source in PHI_ARM.findall(each.text) if each.opcode == "phi" else ():
-                before = flow.dominators[source[1:]]
-                near = source[1:] == header.label or inside in before
+            for value, source in each_arm(each) if each.opcode == "phi" else ():
+                before = flow.dominators[source]
+                near = source == header.label or inside in before
                 if value in own and not near:
                     return False
     return True
@@ -224,7 +234,7 @@ class _Rotation:
         for label, block in self.flow.blocks.items():
             for each in block.instructions if label != self.header.label else ():
                 if each.opcode == "phi":
-                    sources = [source[1:] for value, source in PHI_ARM.findall(each.text) if value == name]
+                    sources = [source for value, source in each_arm(each) if value == name]
                 else:
                     sources = [label] if name in each.operands else []
                 if any(side in self.flow.dominators[source] for source in sources):
@@ -235,26 +245,22 @@ class _Rotation:
         return side == self.inside or not self.is_sure
 
     def _choice(self, name: str, chosen: str, side: str) -> Instruction:
-        values = {self.copy: self.first[name]} if self._comes_from_copy(side) else {}
-        values[self.header.label] = self.last[name]
-        arms = ", ".join(f"[ {value}, %{label} ]" for label, value in values.items())
-        text = f"phi {self.types[name]} {arms}"
-        return Instruction(chosen, "phi", text, tuple(values.values()), self.header.terminator.line)
+        arms = [(self.first[name], self.copy)] if self._comes_from_copy(side) else []
+        arms.append((self.last[name], self.header.label))
+        return phi_of(chosen, self.types[name], arms, replace(self.header.terminator, location=""))
 
     def _phi(self, phi: Instruction, names: dict[str, str], side: str) -> Instruction:
         arms = []
-        for value, source in PHI_ARM.findall(phi.text):
-            if source[1:] == self.header.label:
+        for value, source in each_arm(phi):
+            if source == self.header.label:
                 if self._comes_from_copy(side):
                     arms.append((self.first.get(value, value), self.copy))
                 arms.append((self.last.get(value, value), self.header.label))
-            elif self.inside in self.flow.dominators[source[1:]]:
-                arms.append((f"{value}{AGAIN}" if value in self.types else value, source[1:]))
+            elif self.inside in self.flow.dominators[source]:
+                arms.append((f"{value}{AGAIN}" if value in self.types else value, source))
             else:
-                arms.append((names.get(value, value), source[1:]))
-        kind = phi.text.split()[1]
-        text = f"phi {kind} " + ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
-        return replace(phi, text=text, operands=tuple(value for value, _ in arms))
+                arms.append((names.get(value, value), source))
+        return with_each_arm(phi, arms)
 
 
 def _holds(relation: str, values: list[str]) -> bool | None:

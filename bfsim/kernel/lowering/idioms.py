@@ -7,7 +7,7 @@ Counting the bits of a word is ONES on the Blackfin: GCC knows the number of ite
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import Instruction, arms_of
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
@@ -34,7 +34,7 @@ def _counts_bits(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> b
         return False
     words = 0
     for phi in (each for each in rows if each.opcode == "phi"):
-        update = next(value for value, label in PHI_ARM.findall(phi.text) if label[1:] == loop.header)
+        update = arms_of(phi)[loop.header]
         each = flow.instruction(update)
         less = (
             [flow.instruction(operand) for operand in each.operands] if each and each.opcode == "and" else []
@@ -56,8 +56,8 @@ def counting_ops(flow: ControlFlow, loop: Loop) -> list[Op]:
         value
         for each in flow.blocks[loop.header].instructions
         if each.opcode == "phi"
-        for value, label in PHI_ARM.findall(each.text)
-        if label[1:] != loop.header
+        for label, value in arms_of(each).items()
+        if label != loop.header
     ]
     adds = not {"0"} & {*starts}
     if _tests_others(flow, loop, starts):

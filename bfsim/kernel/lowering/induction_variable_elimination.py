@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, is_number
+from bfsim.kernel.ir_text import Instruction, each_arm, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
 from bfsim.kernel.lowering.preheaders import preheader_of
@@ -89,7 +89,7 @@ def _wanted(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter: 
         if user.opcode == "getelementptr" or user.result == evolution.exit_test(loop):
             continue
         if user.opcode == "phi":
-            yield from (source[1:] for value, source in PHI_ARM.findall(user.text) if value == counter)
+            yield from (source for value, source in each_arm(user) if value == counter)
         elif phi is not None and user.result in phi.operands:
             yield from _wanted_of_step(flow, evolution, loop, user, phi)
         else:

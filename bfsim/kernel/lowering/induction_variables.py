@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine, arms_of, is_number
+from bfsim.kernel.ir_text import Instruction, SourceLine, arms_of, each_arm, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.profile import CompilerProfile
@@ -112,7 +112,7 @@ class InductionVariables:
         """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""
         source = self.flow.instruction(each.operands[-1])
         if source is not None and is_merged_pointer(source) and self.profile.applies(Rule.MERGED_LOADS):
-            return [(arm_label[1:], value) for value, arm_label in PHI_ARM.findall(source.text)]
+            return [(arm_label, value) for value, arm_label in each_arm(source)]
         return [(label, each.operands[-1])]
 
     def _place(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 
 
@@ -53,8 +53,8 @@ class JumpThreading:
         seen.add(name)
         home, phi = self.flow.defined[name]
         found: set[str] = set()
-        for value, source in PHI_ARM.findall(phi.text):
-            if source[1:] in loop.blocks and self._sets_an_end(source[1:], home, loop):
+        for source, value in arms_of(phi).items():
+            if source in loop.blocks and self._sets_an_end(source, home, loop):
                 continue
             if _is_constant(value):
                 found.add(value)
@@ -112,7 +112,7 @@ class JumpThreading:
                 and phi.result in self.names
                 and self._reaches(phi.result or "", test.operands[0])
             ):
-                value = next((each for each, source in PHI_ARM.findall(phi.text) if source[1:] == before), "")
+                value = arms_of(phi).get(before, "")
                 if _is_constant(value):
                     holds = (value == test.operands[1]) == (predicate(test) == "eq")
                     return predicate(test) in ("eq", "ne") and way_out[0 if holds else 1]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import SWAPPED, Instruction, Routine, is_number, predicate, renamed
+from bfsim.kernel.ir_text import SWAPPED, Instruction, Routine, is_number, phi_of, predicate, renamed
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import is_extended
 from bfsim.kernel.lowering.value_ranges import answer
@@ -123,13 +123,7 @@ def _answered(flow: ControlFlow, known: _Known) -> Routine:
             rows.append(replace(each, result=names[operand]))
     rows.append(replace(renamed(test, names), result=asked))
     says = str(known.says).lower()
-    phi = replace(
-        test,
-        result=name,
-        opcode="phi",
-        text=f"phi i1 [ {says}, %{known.known} ], [ {asked}, %{known.open} ]",
-        operands=(says, asked),
-    )
+    phi = phi_of(name, "i1", [(says, known.known), (asked, known.open)], test)
     blocks, is_guessed = [], not is_number(test.operands[1])
     for block in flow.routine.blocks:
         own = [renamed(each, {test.result or "": name}) for each in block.instructions if each is not test]

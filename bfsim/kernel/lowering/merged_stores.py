@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, phi_of
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import bypass
 
@@ -62,8 +62,7 @@ def _merged(
             side, instructions=tuple(each for each in side.instructions if each not in gone)
         )
         arms.append((store.operands[0], side.label))
-    text = f"phi {kind} " + ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
-    phi = replace(stores[0], result=name, opcode="phi", text=text, operands=tuple(value for value, _ in arms))
+    phi = phi_of(name, kind, arms, stores[0])
     pointer = stores[0].operands[-1]
     address = flow.instruction(pointer)
     if address is not None:  # what it is made of is the same on both sides, and so is there behind them

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, phi_of
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from, going_to, put_between
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
@@ -184,8 +184,8 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
         blocks[home] = replace(blocks[home], instructions=(*before, *rows, last))
         values[home] = rows[-1].result or ""
     kind = f"i{found.operation.bits}"
-    arms = ", ".join(f"[ {value}, %{source} ]" for source, value in values.items())
-    phi = replace(found.operation, opcode="phi", text=f"phi {kind} {arms}", operands=tuple(values.values()))
+    arms = ((value, source) for source, value in values.items())
+    phi = phi_of(found.operation.result or "", kind, arms, found.operation)
     rest = [each for each in blocks[label].instructions if each is not found.operation]
     blocks[label] = replace(blocks[label], instructions=(phi, *rest))
     for source in found.values:

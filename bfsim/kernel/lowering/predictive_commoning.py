@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import Instruction, Routine, arms_of, renamed
+from bfsim.kernel.ir_text import Instruction, Routine, arms_of, phi_of, renamed
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import Hoisting
@@ -140,8 +140,7 @@ def _carried(routine: Routine, flow: ControlFlow, loop: Loop, chains: Sequence[C
 def _phi(flow: ControlFlow, loop: Loop, root: Reference, names: tuple[str, str, str]) -> Instruction:
     """Return the phi of a value: its name, what it is at first, and what it is in the next iteration."""
     name, first, following = names
-    text = f"phi {root.kind} [ {first}, %{flow.entering(loop)} ], [ {following}, %{loop.latch} ]"
-    return replace(root.each, result=name, opcode="phi", text=text, operands=(first, following))
+    return phi_of(name, root.kind, [(first, flow.entering(loop)), (following, loop.latch)], root.each)
 
 
 def _beginning(flow: ControlFlow, loop: Loop, chain: Chain, name: str, made: list[Instruction]) -> list[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine, arms_of
+from bfsim.kernel.ir_text import Instruction, Routine, arms_of, phi_of
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.preheaders import with_preheader
 
@@ -61,8 +61,8 @@ def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None
     if not all(flow.is_invariant(each, loop) for each in address.operands[:-1]):
         return None
     values = {
-        label[1:]: load.result if value == index.result else _loaded(flow, loop, load, value, label[1:])
-        for value, label in PHI_ARM.findall(merged.text)
+        label: load.result if value == index.result else _loaded(flow, loop, load, value, label)
+        for label, value in arms_of(merged).items()
     }
     known = {label: value for label, value in values.items() if value is not None}
     carried = Carried(loop, load, address, index, merged, known)
@@ -173,5 +173,4 @@ def _is_loaded_behind(flow: ControlFlow, carried: Carried) -> bool:
 
 
 def _phi(load: Instruction, result: str, kind: str, arms: dict[str, str]) -> Instruction:
-    text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())
-    return Instruction(result, "phi", f"phi {kind} {text}", tuple(arms.values()), load.line)
+    return phi_of(result, kind, ((value, label) for label, value in arms.items()), replace(load, location=""))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.evaluated_iterations import evaluated_iterations
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
@@ -118,7 +118,7 @@ class ScalarEvolution:
         """Return by how much a phi of the header of `loop` differs from its value an iteration before."""
         instruction = self.flow.instruction(phi)
         assert instruction is not None
-        updates = {arm for arm, source in PHI_ARM.findall(instruction.text) if source[1:] in loop.blocks}
+        updates = {arm for source, arm in arms_of(instruction).items() if source in loop.blocks}
         if len(updates) != 1:
             return None
         affine = self.affine(updates.pop())
@@ -212,7 +212,7 @@ class ScalarEvolution:
         each = self.flow.instruction(affine.terms[0][0])
         if each is None or each.opcode != "phi" or self.flow.defined[affine.terms[0][0]][0] != loop.header:
             return None
-        return next((arm for arm, source in PHI_ARM.findall(each.text) if source[1:] == entering), None)
+        return arms_of(each).get(entering)
 
     def counter_start(self, loop: Loop) -> str | None:
         """Return what the counter that ends `loop` starts with, but for a constant; None if none is known to end it."""
@@ -247,8 +247,8 @@ class ScalarEvolution:
             value
             for each in counters
             if self._of_counter(each.result or "", loop) is not None
-            for value, source in PHI_ARM.findall(each.text)
-            if source[1:] == entering
+            for source, value in arms_of(each).items()
+            if source == entering
         ]
         return all(value.lstrip("-").isdigit() for value in starts)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, each_arm, with_each_arm
 from bfsim.kernel.loops import ControlFlow
 
 SECOND = ".second"  # ending of the label of the block with the second test
@@ -96,11 +96,9 @@ def _with_arm(row: Instruction, label: str, second: str, *, keeps: bool) -> Inst
     if row.opcode != "phi":
         return row
     arms = []
-    for value, source in PHI_ARM.findall(row.text):
-        if source[1:] != label or keeps:
-            arms.append((value, source[1:]))
-        if source[1:] == label:
+    for value, source in each_arm(row):
+        if source != label or keeps:
+            arms.append((value, source))
+        if source == label:
             arms.append((value, second))
-    kind = row.text.split()[1]
-    text = f"phi {kind} " + ", ".join(f"[ {value}, %{source} ]" for value, source in arms)
-    return replace(row, text=text, operands=tuple(value for value, _ in arms))
+    return with_each_arm(row, arms)

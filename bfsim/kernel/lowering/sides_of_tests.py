@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import Instruction, Routine, arms_of, renamed, with_values, written
+from bfsim.kernel.ir_text import Instruction, Routine, arms_of, phi_of, renamed
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import put_between
 
@@ -73,7 +73,7 @@ def _on_sides(flow: ControlFlow, choice: Instruction, moved: Sequence[Instructio
             names[each.result or ""] = own
         results[side] = names[last.result or ""]
         blocks[side] = replace(blocks[side], instructions=(*rows, end))
-    phi = with_values(written(last.result or "", f"phi i{last.bits}", (), last), results)
+    phi = phi_of(last.result or "", f"i{last.bits}", ((value, side) for side, value in results.items()), last)
     gone = {choice.result, *(each.result for each in moved)}
     rows = [each for each in blocks[home].instructions if each.result not in gone or each.result is None]
     blocks[home] = replace(blocks[home], instructions=(phi, *rows))

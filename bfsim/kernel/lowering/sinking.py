@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import permutations
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import bypass, join_before, put_between
 from bfsim.kernel.lowering.predict import Likelihood
@@ -157,7 +157,7 @@ class _Sinking:
         found = set()
         for user in self.flow.users.get(each.result or "", []):
             if user.opcode == "phi":
-                found |= {source[1:] for value, source in PHI_ARM.findall(user.text) if value == each.result}
+                found |= {source for source, value in arms_of(user).items() if value == each.result}
             else:
                 found.add(self.home[user.result] if user.result else self._where(user))
         return found

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from operator import ge, gt, le, lt, ne
 
 from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, predicate, renamed
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, phi_of, predicate, renamed
 from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.edges import without_way
@@ -134,10 +134,8 @@ def _set_on(flow: ControlFlow, routine: Routine, loop: Loop, skip: _Skip) -> Rou
     line, location = skip.counter.line, skip.counter.location
     jump = Instruction(None, "br", f"br label %{skip.goes_on}", (), line, location=location)
     tests = skip.tests[:1] if skip.is_one_test else skip.tests
-    arms = ", ".join((f"[ {skip.following}, %{setting} ]", *(f"[ {name}, %{label} ]" for label in tests)))
-    phi = Instruction(
-        now, "phi", f"phi i32 {arms}", (str(skip.following), *[name] * len(tests)), line, location=location
-    )
+    arms = [(str(skip.following), setting), *((name, label) for label in tests)]
+    phi = phi_of(now, "i32", arms, skip.counter)
     blocks = []
     for block in routine.blocks:
         rows = list(block.instructions)

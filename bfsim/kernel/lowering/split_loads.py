@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, each_arm, phi_of
 from bfsim.kernel.loops import ControlFlow
 
 
@@ -24,7 +24,7 @@ def split_loads(routine: Routine) -> Routine:
     ]
     blocks = {each.label: each for each in routine.blocks}
     for label, phi, loads in chosen:
-        arms = [(value, source[1:]) for value, source in PHI_ARM.findall(phi.text)]
+        arms = each_arm(phi)
         ends_there = all(flow.blocks[source].successors == (label,) for _, source in arms)
         carried = any(label in flow.dominators[source] for _, source in arms)
         if loads and ends_there and not carried and all(_may_move(flow, label, each) for each in loads):
@@ -71,17 +71,9 @@ def _split(
             origin = next((each for each in before if each.result == address), last)
             made = replace(made, line=origin.line, location=origin.location)
             blocks[source] = replace(blocks[source], instructions=(*before, made, last))
-            merged.append(f"[ {name}, %{source} ]")
+            merged.append((name, source))
         kind = load.text.removeprefix("load ").split(",")[0]
-        text = f"phi {kind} {', '.join(merged)}"
-        values.append(
-            replace(
-                load,
-                opcode="phi",
-                text=text,
-                operands=tuple(f"{load.result}.{way}" for way in range(len(arms))),
-            )
-        )
+        values.append(phi_of(load.result or "", kind, merged, load))
     for name, block in blocks.items():
         rows = [
             each for each in block.instructions if each is not phi and not any(each is load for load in loads)

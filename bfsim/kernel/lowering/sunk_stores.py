@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, renamed
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, phi_of, renamed
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.narrow_choices import CHOSEN
@@ -65,9 +65,8 @@ def _sunk(flow: ControlFlow, block: BasicBlock, stores: Sequence[Instruction]) -
     values = tuple(each or "" for each in wide) if are_wide else tuple(each.operands[0] for each in stores)
     kind = f"i{WORD}" if are_wide else _kind(first)
     value = f"%{label}.value"
-    arms = ", ".join(f"[ {each}, %{source} ]" for each, source in zip(values, sources, strict=True))
     rows = [each for each in block.instructions if each.opcode == "phi"]
-    rows.append(replace(stores[0], result=value, opcode="phi", text=f"phi {kind} {arms}", operands=values))
+    rows.append(phi_of(value, kind, zip(values, sources, strict=True), stores[0]))
     if are_wide:
         text = f"trunc i{WORD} {value} to {_kind(first)}"
         rows.append(replace(first, result=f"{value}.part", opcode="trunc", text=text, operands=(value,)))

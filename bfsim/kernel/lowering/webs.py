@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter as Tally
 from collections import defaultdict
 
+from bfsim.kernel.ir_text import each_arm
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.induction_variables import is_merged_pointer
 from bfsim.kernel.lowering.liveness import Liveness, liveness
@@ -87,7 +88,7 @@ class Webs:
         taken, before = self.context.likelihood.taken, self.flow.predecessors
         for phi, arms in self.phis.items():
             home, each = self.flow.defined[phi]
-            known = [(self.context.name(value), label) for value, label in self.context.arms(each)]
+            known = [(self.context.name(value), label) for value, label in each_arm(each)]
             for value, label in dict.fromkeys((*arms, *known)):
                 if value.startswith("#") or (label, home) not in taken:
                     continue
