@@ -95,7 +95,7 @@ def test_a_window_of_three_is_no_hardware_loop(tmp_path: Path) -> None:
     known = context(WINDOW, tmp_path)
     inner, outer = known.flow.loops
     assert known.evolution.iterations(inner) == 3
-    assert known.demanded.counted == {outer.header}
+    assert known.counters.counted == {outer.header}
 
 
 def test_bits_counted_in_parallel_are_one_operation(tmp_path: Path) -> None:

@@ -206,7 +206,7 @@ def test_a_flag_that_ends_a_loop_is_threaded_away() -> None:
     assert known.jump_threading.names
     inner, _ = known.flow.loops
     inside = [each for label in inner.blocks for each in known.flow.blocks[label].instructions]
-    assert inner.header in known.demanded.counted
+    assert inner.header in known.counters.counted
     assert not any(each.is_division for each in inside)
 
 
@@ -219,7 +219,7 @@ def test_few_iterations_and_calls_keep_a_loop_from_being_counted(tmp_path: Path)
         (9, "+ i32(b // u32(a[i]))", False),
     ):
         known = context(text.format(iterations, rest), tmp_path)
-        assert {loop.header in known.demanded.counted for loop in known.flow.loops} == {counted}
+        assert {loop.header in known.counters.counted for loop in known.flow.loops} == {counted}
 
 
 def test_counting_bits_is_one_operation(tmp_path: Path) -> None:

@@ -115,9 +115,9 @@ def test_the_remainder_written_as_a_difference_is_a_second_call(tmp_path: Path) 
 def test_a_counter_of_bytes_is_read_off_the_pointer(tmp_path: Path) -> None:
     """Where only some iterations want it and each looks at neighbours, nothing steps it; words would need a shift."""
     text = "def f(a: {}[:], n: i32, v: i32) -> i32:\n    at = 0\n    for i in range(n):\n        if a[i] > {}:\n            at = i\n            a[i] = 0\n    return at\n"
-    assert context(text.format("u8", "a[i + 1]"), tmp_path).demanded.eliminated
-    assert not context(text.format("u8", "v"), tmp_path).demanded.eliminated
-    assert not context(text.format("i32", "a[i + 1]"), tmp_path).demanded.eliminated
+    assert context(text.format("u8", "a[i + 1]"), tmp_path).counters.eliminated
+    assert not context(text.format("u8", "v"), tmp_path).counters.eliminated
+    assert not context(text.format("i32", "a[i + 1]"), tmp_path).counters.eliminated
 
 
 def test_what_only_some_iterations_load_needs_no_pointer_of_its_own(tmp_path: Path) -> None:

@@ -94,7 +94,7 @@ def test_a_stack_that_a_continue_skips_is_counted_down(step: int, counted: bool,
     )
     (inner,) = (loop for loop in found.flow.loops if found.flow.is_split(loop))
     assert found.flow.ending(inner) == inner.header
-    assert (inner.header in found.demanded.counted) is counted
+    assert (inner.header in found.counters.counted) is counted
     assert found.likelihood.taken[
         inner.header, found.flow.blocks[inner.header].successors[0]
     ] == pytest.approx(0.89)
@@ -132,7 +132,7 @@ def test_a_stepped_value_is_compared_behind_its_step(tmp_path: Path) -> None:
         tmp_path,
     )
     tests = [each for block in found.routine.blocks for each in block.instructions if each.opcode == "icmp"]
-    bounds = [(found.demanded.compared(each)[1], each.operands[1]) for each in tests]
+    bounds = [(found.folding.compared(each)[1], each.operands[1]) for each in tests]
     assert any(seen != written for seen, written in bounds)
     assert any(seen == written for seen, written in bounds)
 
@@ -219,7 +219,7 @@ def test_a_counter_is_a_difference_to_what_is_prepared(first: str, steps: int, t
         "def f(a: u8[:], y: i32, n: i32, least: i32) -> i32:\n    s = 0\n    for x in range(n):\n"
         f"        if a[{first} + x] >= least:\n            s = s ^ x\n    return s\n"
     )
-    eliminated = context(text, tmp_path).demanded.eliminated
+    eliminated = context(text, tmp_path).counters.eliminated
     assert len(eliminated) == 1 - steps
 
 

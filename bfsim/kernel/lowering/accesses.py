@@ -32,11 +32,11 @@ class Accesses(Calls):
         bank = ANY if each.bits == 32 else DATA
         address, nbytes = (self._address(each), POINTER), self._access_bytes(each)
         self.append(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes, access=each)
-        if self.context.demanded.extended_apart(each):
+        if self.context.narrow.extended_apart(each):
             self.append(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
-            if self.context.demanded.extended_for_distance(each):
+            if self.context.narrow.extended_for_distance(each):
                 self.append(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
-        elif self.context.demanded.extended_late(each):
+        elif self.context.narrow.extended_late(each):
             self.append(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
 
     def store(self, each: Instruction) -> None:
@@ -104,7 +104,7 @@ class Accesses(Calls):
 
     def counters(self, label: str) -> None:
         """Compute the counters that a pointer stands for; it has been stepped by then, so each iteration keeps what it was."""
-        for each in self.context.demanded.eliminated.values():
+        for each in self.context.counters.eliminated.values():
             variable = each.variable
             if label == variable.loop.header:
                 self.code.add(
@@ -143,13 +143,13 @@ class Accesses(Calls):
                 uses = ((variable.name, POINTER),) + (
                     ((variable.stride, POINTER),) if variable.stride else ()
                 )
-                kept = any(each.variable is variable for each in self.context.demanded.eliminated.values())
+                kept = any(each.variable is variable for each in self.context.counters.eliminated.values())
                 self.code.add(
                     variable.loop.header if kept else latch,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, uses),
                 )
                 loose = (
-                    variable.loop.header not in self.context.demanded.counted
+                    variable.loop.header not in self.context.counters.counted
                     and len(self.flow.exits(variable.loop)) > 1
                 )
                 if loose and self.context.profile.applies(Rule.POINTER_COPIES):

@@ -200,7 +200,7 @@ class Calls:
 
     def divide(self, each: Instruction) -> None:
         library = self.context.profile.library
-        signed = self.context.demanded.divides_signed(each)
+        signed = self.context.divisions.divides_signed(each)
         routines = {
             ("div", True): library.divide_signed, ("div", False): library.divide_unsigned,
             ("rem", True): library.remainder_signed, ("rem", False): library.remainder_unsigned,
@@ -209,7 +209,7 @@ class Calls:
         if divided_by_power(each):
             self._divide_by_power(each)
             return
-        if not self.context.demanded.divides_by_call(each):
+        if not self.context.divisions.divides_by_call(each):
             self._divide_by_constant(each)
             return
         if self.context.demanded.rounds_down(each):

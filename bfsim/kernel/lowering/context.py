@@ -7,11 +7,15 @@ from functools import cached_property
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, each_arm, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.demanded_values import DemandedValues
+from bfsim.kernel.lowering.folding import Folding
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.if_conversion import ConvertedIf, IfConversion
 from bfsim.kernel.lowering.induction_variables import HIDDEN, InductionVariables
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.jump_threading import JumpThreading
+from bfsim.kernel.lowering.library_divisions import LibraryDivisions
+from bfsim.kernel.lowering.loop_counters import LoopCounters
+from bfsim.kernel.lowering.narrow_values import NarrowValues
 from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.predictive_commoning import ALONG
 from bfsim.kernel.lowering.ranges import ranges
@@ -53,16 +57,24 @@ class Context:
         counts_bits = profile.applies(Rule.BIT_COUNTS)
         self.bit_counts = bit_counting_loops(self.flow, self.evolution) if counts_bits else {}
         self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}
+        self.folding = Folding(self.flow, profile, self.if_conversion.flags)
+        self.divisions = LibraryDivisions(self.flow, profile)
+        self.counters = LoopCounters(
+            self.evolution,
+            self.induction_variables,
+            self.divisions,
+            frozenset(self.fills),
+            self.likelihood.frequency,
+        )
         self.demanded = DemandedValues(
-            self.flow,
             self.evolution,
             self.if_conversion,
             self.induction_variables,
             self.jump_threading,
-            frozenset(self.fills),
-            self.likelihood.frequency,
-            profile,
+            self.folding,
+            self.counters,
         )
+        self.narrow = NarrowValues(self.folding, self.induction_variables, self.counters, self.demanded.emits)
         self.replaced = self.bit_counts | self.fills
         """Loops of one block that are an operation or a call."""
 
@@ -161,14 +173,14 @@ class Context:
         if not value.startswith(("%", "@")):
             return f"#{value}"
         value = self.code_motion.same.get(value, value)
-        if value in self.demanded.eliminated:
-            return self.demanded.eliminated[value].name
+        if value in self.counters.eliminated:
+            return self.counters.eliminated[value].name
         each = self.flow.instruction(value)
-        if each is not None and self.demanded.in_sunk_mask(each):
+        if each is not None and self.folding.in_sunk_mask(each):
             return self.name(each.operands[0])
         if each is not None and self.is_alias(each):
             source = self.flow.instruction(each.operands[0])
-            if source is not None and source.opcode == "load" and self.demanded.extended_apart(source):
+            if source is not None and source.opcode == "load" and self.narrow.extended_apart(source):
                 return f"{source.result}.wide"
             return self.name(each.operands[0])
         return value

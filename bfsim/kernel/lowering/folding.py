@@ -7,6 +7,7 @@ from functools import cached_property
 from bfsim.kernel.ir_text import Instruction, is_number, predicate
 from bfsim.kernel.isa import ADDRESS_SHIFTS
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.hoisted_code import BEFORE_TESTS
 from bfsim.kernel.lowering.remainders import quotient_of_rest
 from bfsim.kernel.profile import CompilerProfile
@@ -220,6 +221,10 @@ class Folding:
             ):
                 return other
         return None
+
+    def counted_bits(self, each: Instruction) -> str | None:
+        """The word whose bits an instruction ends up with, counted in parallel: an instruction does that."""
+        return counted_word(self.flow, each) if self.profile.applies(Rule.PARALLEL_COUNTS) else None
 
     def is_short(self, operand: str) -> bool:
         """Whether a compiler sees that a factor has 16 bits: a constant, or a narrow value that was extended."""

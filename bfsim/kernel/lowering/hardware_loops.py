@@ -23,7 +23,7 @@ class HardwareLoops:
 
     def _is_one(self, loop: Loop) -> bool:
         """Whether it is a counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
-        if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
+        if loop.header not in self.context.counters.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
         if self.flow.is_split(loop):
             return False
@@ -82,5 +82,5 @@ class HardwareLoops:
         )
 
     def _counted_depth(self, loop: Loop) -> int:
-        own = int(loop.header in self.context.demanded.counted)
+        own = int(loop.header in self.context.counters.counted)
         return own + max((self._counted_depth(each) for each in loop.inner), default=0)

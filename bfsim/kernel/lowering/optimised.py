@@ -100,7 +100,7 @@ class _OptimisedLowering:
                     yield (label, way), ends[0]
 
     def _counted(self) -> Iterator[Loop]:
-        return (loop for loop in self.flow.loops if loop.header in self.context.demanded.counted)
+        return (loop for loop in self.flow.loops if loop.header in self.context.counters.counted)
 
     def _way_back(self, loop: Loop) -> tuple[str, str]:
         """The jump of a counted loop's end, which GCC cannot turn round."""
@@ -231,7 +231,7 @@ class _OptimisedLowering:
 
     def _loops(self, block: BasicBlock, cost: BlockCost) -> None:
         for loop in self.flow.loops:
-            if loop.header not in self.context.demanded.counted or loop.header in self.context.replaced:
+            if loop.header not in self.context.counters.counted or loop.header in self.context.replaced:
                 continue
             line = self.flow.blocks[loop.header].instructions[-1].line
             line = self.flow.blocks[loop.latch].terminator.line or line
@@ -318,7 +318,7 @@ class _OptimisedLowering:
             (
                 each
                 for each in self.flow.loops
-                if self.flow.ending(each) == label and each.header in self.context.demanded.counted
+                if self.flow.ending(each) == label and each.header in self.context.counters.counted
             ),
             None,
         )

@@ -95,7 +95,7 @@ class Pressure:
         """Pointer registers that counters of counted loops take in a block, from `loop` inwards [loop_end in bfin.md]."""
         if not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS):
             return 0
-        counted = self.webs.context.demanded.counted
+        counted = self.webs.context.counters.counted
         return sum(
             each.header in counted and each.blocks <= loop.blocks for each in self.flow.loops_of(label)
         )

@@ -147,7 +147,7 @@ class _Room:
 
     def __init__(self, webs: Webs) -> None:
         self.webs = webs
-        counted = webs.context.demanded.counted
+        counted = webs.context.counters.counted
         self.points: list[tuple[set[str], int]] = []
         for label in webs.flow.order:
             counters = sum(loop.header in counted for loop in webs.flow.loops_of(label))

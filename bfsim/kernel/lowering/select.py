@@ -70,7 +70,7 @@ class _Selector(Accesses):
             for conversion in self.context.conversions_of(each):
                 self.label = conversion.label
                 self._converted(each, conversion)
-            if self.context.demanded.sunk_mask(each):
+            if self.context.folding.sunk_mask(each):
                 self.append(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
             return
         rule = RULES.get(each.opcode)
@@ -80,26 +80,26 @@ class _Selector(Accesses):
     # Arithmetic
 
     def add(self, each: Instruction) -> None:
-        if self.context.demanded.in_shifted_sum(each):
+        if self.context.folding.in_shifted_sum(each):
             return
-        if (product := self.context.demanded.accumulates(each)) is not None:
+        if (product := self.context.folding.accumulates(each)) is not None:
             sum_before = next(operand for operand in each.operands if operand != product.result)
             factors = ((operand, DATA) for operand in product.operands[:2])
             self.append(Op.MAC, each, each.result, DATA, (sum_before, DATA), *factors)
             return
-        if (plan := self.context.demanded.shift_add(each)) is not None:
+        if (plan := self.context.folding.shift_add(each)) is not None:
             shifted, other = plan
             self.append(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
             return
-        if (division := self.context.demanded.remainder(each)) is not None:
+        if (division := self.context.folding.remainder(each)) is not None:
             rest = replace(each, opcode=division.opcode.replace("div", "rem"), operands=division.operands)
             self.divide(rest)
             return
         left, right = each.operands[:2]
-        if (total := self.context.demanded.added_flag(each)) is not None:
+        if (total := self.context.folding.added_flag(each)) is not None:
             self.append(Op.ALU, each, each.result, ANY, (total, ANY))
             return
-        if self.context.demanded.narrowed(each):
+        if self.context.narrow.narrowed(each):
             self.append(Op.MOVE, each, None, DATA)
             self.append(Op.ALU, each, None, DATA, (left, DATA))
         if right.lstrip("-").isdigit() and int(right) in isa.ADD_IMMEDIATE and each.opcode == "add":
@@ -112,16 +112,16 @@ class _Selector(Accesses):
     def shift(self, each: Instruction) -> None:
         if self.context.is_alias(each):
             return
-        if self.context.demanded.in_shift_add(each) or self._is_half_extension(each):
+        if self.context.folding.in_shift_add(each) or self._is_half_extension(each):
             return
-        if (word := self.context.demanded.counted_bits(each)) is not None:
+        if (word := self.context.folding.counted_bits(each)) is not None:
             self.append(Op.ALU, each, each.result, DATA, (word, DATA))
             self.append(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
             return
         value, amount = each.operands[:2]
-        if (pair := self.context.demanded.shifted_sum(each)) is not None:
+        if (pair := self.context.folding.shifted_sum(each)) is not None:
             self.append(Op.ADD_SHIFT, each, each.result, ANY, (pair[0], ANY), (pair[1], ANY), overwrites=pair)
-        elif each.opcode == "ashr" and (source := self.context.demanded.extension_of(each)):
+        elif each.opcode == "ashr" and (source := self.context.folding.extension_of(each)):
             self.append(Op.EXTEND, each, each.result, DATA, (source, DATA))
         elif amount.isdigit():
             near = int(amount) in isa.ADDRESS_SHIFTS and each.opcode != "ashr"
@@ -135,16 +135,16 @@ class _Selector(Accesses):
     def _is_half_extension(self, each: Instruction) -> bool:
         users = self.flow.users.get(each.result or "", [])
         return each.opcode == "shl" and bool(users) and all(
-            self.context.demanded.extension_of(user) == each.operands[0] for user in users
+            self.context.folding.extension_of(user) == each.operands[0] for user in users
         )  # fmt: skip
 
     def logic(self, each: Instruction) -> None:
         left, right = each.operands[:2]
-        demanded = self.context.demanded
+        folding = self.context.folding
         if each.bits == 1:
             (self._differ if each.opcode == "xor" else self._joined)(each)
             return
-        if demanded.in_bit_test(each) or demanded.is_shift_mask(each) or demanded.in_sunk_mask(each):
+        if folding.in_bit_test(each) or folding.is_shift_mask(each) or folding.in_sunk_mask(each):
             return
         if each.opcode == "and" and right in EXTENDING_MASKS:
             self.append(Op.EXTEND, each, each.result, DATA, (left, DATA))
@@ -163,12 +163,12 @@ class _Selector(Accesses):
 
     def multiply(self, each: Instruction) -> None:
         left, right = each.operands[:2]
-        if self._steps_along(each) or self.context.demanded.accumulated(each) is not None:
+        if self._steps_along(each) or self.context.folding.accumulated(each) is not None:
             return
         if (
             right.lstrip("-").isdigit()
             and (plan := multiple(int(right))) is not None
-            and (self.context.demanded.in_narrow_tree(each) or not self._short(each))
+            and (self.context.narrow.in_narrow_tree(each) or not self._short(each))
         ):
             value = left
             for number, op in enumerate(plan):
@@ -179,9 +179,9 @@ class _Selector(Accesses):
                 bank = POINTER if op is Op.ADD_SHIFT and not is_sum else ANY
                 self.append(op, each, result, bank, (value, bank), (left, bank))
                 value = result or ""
-        elif self._short(each) or self.context.demanded.in_narrow_tree(each):
+        elif self._short(each) or self.context.narrow.in_narrow_tree(each):
             for factor in dict.fromkeys((left, right)):
-                if self.context.demanded.extended_for_product(factor):
+                if self.context.narrow.extended_for_product(factor):
                     self.append(Op.EXTEND, each, None, DATA, (factor, DATA))
             self.append(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
         else:
@@ -203,7 +203,7 @@ class _Selector(Accesses):
         return True
 
     def _short(self, each: Instruction) -> bool:
-        return all(self.context.demanded.is_short(operand) for operand in each.operands[:2])
+        return all(self.context.folding.is_short(operand) for operand in each.operands[:2])
 
     def extend(self, each: Instruction) -> None:
         if " i1 " in each.text:
@@ -214,8 +214,8 @@ class _Selector(Accesses):
     # Decisions
 
     def compare(self, each: Instruction) -> None:
-        if self.context.demanded.bit_tested(each) is not None:
-            masked = self.context.demanded.bit_tested(each) or ""
+        if self.context.folding.bit_tested(each) is not None:
+            masked = self.context.folding.bit_tested(each) or ""
             self.append(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
         if (joined := self.context.ranges.get(self.label)) is not None and _decides(
@@ -224,7 +224,7 @@ class _Selector(Accesses):
             if self.label == joined.first:
                 self._in_range(each, joined)
             return
-        left, right = self.context.demanded.compared(each)
+        left, right = self.context.folding.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif right.lstrip("-").isdigit() and self.context.profile.applies(Rule.COMPARED):
@@ -281,7 +281,7 @@ class _Selector(Accesses):
         result = self.context.converted(conversion)
         if conversion.kind is ConversionKind.ABSOLUTE:
             self.append(Op.DSP_ALU, each, result, DATA, (conversion.operands[0], DATA))
-            if self.context.demanded.is_short(conversion.operands[0]):
+            if self.context.folding.is_short(conversion.operands[0]):
                 self.append(Op.EXTEND, each, result, DATA, (result, DATA))
         elif conversion.kind is ConversionKind.EXTREME:
             self.append(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in conversion.operands))
