@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
@@ -91,7 +91,7 @@ class Calls:
     def _unsigned_extreme(self, each: Instruction, values: tuple[tuple[str, RegisterBank], ...]) -> None:
         """A comparison, of what is extended if it is narrow, and a conditional move, which overwrites either operand."""
         (left, _), (right, _) = values
-        if right.lstrip("-").isdigit() and int(right) not in isa.COMPARE_UNSIGNED_IMMEDIATE:
+        if is_number(right) and int(right) not in isa.COMPARE_UNSIGNED_IMMEDIATE:
             self.code.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
             right = f"{each.result}.bound"
         compared = left

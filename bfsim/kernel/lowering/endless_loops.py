@@ -72,13 +72,13 @@ class EndlessLoops:
         counter's place [may_eliminate_iv in tree-ssa-loop-ivopts.cc].
         """
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        if test is None or not test.operands[1].lstrip("-").isdigit():
+        if test is None or not is_number(test.operands[1]):
             return False
         block = self.flow.blocks[self.flow.entering(loop)]
         while len(set(block.successors)) == 1 and len(self.flow.predecessors[block.label]) == 1:
             block = self.flow.blocks[self.flow.predecessors[block.label][0]]
         guard = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
-        return guard is not None and guard.opcode == "icmp" and guard.operands[1].lstrip("-").isdigit()
+        return guard is not None and guard.opcode == "icmp" and is_number(guard.operands[1])
 
     def _is_inclusive(self, loop: Loop) -> bool:
         """Whether a loop runs up to a bound and with it, and that may be the largest number there is; so may the `stop` of `stop + 1`."""

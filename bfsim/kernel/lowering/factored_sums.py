@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.widths import WORD
 
@@ -45,7 +45,7 @@ def _added_to(flow: ControlFlow, product: Instruction) -> Instruction | None:
 
 
 def _is_number(each: Instruction) -> bool:
-    return each.operands[1].lstrip("-").isdigit()
+    return is_number(each.operands[1])
 
 
 def _rows(flow: ControlFlow, product: Instruction, total: Instruction) -> list[Instruction]:

@@ -34,7 +34,7 @@ class Folding:
             source = self.flow.instruction(operand)
             if source is not None and source.opcode == "shl" and len(self.users(operand)) == 1:
                 amount = source.operands[1]
-                fits = amount.isdigit() and int(amount) in ADDRESS_SHIFTS and not other.lstrip("-").isdigit()
+                fits = amount.isdigit() and int(amount) in ADDRESS_SHIFTS and not is_number(other)
                 if fits and self.shifted_sum(source) is None:
                     return source.operands[0], other
         return None
@@ -50,7 +50,7 @@ class Folding:
         ):
             return None
         amount = shift.operands[1]
-        constant = any(operand.lstrip("-").isdigit() for operand in source.operands)
+        constant = any(map(is_number, source.operands))
         if constant or not amount.isdigit() or int(amount) not in ADDRESS_SHIFTS:
             return None
         return source.operands[0], source.operands[1]
@@ -188,12 +188,12 @@ class Folding:
         """What a comparison compares: with `x + k` at hand and `x` stepped by it, LLVM's `x > 0` is C's `x + k > k`."""
         left, right = compare.operands[:2]
         carried = self.flow.instruction(left)
-        if carried is None or carried.opcode != "phi" or not right.lstrip("-").isdigit():
+        if carried is None or carried.opcode != "phi" or not is_number(right):
             return left, right
         here = self.flow.blocks[self.flow.defined[compare.result or ""][0]].instructions
         for each in here[: here.index(compare)]:
             steps = each.opcode == "add" and each.operands[0] == left and each.result in carried.operands
-            if steps and each.operands[1].lstrip("-").isdigit():
+            if steps and is_number(each.operands[1]):
                 return each.result or "", str(int(right) + int(each.operands[1]))
         return left, right
 
@@ -217,7 +217,7 @@ class Folding:
                 and self.users(operand) == [each]
                 and self.flow.defined[operand][0] == self.flow.defined[each.result or ""][0]
                 and "0" in flag.operands
-                and all(value.lstrip("-").isdigit() for value in flag.operands)
+                and all(map(is_number, flag.operands))
             ):
                 return other
         return None
@@ -228,7 +228,7 @@ class Folding:
 
     def is_short(self, operand: str) -> bool:
         """Whether a compiler sees that a factor has 16 bits: a constant, or a narrow value that was extended."""
-        if operand.lstrip("-").isdigit():
+        if is_number(operand):
             return -(1 << 15) <= int(operand) < 1 << 15
         each = self.flow.instruction(operand)
         return each is not None and each.opcode in ("sext", "zext", "load") and each.bits in NARROW

@@ -17,6 +17,7 @@ from bfsim.kernel.ir_text import (
     Routine,
     arms_of,
     each_arm,
+    is_number,
     phi_of,
     predicate,
     renamed,
@@ -265,7 +266,7 @@ class _Rotation:
 
 def _holds(relation: str, values: list[str]) -> bool | None:
     """Whether constants are so related; None if a value is none."""
-    if not all(each.lstrip("-").isdigit() for each in values):
+    if not all(map(is_number, values)):
         return None
     left, right = (int(each) % (1 << 32) if relation[0] == "u" else int(each) for each in values)
     return {

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from bfsim.kernel.ir_text import Instruction, arms_of, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.conditional_moves import is_conditional_move
 from bfsim.kernel.lowering.narrow_choices import is_narrowed, stored_bits
@@ -112,12 +112,7 @@ class IfConversion:
         bound = self._plain(_arm_value(inner.phi, label), inner.phi)
         value = self._plain(test.operands[0])
         rest = [each for each in self._work(inner.label) if each.opcode != "icmp"]
-        if (
-            rest
-            or not bound.lstrip("-").isdigit()
-            or bound not in self._bounds(test)
-            or value not in inner.operands
-        ):
+        if rest or not is_number(bound) or bound not in self._bounds(test) or value not in inner.operands:
             return None
         return ConvertedIf(
             ConversionKind.CLAMP, label, inner.phi, (*inner.operands, bound), inner.arms | {inner.label}
@@ -139,7 +134,7 @@ class IfConversion:
 
     def _plain(self, value: str, phi: Instruction | None = None) -> str:
         """The 32-bit value behind one that LLVM has narrowed."""
-        if value.lstrip("-").isdigit():
+        if is_number(value):
             narrow = phi is not None and f"phi i{BYTE} " in phi.text + " "
             return str(int(value) & 0xFF) if narrow else value
         each = self.flow.instruction(value)
@@ -199,7 +194,7 @@ class IfConversion:
     def _bounds(self, test: Instruction) -> tuple[str, ...]:
         """What a comparison with a constant bounds, by values that are there before it: LLVM writes x <= 255 as x < 256."""
         tested, bound = test.operands
-        if not bound.lstrip("-").isdigit():
+        if not is_number(bound):
             return test.operands
         return (tested, *(str(int(bound) + beside) for beside in (-1, 0, 1)))
 
@@ -238,7 +233,7 @@ def _arm_value(phi: Instruction, source: str) -> str:
 
 def _is_bit(value: str) -> bool:
     """Whether a value is a number of a single bit, or of all of them ["a ? powerof2cst : 0" and "a ? -1 : 0" in match.pd]."""
-    if not value.lstrip("-").isdigit():
+    if not is_number(value):
         return False
     number = int(value)
     return number == -1 or (number > 0 and number & (number - 1) == 0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import Instruction, arms_of, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 
 
@@ -136,4 +136,4 @@ class JumpThreading:
 
 
 def _is_constant(operand: str) -> bool:
-    return operand.lstrip("-").isdigit() or operand in ("true", "false")
+    return is_number(operand) or operand in ("true", "false")

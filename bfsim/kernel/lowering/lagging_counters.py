@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 
 
@@ -37,7 +37,7 @@ def _computed(flow: ControlFlow, loop: Loop, phi: Instruction) -> Instruction | 
     numbers = [arms.get(entering, ""), following.get(entering, ""), stepped.operands[-1] if stepped else ""]
     if stepped is None or stepped.opcode != "add" or stepped.operands[0] != counter.result:
         return None
-    if len(arms) != 2 or not all(each.lstrip("-").isdigit() for each in numbers):
+    if len(arms) != 2 or not all(map(is_number, numbers)):
         return None
     first, start, step = map(int, numbers)
     if first != start - step:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, ROUNDED, SIGNED
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.folding import NARROW
 from bfsim.kernel.lowering.powers import divided_by_power
@@ -34,7 +34,7 @@ class LibraryDivisions:
         GCC then takes the cheaper of the two ways, and counts a call as one [expand_divmod in expmed.cc of GCC 12];
         a byte or half-word that was just extended is not known to be positive there.
         """
-        constant = each.operands[1].lstrip("-").isdigit()
+        constant = is_number(each.operands[1])
         if each.bits in NARROW and not constant:
             return True  # C widens bytes and half-words to int before it divides them
         name = self._name_of(each)

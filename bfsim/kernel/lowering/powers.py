@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.isa import Op
 
 HALF = (Op.SHIFT, Op.ALU, Op.SHIFT)  # R1 = R0 >> 31; R0 = R0 + R1; R0 >>>= 1
@@ -30,4 +30,4 @@ def by_power(opcode: str, divisor: int, branch: Op) -> tuple[Op, ...] | None:
 def divided_by_power(each: Instruction) -> bool:
     """Whether an instruction divides a signed number by a constant power of two."""
     divisor = each.operands[1] if each.opcode in ("sdiv", "srem") else ""
-    return divisor.lstrip("-").isdigit() and by_power(each.opcode, int(divisor), Op.BRANCH_TAKEN) is not None
+    return is_number(divisor) and by_power(each.opcode, int(divisor), Op.BRANCH_TAKEN) is not None

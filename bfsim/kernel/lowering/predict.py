@@ -109,7 +109,7 @@ class Likelihood:
         if self.second_parts.keys() & set(block.successors):
             return []
         kind, constant = predicate(test), test.operands[1]
-        number = int(constant) if constant.lstrip("-").isdigit() else None
+        number = int(constant) if is_number(constant) else None
         if kind in ("eq", "ne") and number != 0:
             return [1 - NOT_EQUAL if kind == "eq" else NOT_EQUAL]
         if number is not None and (kind, number) in BELOW_ZERO:

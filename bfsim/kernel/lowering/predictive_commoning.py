@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import Instruction, Routine, arms_of, phi_of, renamed
+from bfsim.kernel.ir_text import Instruction, Routine, arms_of, is_number, phi_of, renamed
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import Hoisting
@@ -157,8 +157,7 @@ def _beginning(flow: ControlFlow, loop: Loop, chain: Chain, name: str, made: lis
     at = Affine(constant=root.place.constant)
     for term, times in root.place.terms:
         first = _first(flow, term, loop) or ""
-        is_number = first.lstrip("-").isdigit()
-        at = at.plus(Affine(constant=int(first)) if is_number else Affine(((first, 1),)), times)
+        at = at.plus(Affine(constant=int(first)) if is_number(first) else Affine(((first, 1),)), times)
     base, index = root.root, ""
     for term, times in at.terms:
         if term != root.root:

@@ -68,7 +68,7 @@ def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
     if ways != (hit, second) or _plain(flow, one.operands[0]) != _plain(flow, other.operands[0]):
         return None
     numbers = [test.operands[1] for test in (one, other)]
-    if not all(each.lstrip("-").isdigit() for each in numbers):
+    if not all(map(is_number, numbers)):
         return None
     low, high = sorted(map(int, numbers))
     if high != low + 1:

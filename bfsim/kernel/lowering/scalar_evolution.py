@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Instruction, arms_of, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.evaluated_iterations import evaluated_iterations
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
@@ -55,14 +55,14 @@ class ScalarEvolution:
 
     def affine(self, value: str, depth: int = DEEPEST) -> Affine:
         """Return `value` as a sum; an address in bytes."""
-        if value.lstrip("-").isdigit():
+        if is_number(value):
             return Affine(constant=int(value))
         each = self.flow.instruction(value)
         alone = Affine(((self.code_motion.same.get(value, value), 1),))
         if each is None or depth == 0:
             return alone
         last = each.operands[-1] if each.operands else ""
-        number = int(last) if last.lstrip("-").isdigit() else None
+        number = int(last) if is_number(last) else None
         match each.opcode:
             case "getelementptr":
                 base, index = self.affine(each.operands[0], depth - 1), self.affine(last, depth - 1)
@@ -163,12 +163,7 @@ class ScalarEvolution:
         test = self.exit_test(loop) or ""
         found = self._iterations(test, loop)
         each = self.flow.instruction(test)
-        if (
-            found is not None
-            or each is None
-            or each.opcode != "icmp"
-            or not each.operands[1].lstrip("-").isdigit()
-        ):
+        if found is not None or each is None or each.opcode != "icmp" or not is_number(each.operands[1]):
             return found
         return self._evaluated(test, loop)
 
@@ -250,7 +245,7 @@ class ScalarEvolution:
             for source, value in arms_of(each).items()
             if source == entering
         ]
-        return all(value.lstrip("-").isdigit() for value in starts)
+        return all(map(is_number, starts))
 
     def exit_test(self, loop: Loop) -> str | None:
         """Return the condition that ends `loop`, if its last block has it; of two joined ones, the one that counts."""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, is_number, predicate
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
@@ -102,7 +102,7 @@ class _Selector(Accesses):
         if self.context.narrow.narrowed(each):
             self.append(Op.MOVE, each, None, DATA)
             self.append(Op.ALU, each, None, DATA, (left, DATA))
-        if right.lstrip("-").isdigit() and int(right) in isa.ADD_IMMEDIATE and each.opcode == "add":
+        if is_number(right) and int(right) in isa.ADD_IMMEDIATE and each.opcode == "add":
             self.append(Op.ALU, each, each.result, ANY, (left, ANY), overwrites=(left,))
         elif each.opcode == "sub" and left == "0":
             self.append(Op.ALU, each, each.result, DATA, (right, DATA))
@@ -155,7 +155,7 @@ class _Selector(Accesses):
 
     def _is_single_bit(self, opcode: str, right: str) -> bool:
         """Whether BITSET, BITCLR, BITTGL or NOT does it."""
-        if not right.lstrip("-").isdigit() or not self.context.profile.applies(Rule.SINGLE_BITS):
+        if not is_number(right) or not self.context.profile.applies(Rule.SINGLE_BITS):
             return False
         mask = int(right)
         bits = ~mask if opcode == "and" else mask
@@ -166,7 +166,7 @@ class _Selector(Accesses):
         if self._steps_along(each) or self.context.folding.accumulated(each) is not None:
             return
         if (
-            right.lstrip("-").isdigit()
+            is_number(right)
             and (plan := multiple(int(right))) is not None
             and (self.context.narrow.in_narrow_tree(each) or not self._short(each))
         ):
@@ -225,9 +225,9 @@ class _Selector(Accesses):
                 self._in_range(each, joined)
             return
         left, right = self.context.folding.compared(each)
-        if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
+        if is_number(right) and _is_near(predicate(each), int(right)):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
-        elif right.lstrip("-").isdigit() and self.context.profile.applies(Rule.COMPARED):
+        elif is_number(right) and self.context.profile.applies(Rule.COMPARED):
             self.code.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:

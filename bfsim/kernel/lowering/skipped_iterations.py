@@ -13,7 +13,16 @@ from dataclasses import dataclass, replace
 from operator import ge, gt, le, lt, ne
 
 from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, phi_of, predicate, renamed
+from bfsim.kernel.ir_text import (
+    BasicBlock,
+    Instruction,
+    Routine,
+    arms_of,
+    is_number,
+    phi_of,
+    predicate,
+    renamed,
+)
 from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.edges import without_way
@@ -81,7 +90,7 @@ def _test(flow: ControlFlow, label: str) -> Instruction | None:
     others = [each for each in block.instructions if each.opcode != "phi" and each is not test]
     if test is None or others != [block.terminator] or block.enters or test.opcode != "icmp":
         return None
-    return test if predicate(test) == "eq" and test.operands[1].lstrip("-").isdigit() else None
+    return test if predicate(test) == "eq" and is_number(test.operands[1]) else None
 
 
 def _following(flow: ControlFlow, loop: Loop, label: str, counter: Instruction, number: int) -> int | None:
@@ -103,10 +112,7 @@ def _following(flow: ControlFlow, loop: Loop, label: str, counter: Instruction, 
         or end.opcode != "icmp"
     ):
         return None
-    if (
-        not all(value.lstrip("-").isdigit() for value in (step.operands[1], end.operands[1]))
-        or predicate(end) not in HOLDS
-    ):
+    if not all(map(is_number, (step.operands[1], end.operands[1]))) or predicate(end) not in HOLDS:
         return None
     following = number + int(step.operands[1])
     known = {counter.result: number, step.result: following}

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from bfsim.kernel.ir_reading import placed_rows, read_module
-from bfsim.kernel.ir_text import TARGET, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import TARGET, BasicBlock, Instruction, Routine, is_number
 from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
@@ -171,7 +171,7 @@ class _Statements:
         for name, _ in self.evolution.affine(value).terms:
             gain = self._gain(name)
             start = self.evolution.first(name, self.loop)
-            if gain is None or gain.terms or start is None or not start.lstrip("-").isdigit():
+            if gain is None or gain.terms or start is None or not is_number(start):
                 return False
         return True
 
