@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, is_number
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of, landing
+from bfsim.kernel.lowering.block_order import ordered
+from bfsim.kernel.lowering.branch_costs import BranchCosts
 from bfsim.kernel.lowering.bundles import bundled
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
+from bfsim.kernel.lowering.code_blocks import CodeBlocks, Landing, edge_of
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
 from bfsim.kernel.lowering.cross_jumps import CrossJumps
@@ -49,23 +50,13 @@ class _OptimisedLowering:
             edge: [self._charge(instruction) for instruction in steps]
             for edge, steps in self.allocation.on_edges.items()
         }
-        skipped = frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys())
-        self.crossed = CrossJumps(
-            self.context,
-            self.code,
-            self.allocation,
-            partial(landing, self.flow, skipped, self.context.second_parts),
-        )
-        self.layout = BlockLayout(
-            self.flow,
-            self.context.likelihood,
-            skipped,
-            copies,
-            self.crossed,
-            self._nbytes,
-            frozenset(self._way_back(loop) for loop in self._counted()),
-            dict(self._threaded()),
-        )
+        self.skipped = frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys())
+        landing = Landing(self.flow, self.skipped, self.context.second_parts)
+        self.crossed = CrossJumps(self.context, self.code, self.allocation, landing)
+        self.blocks = CodeBlocks(self.flow, landing, copies, self.crossed, dict(self._threaded()))
+        ways_back = frozenset(self._way_back(loop) for loop in self._counted())
+        self.layout = ordered(self.blocks, self.context.likelihood, self._nbytes, ways_back)
+        self.branches = BranchCosts(self.blocks, self.layout, self.context.likelihood, copies)
         copied = frozenset(target for _, target in self.layout.copied)
         self.hardware = HardwareLoops(self.context, self.code, self.allocation, copied)
 
@@ -197,7 +188,7 @@ class _OptimisedLowering:
                 left -= label not in self.context.if_conversion.by_label
             elif block is not None and block.terminator.opcode == "ret":
                 return max(left, 0)
-            elif not self.layout.falls(label, self.layout.ways(label)[0]):
+            elif not self.branches.falls(label, self.blocks.ways(label)[0]):
                 return 0
             if left <= 0 or label in self.context.tail_calls:
                 return 0
@@ -245,7 +236,8 @@ class _OptimisedLowering:
                 if loop.header in self.hardware.all:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
                     if self.flow.ending(loop) != loop.latch or (
-                        self.hardware.begins_with_copies(loop) and self.layout.falls(block.label, loop.header)
+                        self.hardware.begins_with_copies(loop)
+                        and self.branches.falls(block.label, loop.header)
                     ):
                         cost.charges.append(charge(Op.JUMP, line))
 
@@ -276,23 +268,20 @@ class _OptimisedLowering:
         elif label in self.context.tail_calls:
             pass  # the called function returns
         elif terminator.opcode == "br" and len(set(block.successors)) == 1:
-            if label not in self.context.if_conversion.gone and not self._vanishes(label):
-                cost.charges += self.layout.on(label, block.successors[0], terminator.line)
+            if label not in self.skipped:
+                cost.charges += self.branches.on(label, block.successors[0], terminator.line)
         elif terminator.opcode == "br" and label in self.context.if_conversion.by_label:
             join, _ = self.flow.defined[self.context.if_conversion.by_label[label].phi.result or ""]
-            cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
+            cost.charges += self.branches.jump(label, self.blocks.landing(join), terminator.line)
         elif terminator.opcode == "br":
             self._conditional(block, cost)
-
-    def _vanishes(self, label: str) -> bool:
-        return label in self.layout.skipped
 
     def _conditional(self, block: BasicBlock, cost: BlockCost) -> None:
         label, line = block.label, block.terminator.line
         if label in self.context.second_parts:
             sides = self._second_part(label, line)
         elif self.context.jump_threading.decides(block.terminator) or self.flow.is_overflow_guard(block):
-            sides = tuple(self.layout.on(label, way, line) for way in block.successors)
+            sides = tuple(self.branches.on(label, way, line) for way in block.successors)
         else:
             if self.context.is_kept(block):
                 cost.charges.append(charge(Op.CC_MOVE, line))
@@ -303,11 +292,11 @@ class _OptimisedLowering:
     def _second_part(self, label: str, line: SourceLine) -> tuple[list[Charge], ...]:
         """What it costs more if the second part of a test does not hold after all: the branch was before."""
         tested = self.context.ranges[label]
-        before = self.layout.sides(tested.first, line)
+        before = self.branches.sides(tested.first, line)
         first = self.flow.blocks[tested.first].successors.index(label)
         sides = []
         for way in self.flow.blocks[label].successors:
-            copied = self.layout.copies.get((label, way), [])
+            copied = self.branches.copies.get((label, way), [])
             sides.append(
                 [*copied, *(() if way == tested.inside else instead(before[1 - first], before[first]))]
             )
@@ -323,7 +312,7 @@ class _OptimisedLowering:
             None,
         )
         if loop is None:
-            return self.layout.sides(label, line)
+            return self.branches.sides(label, line)
         again, leaving = [], []
         if loop.header not in self.hardware.all:
             count = [charge(Op.ALU, line), charge(Op.COMPARE, line)]
@@ -333,9 +322,9 @@ class _OptimisedLowering:
             again = leaving = [charge(Op.NOP, line)]
         ways = self.flow.blocks[label].successors
         out = ways[0] if ways[0] not in loop.blocks else ways[1]
-        leaving = leaving + self.layout.on(label, out, line)
+        leaving = leaving + self.branches.on(label, out, line)
         stays = ways[0] if out == ways[1] else ways[1]
-        if moves := self.layout.copies.get((label, stays), []):
+        if moves := self.branches.copies.get((label, stays), []):
             again = [*again, *moves]
             if loop.header not in self.hardware.all:
                 again.append(charge(Op.JUMP, line))
