@@ -4,24 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import llvmlite.binding as llvm
 
 from bfsim import __version__, shipped
-from bfsim.chip.spec import BoardSpec
 from bfsim.errors import WorkError
-from bfsim.hardware import Found
-from bfsim.kernel import CompilerProfile
-from bfsim.kernel.build import Build
-from bfsim.linker import LinkerScript
-from bfsim.loading import LoadedFirmware, compilers_of
-from bfsim.machine.board import Fidelity
-from bfsim.machine.buffers import FrameSize
-from bfsim.machine.cameras.capture import Feed
+from bfsim.loading import compilers_of
 from bfsim.reading_ahead import read_ahead
 from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.run_setup import FittedFirmware, RunSetup
 from bfsim.trace import Identity
 
 
@@ -87,47 +80,36 @@ def written(path: str | Path) -> str:
     return os.fsencode(path).decode(errors="replace")
 
 
-def identity_of(
-    board: Found[BoardSpec],
-    loaded: LoadedFirmware,
-    placement: LinkerScript,
-    defines: Mapping[str, str],
-    feed: Feed,
-    fidelity: Fidelity,
-    size: FrameSize,
-    recording: str,
-    compiler: Found[CompilerProfile],
-    build: Build,
-    script_digest: str,
-) -> Identity:
-    """Return what a run depends on; the digest of the recording is known only when its frames have been read."""
-    spec = board.value
+def identity_of(setup: RunSetup, fitted: FittedFirmware, recording: str) -> Identity:
+    """Return what a run of a recording of that name depends on; its digest is known only when its frames have been read."""
+    board, compiler, loaded, placement = setup.board, setup.compiler, setup.loaded, setup.placement
+    names = [name_of(placement.path), *(f"{name}={value}" for name, value in setup.defines.items())]
     return Identity(
         recording=recording,
         recording_digest="",
         firmware=loaded.name,
         firmware_digest=loaded.digest,
         firmware_files=loaded.files,
-        board=spec.name,
+        board=board.value.name,
         board_digest=board.digest,
         board_files=board.files,
         board_numbers=board.numbers,
-        ldf=" -D ".join([name_of(placement.path), *(f"{name}={value}" for name, value in defines.items())]),
+        ldf=" -D ".join(names),
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.value.name,
         compiler_digest=compiler.digest,
         compiler_files=compiler.files,
         compiler_numbers=compiler.numbers,
-        code=build.code,
-        code_digest=build.digest,
+        code=fitted.build.code,
+        code_digest=fitted.build.digest,
         file_compiler=", ".join(sorted(compilers_of(loaded))),
-        feed=feed.value,
-        script_digest=script_digest,
-        fidelity=fidelity.value,
+        feed=setup.feed.value,
+        script_digest=setup.script_digest,
+        fidelity=setup.fidelity.value,
         bfsim_version=__version__,
         llvm_version=".".join(map(str, llvm.llvm_version_info)),
-        cclk_hz=float(spec.clocks.cclk_hz),
-        sclk_hz=float(spec.clocks.sclk_hz),
-        width_px=size.width_px,
-        height_px=size.height_px,
+        cclk_hz=float(board.value.clocks.cclk_hz),
+        sclk_hz=float(board.value.clocks.sclk_hz),
+        width_px=fitted.size.width_px,
+        height_px=fitted.size.height_px,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial, wraps
 from inspect import signature
@@ -15,7 +15,6 @@ from typing import ParamSpec, TypeVar
 
 from bfsim import shipped
 from bfsim.assumptions import assumed_clocks, assumed_geometry, doubted_cameras, geometry_in_words
-from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
@@ -23,10 +22,9 @@ from bfsim.given_kinds import require_kinds
 from bfsim.hardware import find_board, find_profile
 from bfsim.identifying import DigestedFrames, identity_of, written
 from bfsim.kernel.profile import DEFAULT
-from bfsim.linker import LinkerScript, LinkMap
+from bfsim.linker import LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.call_cache import BeforeCall, Sanitizer
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.peripherals.device import Device
@@ -37,8 +35,8 @@ from bfsim.recording import RecordingReader
 from bfsim.recording.stereo_check import StereoCheck
 from bfsim.result import Run
 from bfsim.retiming import retimed
-from bfsim.room import place
-from bfsim.run_inputs import calibration_of, opened, read_placement
+from bfsim.run_inputs import opened, read_placement
+from bfsim.run_setup import FittedFirmware, RunSetup, fit
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
 from bfsim.trace import BoardRecord, Identity, MemoryRecord, RunWarning
@@ -144,82 +142,72 @@ def simulate(
         }.items()
     )  # fmt: skip
     found_board, found_compiler = find_board(board, settings), find_profile(profile)
-    spec = found_board.value
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
-    require_cores(loaded.firmware, spec)
+    require_cores(loaded.firmware, found_board.value)
     with loaded.own.named():
         devices, script_digest = _devices(script, loaded)
-    placement = read_placement(ldf, spec, defines, include_dirs)
+    setup = RunSetup(
+        board=found_board,
+        compiler=found_compiler,
+        loaded=loaded,
+        placement=read_placement(ldf, found_board.value, defines, include_dirs),
+        defines=defines,
+        devices=devices,
+        script_digest=script_digest,
+        feed=feed,
+        fidelity=fidelity,
+    )
     with loaded.own.named(), opened(recording or shipped.RECORDING) as reader:
-        size = FrameSize(reader.width, reader.height)
-        calibration = calibration_of(reader)
-        program = loaded.firmware.calibrated(calibration)
-        build = build_for(loaded, found_compiler.value)
-        link_map = place(loaded.firmware, calibration, size, placement, spec, build)
-        sanitizer = Sanitizer(goes_on=sanitize)
-        is_sanitized = sanitize or not build.is_tried
-        machine = Board(
-            spec,
-            program,
-            size,
-            link_map,
-            feed=feed,
-            before_call=(*((sanitizer,) if is_sanitized else ()), *((on_call,) if on_call else ())),
-            build=build,
-            devices=devices,
-            fidelity=fidelity,
-        )
+        fitted, sanitizer = fit(setup, reader), Sanitizer(goes_on=sanitize)
+        sanitizers = (sanitizer,) if sanitize or not fitted.build.is_tried else ()
+        machine = _machine(setup, fitted, (*sanitizers, *((on_call,) if on_call else ())))
         source = DigestedFrames(reader, _frames_to_run(reader, frames))
         check = StereoCheck(reader.rectification)
-        identity = identity_of(
-            found_board,
-            loaded,
-            placement,
-            defines,
-            feed,
-            fidelity,
-            size,
-            source.name,
-            found_compiler,
-            build,
-            script_digest,
-        )
+        identity = identity_of(setup, fitted, source.name)
         if before:
             before(identity, source.total)
-        done = count(1)
-
-        def frame_done(_frame: object) -> None:
-            sanitizer.is_past_first = True
-            number = next(done)
-            if progress:
-                progress(number, source.total)
-
-        with retimed(
-            machine,
-            identity,
-            source,
-            loaded,
-            record_work=record_work,
-            work=work,
-            has_pictures=bool(on_seen),
-            has_timeline=bool(on_spans),
-        ):
+        wants = {"has_pictures": bool(on_seen), "has_timeline": bool(on_spans)}
+        with retimed(machine, identity, source, loaded, record_work=record_work, work=work, **wants):
+            told = _told_of_frames(progress, source.total, sanitizer)
             show = _shown_to(on_seen, source) if on_seen else None
-            left = machine.run(check.watch(source), frame_done, show, on_time, on_spans)
-    return _record(
-        left,
-        replace(
-            identity,
-            recording_digest=source.digest,
-            firmware_digest=loaded.digest,
-            firmware_files=loaded.files,
-        ),
-        geometry_in_words(program, calibration),
-        (*assumed_geometry(program, calibration), *doubted_cameras(check.warnings), *assumed_clocks(spec)),
-        loaded,
-        placement,
-        tuple(_memories(link_map, spec)),
+            left = machine.run(check.watch(source), told, show, on_time, on_spans)
+    identity = replace(
+        identity,
+        recording_digest=source.digest,
+        firmware_digest=loaded.digest,  # it may have imported more
+        firmware_files=loaded.files,
     )
+    return _record(left, identity, setup, fitted, doubted_cameras(check.warnings))
+
+
+def _machine(setup: RunSetup, fitted: FittedFirmware, before_call: tuple[BeforeCall, ...]) -> Board:
+    """Return the board with the firmware in it. `before_call`: who is called with each kernel before it runs."""
+    return Board(
+        setup.board.value,
+        fitted.firmware,
+        fitted.size,
+        fitted.link_map,
+        feed=setup.feed,
+        before_call=before_call,
+        build=fitted.build,
+        devices=setup.devices,
+        fidelity=setup.fidelity,
+    )
+
+
+def _told_of_frames(
+    progress: Callable[[int, int], None] | None, total: int, sanitizer: Sanitizer
+) -> Callable[[object], None]:
+    """Return who is told of each frame that is done: the sanitizer, which may have seen enough, and who watches the progress."""
+    done = count(1)
+
+    def frame_done(_frame: object) -> None:
+        sanitizer.is_past_first = True
+        number = next(done)
+        if progress:
+            progress(number, total)
+
+    return frame_done
 
 
 def _one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
@@ -284,25 +272,28 @@ def _devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Devic
 def _record(
     left: BoardRecord,
     identity: Identity,
-    geometry: str,
-    assumptions: tuple[RunWarning, ...],
-    loaded: LoadedFirmware,
-    placement: LinkerScript,
-    memories: tuple[MemoryRecord, ...],
+    setup: RunSetup,
+    fitted: FittedFirmware,
+    doubts: Iterable[RunWarning],
 ) -> Run:
+    """Return the records of a run. `doubts`: about its cameras, by what their pictures showed."""
+    firmware, calibration, spec = setup.loaded.firmware, fitted.calibration, setup.board.value
+    ldf = setup.placement.path
     return Run(
         **{each.name: getattr(left, each.name) for each in fields(left)},
         identity=identity,
-        firmware_place="built in" if loaded.is_built_in else written(loaded.path),
-        ldf_place="shipped"
-        if placement.path.parent == shipped.LDF_FOLDER
-        else written(placement.path.absolute()),
-        rows=loaded.firmware.rows,
-        reference=loaded.firmware.reference,
-        geometry=geometry,
-        assumptions=assumptions,
-        losses=loaded.firmware.losses,
-        memories=memories,
+        firmware_place="built in" if setup.loaded.is_built_in else written(setup.loaded.path),
+        ldf_place="shipped" if ldf.parent == shipped.LDF_FOLDER else written(ldf.absolute()),
+        rows=firmware.rows,
+        reference=firmware.reference,
+        geometry=geometry_in_words(fitted.firmware, calibration),
+        assumptions=(
+            *assumed_geometry(fitted.firmware, calibration),
+            *doubts,
+            *assumed_clocks(spec),
+        ),
+        losses=firmware.losses,
+        memories=tuple(_memories(fitted.link_map, spec)),
     )
 
 

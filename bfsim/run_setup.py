@@ -1,0 +1,61 @@
+"""What a run is made of, before its first frame: what was found by the names that were given, and how it suits a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from bfsim.building import build_for
+from bfsim.chip.spec import BoardSpec
+from bfsim.hardware import Found
+from bfsim.kernel import CompilerProfile
+from bfsim.kernel.build import Build
+from bfsim.linker import LinkerScript, LinkMap
+from bfsim.loading import LoadedFirmware
+from bfsim.machine.board import Fidelity
+from bfsim.machine.buffers import FrameSize
+from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.peripherals.device import Device
+from bfsim.machine.program import Calibration, Firmware
+from bfsim.recording import RecordingReader
+from bfsim.room import place
+from bfsim.run_inputs import calibration_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunSetup:
+    """What runs, and on what, whatever the recording.
+
+    `devices` by the names of the peripherals that they are at; `script_digest`: of what tells them what to do, empty where nothing does.
+    `defines`: macros that the LDF was read with.
+    """
+
+    board: Found[BoardSpec]
+    compiler: Found[CompilerProfile]
+    loaded: LoadedFirmware
+    placement: LinkerScript
+    defines: Mapping[str, str]
+    devices: dict[str, Device]
+    script_digest: str
+    feed: Feed
+    fidelity: Fidelity
+
+
+@dataclass(frozen=True, slots=True)
+class FittedFirmware:
+    """Firmware that knows the cameras of a recording and the size of its pictures, how its kernels are built, and where it lies."""
+
+    firmware: Firmware
+    calibration: Calibration
+    size: FrameSize
+    build: Build
+    link_map: LinkMap
+
+
+def fit(setup: RunSetup, reader: RecordingReader) -> FittedFirmware:
+    """Return the firmware of a run as it is for a recording. Raises a BfsimError where it cannot be built, or has no room."""
+    plain, calibration = setup.loaded.firmware, calibration_of(reader)
+    size = FrameSize(reader.width, reader.height)
+    firmware, build = plain.calibrated(calibration), build_for(setup.loaded, setup.compiler.value)
+    link_map = place(plain, calibration, size, setup.placement, setup.board.value, build)
+    return FittedFirmware(firmware, calibration, size, build, link_map)
