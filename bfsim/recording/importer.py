@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +14,13 @@ from bfsim.errors import RecordingError
 from bfsim.file_content import read_bounded
 from bfsim.recording.camera_info import Rig, rig_of
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_options, check_pair
+from bfsim.recording.import_checks import camera_size, check_call, check_options, check_pair
 from bfsim.recording.layout import table_from_npy
 from bfsim.recording.opening import open_sources
-from bfsim.recording.planes import YuvPlanes, fit_matrix
+from bfsim.recording.picture_pairs import PicturePairs
+from bfsim.recording.planes import fit_matrix
 from bfsim.recording.rosbag import BagPictures, open_bag
-from bfsim.recording.sources import PictureSource, Skipped, SourceFormat, guess_format
+from bfsim.recording.sources import Skipped, SourceFormat, guess_format
 from bfsim.recording.stamps import Stamps, frame_rate
 from bfsim.recording.stereo_check import StereoCheck
 from bfsim.recording.writer import RecordingWriter
@@ -69,11 +69,13 @@ def import_recording(
 ) -> ImportSummary:
     """Write the recording `output` from pictures; `output` appears when it is complete, or not at all.
 
-    Two sources are the left and the right camera. One source needs `side_by_side` (left half, right half) or
-    `mono` (one camera feeds both sides). `format` is guessed from the names. `size` is the (width, height) of
-    raw frames; of pixels that have 16 bits, of which a camera uses so many `bits`, the upper 8 are taken; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
-    its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
-    picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`).
+    - Two sources are the left and the right camera. One source needs `side_by_side` (left half, right half) or `mono` (one
+      camera feeds both sides). `format` is guessed from the names.
+    - `size` is the (width, height) of raw frames. `bits`: how many of its 16 bits a pixel uses; the upper 8 of them are taken.
+    - `resize` scales every picture by a triangle filter as wide as the scale, and cuts off what sticks out of its aspect
+      ratio. `crop` keeps the middle of every picture, and skips smaller ones.
+    - A stereo frame of which one picture cannot be read, or is not there, is skipped: images of two cameras go together by
+      their names (`pairs_of`).
 
     A bag of ROS is one source with both cameras' topics, which `topics` names and `slop_s` pairs (see `open_bag`); its
     time stamps are kept, from the first picture on, and geometry and rectification are those of its camera_info unless
@@ -106,10 +108,9 @@ def import_recording(
     rig = Rig(geometry, rectification, ())
     if bag and (geometry is None or rectification is None):
         rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
-    skipped = [each for source in opened for each in source.skipped]
-    sizes = set()
     stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
     check = StereoCheck(rig.tables)
+    pairs = PicturePairs(opened, side_by_side, resize, crop)
     with RecordingWriter(
         output,
         width=picture_size[0],
@@ -118,23 +119,16 @@ def import_recording(
         rectification=rig.tables,
         description=description,
     ) as writer:
-        for index, sides in enumerate(_stereo_pairs(opened, side_by_side)):
-            fitted = [_fitted(side, index, resize, crop) for side in sides]
-            left, right = fitted
-            if isinstance(left, Skipped) or isinstance(right, Skipped):
-                skipped += dict.fromkeys(each for each in fitted if isinstance(each, Skipped))
-                continue
-            sizes |= {side.size for side in sides if isinstance(side, YuvPlanes)}
+        for index, left, right in pairs:
             stamps_ns = stamps.of(index, writer.frame_count)
             coded = left.to_uyvy(), right.to_uyvy()
             check.look_at(*coded)
             writer.add(*coded, *stamps_ns)
             if progress is not None:
                 progress(index + 1, count)
-        if not writer.frame_count and skipped:
-            raise RecordingError(
-                f"{names[0]}: {skipped[-1].name}: {skipped[-1].reason}, and no picture is left"
-            )
+        if not writer.frame_count and pairs.skipped:
+            last = pairs.skipped[-1]
+            raise RecordingError(f"{names[0]}: {last.name}: {last.reason}, and no picture is left")
     return ImportSummary(
         path=writer.path,
         width=picture_size[0],
@@ -142,8 +136,8 @@ def import_recording(
         frame_count=writer.frame_count,
         fps=rate,
         size_bytes=writer.path.stat().st_size,
-        source_sizes=tuple(sorted(sizes)),
-        skipped=tuple(skipped),
+        source_sizes=tuple(sorted(pairs.sizes)),
+        skipped=tuple(pairs.skipped),
         notes=(
             *(bag.notes if bag else ()),
             *(note for source in opened for note in source.notes if fps is None),
@@ -172,23 +166,6 @@ def _rig(
     return rig_of(bag.cameras, sizes, fits, size, given)
 
 
-def _fitted(
-    picture: YuvPlanes | Skipped, index: int, resize: tuple[int, int] | None, crop: tuple[int, int] | None
-) -> YuvPlanes | Skipped:
-    """Return a picture of one side in the size of the recording, or why it cannot be."""
-    if isinstance(picture, Skipped):
-        return picture
-    if resize:
-        return picture.resized(*resize)
-    if crop:
-        width, height = picture.size
-        if width < crop[0] or height < crop[1]:
-            reason = f"{width}x{height} is too small for `--crop` {crop[0]}x{crop[1]}; `--resize` scales"
-            return Skipped(f"picture {index}", reason)
-        return picture.cropped(*crop)
-    return picture
-
-
 def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[str]) -> RectificationTables:
     """Rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing."""
     tables = []
@@ -209,25 +186,3 @@ def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[st
         bounds = np.iinfo(np.int32)
         tables.append(np.clip(table, bounds.min, bounds.max).astype(np.int32))
     return RectificationTables(*tables)
-
-
-def _stereo_pairs(
-    sources: list[PictureSource], side_by_side: bool
-) -> Iterator[tuple[YuvPlanes | Skipped, YuvPlanes | Skipped]]:
-    """Yield the left and the right picture of each stereo frame."""
-    if len(sources) == 1:
-        for picture in sources[0].pictures():
-            if side_by_side and isinstance(picture, YuvPlanes):
-                check_halves(sources[0].name, picture.size)
-                yield picture.halves()
-            else:
-                yield picture, picture
-        return
-    for count, (left, right) in enumerate(zip_longest(*(each.pictures() for each in sources))):
-        if left is None or right is None:
-            ended, other = sources if left is None else reversed(sources)
-            raise RecordingError(
-                f"both cameras must have the same number of images, but {ended.name} ends after {count} "
-                f"and {other.name} has more"
-            )
-        yield left, right
