@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from bfsim.kernel import isa
@@ -17,14 +17,14 @@ from bfsim.kernel.lowering.code_blocks import CodeBlocks, Landing, edge_of
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
 from bfsim.kernel.lowering.cross_jumps import CrossJumps
+from bfsim.kernel.lowering.frame_costs import FrameCosts
 from bfsim.kernel.lowering.hardware_loops import HardwareLoops
 from bfsim.kernel.lowering.idioms import fills_of
-from bfsim.kernel.lowering.jump_tables import MARK, first_entry
 from bfsim.kernel.lowering.machine_code import MachineInstruction
-from bfsim.kernel.lowering.registers import Allocation, allocate
+from bfsim.kernel.lowering.registers import allocate
 from bfsim.kernel.lowering.schedule import Issue, issues
 from bfsim.kernel.lowering.select import select
-from bfsim.kernel.lowering.widths import WORD, widest
+from bfsim.kernel.lowering.switch_costs import add_switch
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -43,6 +43,7 @@ class _OptimisedLowering:
         self.flow, self.profile = self.context.flow, profile
         self.code = select(self.context)
         self.allocation = allocate(self.context, self.code)
+        self.frame = FrameCosts(self.allocation, profile)
         bundles = profile.applies(Rule.BUNDLES)
         self.bundled = bundled(self.context, self.code, self.allocation) if bundles else frozenset()
         empty = set(self.context.replaced) | {label for label in self.flow.blocks if self._is_empty(label)}
@@ -67,9 +68,8 @@ class _OptimisedLowering:
             return nbytes - sum(each.code_bytes for each in self._code_at(self.crossed.tails[name]))
         block = self.flow.blocks.get(name)
         if block is not None and block.terminator.opcode == "ret":
-            cost = BlockCost()
-            self._return(cost, block.terminator.line)
-            return nbytes + sum(COSTS[each.op].nbytes for each in cost.charges)
+            leaving = self.frame.leaving(block.terminator.line)
+            return nbytes + sum(COSTS[each.op].nbytes for each in leaving)
         if any(self.flow.ending(loop) == name for loop in self._counted()):
             return nbytes + isa.LOOP_END_BYTES
         if block is None or self.context.jump_threading.decides(block.terminator):
@@ -167,13 +167,7 @@ class _OptimisedLowering:
 
     def _enter(self, cost: BlockCost, line: SourceLine) -> None:
         cost.charges += [charge(Op.NOP, line)] * self._padding()
-        for op in _saving(self.allocation, Op.PUSH, Op.PUSH_MULTIPLE):
-            cost.charges.append(self._stack(op, line))
-        if self.allocation.calls:
-            ops = (Op.LINK,) if self.allocation.saves_frame_pointer else (Op.PUSH, Op.ALU)
-            cost.charges += [charge(op, line) for op in ops]
-        elif self.allocation.saves_frame_pointer:
-            cost.charges.append(charge(Op.PUSH, line))
+        cost.charges += self.frame.entering(line)
         cost.charges += [self._charge(instruction) for instruction in self.allocation.entry]
 
     def _padding(self) -> int:
@@ -197,26 +191,6 @@ class _OptimisedLowering:
     def _code_at(self, name: str) -> list[MachineInstruction]:
         """Instructions of a block, or of the copies on an edge."""
         return self.code.of[name] if name in self.flow.blocks else self.allocation.on_edges[edge_of(name)]
-
-    def _return(self, cost: BlockCost, line: SourceLine) -> None:
-        if self.allocation.calls:
-            ops = (Op.ALU, Op.POP, Op.POP) if self.allocation.saves_frame_pointer else (Op.ALU, Op.POP)
-            cost.charges += [charge(op, line) for op in ops]
-        elif self.allocation.saves_frame_pointer:
-            cost.charges.append(charge(Op.POP, line))
-        for op in _saving(self.allocation, Op.POP, Op.POP_MULTIPLE):
-            cost.charges.append(self._stack(op, line))
-        cost.charges.append(charge(Op.RETURN, line))
-
-    def _stack(self, op: Op, line: SourceLine) -> Charge:
-        saved = self.allocation.saved_data + self.allocation.saved_pointers
-        fixed = {
-            Op.PUSH_MULTIPLE: self.profile.push_multiple_cclk,
-            Op.POP_MULTIPLE: self.profile.pop_multiple_cclk,
-        }
-        if op not in fixed:
-            return charge(op, line)
-        return Charge(op, line, fixed[op] or saved)
 
     # Loops and branches
 
@@ -262,9 +236,9 @@ class _OptimisedLowering:
             left_out = self.context.tail_calls[label].left_out
             cost.charges.append(charge(Op.RETURN, left_out.line)._replace(times=-1))
         if terminator.opcode == "ret":
-            self._return(cost, terminator.line)
+            cost.charges += self.frame.leaving(terminator.line)
         elif terminator.opcode == "switch":
-            self._switch(block, cost)
+            add_switch(cost, block, self.flow)
         elif label in self.context.tail_calls:
             pass  # the called function returns
         elif terminator.opcode == "br" and len(set(block.successors)) == 1:
@@ -329,42 +303,6 @@ class _OptimisedLowering:
             if loop.header not in self.hardware.all:
                 again.append(charge(Op.JUMP, line))
         return (again, leaving) if ways[0] == stays else (leaving, again)
-
-    def _switch(self, block: BasicBlock, cost: BlockCost) -> None:
-        """A jump by a table [expand_case in stmt.cc, tablejump in bfin.md of GCC 12], or comparisons and branches in the order of the cases."""
-        value, line = block.terminator.operands[0], block.terminator.line
-        numbers = [case for case, _ in block.cases]
-        if MARK in block.label:
-            tested = [charge(each, line) for each in self._table_index(value, numbers)]
-            default = [*tested, charge(Op.BRANCH_TAKEN, line)]
-            found = [charge(each, line) for each in (Op.BRANCH_NOT_TAKEN, Op.ADD_SHIFT, Op.LOAD32, Op.JUMP)]
-            hits = [[*tested, *found]] * len(numbers)
-        else:
-            pair = [charge(Op.COMPARE, line), charge(Op.BRANCH_NOT_TAKEN, line)]
-            default = pair * len(numbers)
-            last = [charge(Op.COMPARE, line), charge(Op.BRANCH_TAKEN, line)]
-            hits = [[*pair * index, *last] for index in range(len(numbers))]
-        cost.charges += default
-        for number, hit in zip(numbers, hits, strict=True):
-            cost.tests.append(Test(value, number, instead(hit, default)))
-
-    def _table_index(self, value: str, numbers: Sequence[int]) -> Iterator[Op]:
-        """What makes the number of a table's entry of a value, in a pointer register, and compares it with the last one."""
-        first = first_entry(numbers)
-        if first:
-            yield Op.ALU
-            each = self.flow.instruction(value)
-            if each is not None and each.opcode in ("zext", "load") and widest(self.flow, value) < WORD:
-                yield Op.EXTEND
-        yield Op.MOVE
-        if max(numbers) - first not in isa.COMPARE_UNSIGNED_IMMEDIATE:
-            yield Op.IMM
-        yield Op.COMPARE
-
-
-def _saving(allocation: Allocation, one: Op, several: Op) -> list[Op]:
-    saved = allocation.saved_data + allocation.saved_pointers
-    return [] if not saved else [several]
 
 
 def _hides(instruction: MachineInstruction) -> int:
