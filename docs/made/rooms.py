@@ -1,4 +1,4 @@
-"""The rooms of bfsim as a picture: one row a floor, the lowest imports nothing; the main ones of `tests/test_imports.py`."""
+"""The rooms of bfsim as a picture: one row a floor, the lowest imports nothing; the main ones of `tests/rooms.py`."""
 
 from __future__ import annotations
 

@@ -10,14 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Buffer, Core, Frame, FrameSize, i8, u8
+from bfsim.api import Core, Frame
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
-from bfsim.machine.symbols import symbols_of
 from bfsim.report.save import writing
 from bfsim.run import simulate
 from tests.machine.kernels import first, spin
-from tests.machine.rig import Play, board_of, every_frame, load, noise, run, see_all
-from tinyphoon import tinyphoon
+from tests.machine.rig import Play, every_frame, load, run, see_all
 
 
 def work_in_the_dark(core: Core, frame: Frame) -> Play:
@@ -213,66 +211,6 @@ def test_a_core_that_leaves_early_is_told() -> None:
         run(see_all, once, frames=2)
 
 
-def forgotten_post(core: Core, frame: Frame) -> Play:
-    """Nobody is told."""
-    core.post("go")
-    yield core.run(spin, 1)
-
-
-def forgotten_flush(core: Core, frame: Frame) -> Play:
-    """The last lines may not have arrived."""
-    out = core.output_ring("out_ring", core.rows("image"))
-    out.flush()
-    yield core.run(spin, 1)
-
-
-def forgotten_dma(core: Core, frame: Frame) -> Play:
-    """The DMA is not awaited."""
-    core.memory_dma("MDMA1_0").wait()
-    yield core.run(spin, 1)
-
-
-@pytest.mark.parametrize(
-    ("body", "name", "line"),
-    [(forgotten_post, "post", 2), (forgotten_flush, "flush", 3), (forgotten_dma, "wait", 2)],
-)
-def test_a_wait_that_is_never_begun_is_told_with_its_line(body: Any, name: str, line: int) -> None:
-    """Python runs nothing of it and says nothing; it is noticed when the next frame is asked for."""
-    place = f"{__file__}:{body.__code__.co_firstlineno + line}"
-    with pytest.raises(FirmwareError) as caught:
-        run(every_frame(body))
-    told = f"core A: {name}(...) at {place} does nothing: write `yield from` before it; noticed ("
-    assert str(caught.value).startswith(told)
-
-
-def test_a_wait_that_is_never_begun_is_told_at_the_end_of_all() -> None:
-    """Behind the last frame."""
-
-    def main(core: Core) -> Play:
-        yield from see_all(core)
-        core.post("over")
-
-    with pytest.raises(
-        FirmwareError, match=r"post\(\.\.\.\) at .* does nothing: .*; noticed at the end of main"
-    ):
-        run(main)
-
-
-@pytest.mark.parametrize("inside", [True, False])
-def test_a_frame_that_is_not_waited_for_is_told(inside: bool) -> None:
-    """A loop around it would never end; the picture has no rows."""
-
-    def main(core: Core) -> Play:
-        while frame := core.next_frame():
-            if inside:
-                yield core.run(first, frame.rows[0])  # type: ignore[attr-defined]
-
-    with pytest.raises(
-        FirmwareError, match=r"core A: next_frame\(\.\.\.\) at .* write `yield from` before it"
-    ):
-        run(main)
-
-
 def test_a_main_loop_that_ends_before_the_recording_is_told() -> None:
     """Both cores take one frame of three, which is not what the user has asked for."""
 
@@ -340,63 +278,8 @@ def test_a_core_without_a_main_loop_is_told() -> None:
         replace(board, firmware=replace(board.firmware, mains={"A": see_all}))
 
 
-def test_a_camera_in_the_scratchpad_is_refused() -> None:
-    """No DMA reaches the scratchpad."""
-    board = load(see_all)
-    program = replace(
-        board.firmware,
-        camera="scratch_ring",
-        buffers=lambda size: {
-            core: [Buffer("scratch_ring", u8, 32, "L1_scratch", rows=8)] for core in ("A", "B")
-        },
-    )
-    with pytest.raises(
-        FirmwareError, match="scratch_ring must be where DMA can reach it, not in COREA_SCRATCH"
-    ):
-        board_of(program).run(iter(noise(1)))
-
-
-@pytest.mark.parametrize(
-    ("what", "message"),
-    [
-        ({"element": int}, "buffer table must have elements of i8 to u32 or f32, not <class 'int'>"),
-        ({"rows": 2.0}, r"buffer table must have whole rows and columns, not 2\.0 and 3"),
-        ({"columns": 0}, "buffer table must have at least one row and one column, not 1 and 0"),
-        ({"rows": -1}, "buffer table must have at least one row and one column, not -1 and 3"),
-        ({"values": np.arange(4)}, "buffer table must have 3 values, not 4"),
-        (
-            {"values": np.array([0, 1, 128])},
-            r"values of buffer table must be integers in -128\.\.127, not int64 in 0\.\.128",
-        ),
-        ({"values": np.array([0, -129, 0])}, r"not int64 in -129\.\.0"),
-        ({"values": np.array([0.5, 1, 2])}, r"not float64 in 0\.5\.\.2\.0"),
-    ],
-)
-def test_buffers_that_cannot_be_are_refused_where_they_are_made(what: dict[str, Any], message: str) -> None:
-    """A table that would be cut or wrapped is a mistake, not a table."""
-    with pytest.raises(FirmwareError, match=message):
-        Buffer(**{"name": "table", "element": i8, "columns": 3, "section": "L1_data_a"} | what)
-
-
 @pytest.mark.parametrize("frames", [0, -3])
 def test_a_run_of_no_frames_is_refused(frames: int) -> None:
     """Nothing to run is a slip, not a wish for everything."""
     with pytest.raises(ConfigError, match=f"frames must be at least 1, not {frames}"):
         simulate(Path("any.mcap"), frames=frames)
-
-
-@pytest.mark.parametrize(
-    ("buffers", "message"),
-    [
-        (
-            lambda size: size.depth_px,
-            r"buffers for pictures of 64x48 failed with AttributeError: .*\.py:\d+\)$",
-        ),
-        (lambda _: [], r"buffers must come as a dict of those of each core, not as \[\]"),
-        (lambda _: {"A": ["camera"]}, r"buffers of A must be of bfsim\.api\.Buffer, not 'camera'"),
-    ],
-)
-def test_mistakes_in_the_function_of_the_buffers(buffers: Any, message: str) -> None:
-    """It is the firmware's, too: no traceback."""
-    with pytest.raises(FirmwareError, match=message):
-        symbols_of(replace(tinyphoon, buffers=buffers), FrameSize(64, 48))
