@@ -5,9 +5,7 @@ from __future__ import annotations
 import io
 import shutil
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,13 +14,7 @@ from PIL import Image, ImageFilter
 
 from bfsim.cli.record import record
 from bfsim.errors import RecordingError
-from bfsim.recording import (
-    RecordingReader,
-    RecordingWriter,
-    RectificationTables,
-    StereoGeometry,
-    boards,
-)
+from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables, StereoGeometry
 from bfsim.recording.boards import BoardView
 from bfsim.recording.calibration import (
     StereoCalibration,
@@ -32,41 +24,12 @@ from bfsim.recording.calibration import (
 )
 from bfsim.recording.calibration_report import CalibrationReport, ViewError, mean_focal_px
 from bfsim.recording.camera_models import Fisheye
-from bfsim.recording.planes import Plane
 from bfsim.recording.residual_plot import draw_residuals
-from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.drive import Pose
-from bfsim.recording.scenes.lens import Lens, Misfit, rectified
+from bfsim.recording.scenes.lens import rectified
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
+from tests.recording.chessboards import CORNERS, GEOMETRY, MISFIT, SIZE, SQUARE_MM
 from tests.recording.test_camera_models import BOARD, corners_of
-
-GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
-MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
-SIZE, CORNERS, SQUARE_MM = (320, 240), (9, 6), 20.0
-
-
-@pytest.fixture(scope="module", autouse=True)
-def searched_once() -> Iterator[None]:
-    """Let each picture be searched for corners once: OpenCV takes its time, and the same pictures are in many sets."""
-    search, known = boards._corners_in, dict[tuple[bytes, tuple[int, int]], boards.Corners]()
-
-    def found_before(cv2: Any, grey: Plane, corners: tuple[int, int]) -> boards.Corners:
-        key = grey.tobytes(), corners
-        if key not in known:
-            known[key] = search(cv2, grey, corners)
-        return known[key].copy()
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(boards, "_corners_in", found_before)
-        yield
-
-
-@pytest.fixture(scope="module")
-def chessboards(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Pairs of pictures of a chessboard through the lenses."""
-    folder = tmp_path_factory.mktemp("chessboards")
-    assert write_chessboards(folder, GEOMETRY, MISFIT, seed=1) == 27
-    return folder
 
 
 @pytest.fixture(scope="module")
@@ -369,115 +332,6 @@ def test_bent_and_blurred_boards_are_left_out(chessboards: Path, tmp_path: Path)
     assert len(report.used) == 18
     assert report.reprojection_px < 0.1
     assert report.focal_px == pytest.approx(386, rel=0.01)
-
-
-class TestBadPictures:
-    """What cannot be calibrated is refused with the names of the files, and the recording stays as it was."""
-
-    @pytest.fixture
-    def pictures(self, chessboards: Path, tmp_path: Path) -> Path:
-        """A copy to spoil."""
-        pytest.importorskip("cv2")
-        return Path(shutil.copytree(chessboards, tmp_path / "spoilt"))
-
-    def refusal(self, pictures: Path, corners: tuple[int, int] = CORNERS) -> str:
-        """What calibration says to them."""
-        with pytest.raises(RecordingError) as error:
-            calibrate(pictures, SIZE, corners=corners, square_mm=SQUARE_MM)
-        return str(error.value)
-
-    @pytest.mark.exhaustive
-    def test_some_are_skipped(self, pictures: Path) -> None:
-        """Without a board, of another size, without the other camera's, or no picture at all: listed, and left."""
-        Image.new("L", SIZE, 80).save(pictures / "right_03.png")
-        Image.new("L", (640, 480)).save(pictures / "left_02.png")
-        (pictures / "right_26.png").unlink()
-        (pictures / "left_07.png").write_text("no picture")
-        report = calibrate(pictures, SIZE, corners=CORNERS, square_mm=SQUARE_MM).report
-        assert {(each.name, each.reason) for each in report.skipped} == {
-            ("right_03.png", "no whole chessboard of 9x6 inner corners is found"),
-            (
-                "left_02.png",
-                "picture must be 320x240 like the recording, not 640x480; `--resize` scales it as `bfsim record import --resize` does",
-            ),
-            ("spoilt/left_26.png", "has no picture of the other camera"),
-            ("left_07.png", "file must be an image that Pillow reads, not something else"),
-        }
-        assert len(report.used) == 23
-        assert report.reprojection_px < 0.2
-
-    @pytest.mark.parametrize("mono", [False, True])
-    def test_files_beside_the_pictures_are_listed(self, tmp_path: Path, mono: bool) -> None:
-        """As those of an import are: one might take them for pictures that were used."""
-        pytest.importorskip("cv2")
-        for side in ("left", "right"):
-            (tmp_path / side).mkdir()
-            Image.new("L", SIZE, 80).save(tmp_path / side / "1.png")
-        (tmp_path / "left" / "2.heic").write_text("no picture")
-        with pytest.raises(
-            RecordingError, match=r"skipped were 2\.heic: no image by its name; 1\.png: no whole"
-        ):
-            calibrate(
-                tmp_path / "left" if mono else tmp_path, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=mono
-            )
-
-    @pytest.mark.exhaustive
-    def test_other_chessboard(self, pictures: Path) -> None:
-        for k in range(2, 27):
-            (pictures / f"left_{k:02}.png").unlink()
-            (pictures / f"right_{k:02}.png").unlink()
-        assert (
-            "pairs must be at least 5, not 0; skipped were left_00.png: no whole chessboard of 9x8 inner corners is "
-            "found; " in self.refusal(pictures, (9, 8))
-        )
-
-    @pytest.mark.exhaustive
-    def test_too_few(self, pictures: Path) -> None:
-        for k in range(4, 27):
-            (pictures / f"left_{k:02}.png").unlink()
-            (pictures / f"right_{k:02}.png").unlink()
-        assert "pairs must be at least 5, not 4; `--corners`" in self.refusal(pictures)
-
-    @pytest.mark.exhaustive
-    def test_names_that_tell_no_pairs(self, pictures: Path) -> None:
-        for k in range(27):
-            (pictures / f"right_{k:02}.png").rename(pictures / f"right_{k + 100}.png")
-        (pictures / "right_126.png").unlink()
-        assert "or be as many of either camera, to be paired by their order, not 27 and 26" in self.refusal(
-            pictures
-        )
-
-    @pytest.mark.exhaustive
-    def test_swapped_cameras(self, pictures: Path) -> None:
-        for k in range(6, 27):
-            (pictures / f"left_{k:02}.png").unlink()
-        for k in range(6):
-            (pictures / f"left_{k:02}.png").rename(pictures / f"swapped_{k:02}.png")
-            (pictures / f"right_{k:02}.png").rename(pictures / f"left_{k:02}.png")
-            (pictures / f"swapped_{k:02}.png").rename(pictures / f"right_{k:02}.png")
-        assert " mm to the left; the names of the pictures may be swapped" in self.refusal(pictures)
-
-    def test_none(self, tmp_path: Path) -> None:
-        pytest.importorskip("cv2")
-        assert "no image in it has a name that says left; `--mono` takes" in self.refusal(tmp_path)
-        assert "nowhere: chessboard pictures must be in a folder" in self.refusal(tmp_path / "nowhere")
-
-    @pytest.mark.parametrize(
-        "names", ["{Side}/{side}1", "stereo{Side}/image{S}1", "image{S}1", "1_{s}", "cam{Side}1"]
-    )
-    def test_names_say_which_camera(self, tmp_path: Path, names: str) -> None:
-        """In whatever way: both pictures are found, and both show no board."""
-        pytest.importorskip("cv2")
-        for side in ("left", "right"):
-            name = names.format(side=side, Side=side.capitalize(), s=side[0], S=side[0].upper())
-            path = tmp_path / f"{name}.png"
-            path.parent.mkdir(exist_ok=True)
-            Image.new("L", SIZE, 80).save(path)
-        assert self.refusal(tmp_path).count("no whole chessboard of ") == 2
-
-    @pytest.mark.exhaustive
-    def test_no_board(self, pictures: Path) -> None:
-        assert "at least 3x3 inner corners" in self.refusal(pictures, (2, 5))
 
 
 def test_missing_opencv_says_how_to_get_it(
