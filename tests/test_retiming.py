@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import random
 import sys
-import zipfile
-from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-import zstandard
 
 from bfsim.errors import ConfigError, WorkError
-from bfsim.kernel import access_trace as log
-from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.work import BYTE, CALL, KIND, SITE, FrameWork
-from bfsim.machine.retiming.work_check import check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
-from bfsim.work_file import FORMAT, _read, _written
 from tests.eyes import FIRMWARE, record
 from tests.tiers import exhaustive
+from tests.work_files import rewritten
 
 FRAMES = 2
 HOSTS_OWN = {"events"}
@@ -207,161 +198,6 @@ def test_what_needs_more_than_cycles_is_refused(work: Path, folder: Path) -> Non
     assert not (folder / "none.work").exists()
 
 
-def test_a_device_is_no_file() -> None:
-    """It may never end: a process that read one took all memory there is."""
-    with pytest.raises(WorkError, match="/dev/null must be an ordinary file, not a folder or a device"):
-        simulate(frames=FRAMES, work=Path("/dev/null"))
-
-
-@pytest.mark.parametrize("part", [0.0, 0.4, 0.999])
-def test_a_part_of_a_file_is_refused(work: Path, folder: Path, part: float) -> None:
-    """It is told at opening, before anything runs."""
-    octets = work.read_bytes()
-    cut = folder / "cut.work"
-    cut.write_bytes(octets[: int(len(octets) * part)])
-    with pytest.raises(WorkError, match=r"cut\.work must be a whole file"):
-        simulate(frames=FRAMES, work=cut)
-
-
-def test_another_version_is_refused(work: Path, folder: Path) -> None:
-    """Another bfsim may cost kernels otherwise."""
-    other = folder / "other.work"
-    with zipfile.ZipFile(work) as old, zipfile.ZipFile(other, "w") as new:
-        for name in old.namelist():
-            new.writestr(name, old.read(name).replace(b'"format": %d' % FORMAT, b'"format": 0'))
-    with pytest.raises(WorkError, match="must be recorded by this bfsim"):
-        simulate(frames=FRAMES, work=other)
-
-
-@pytest.mark.parametrize(
-    "frame", [b"", b"no frame", zstandard.compress(b"{}\n"), b"\x28\xb5\x2f\xfd\xe0" + b"\xff" * 8]
-)  # the last one says that it decompresses to more than there is memory in the world
-def test_a_broken_frame_is_refused(work: Path, folder: Path, frame: bytes) -> None:
-    """Where it is read, in the words for the file; nothing large is made for it."""
-    broken = folder / "broken.work"
-    with zipfile.ZipFile(work) as old, zipfile.ZipFile(broken, "w") as new:
-        for name in old.namelist():
-            new.writestr(name, frame if name == "B/000001" else old.read(name))
-    with pytest.raises(WorkError, match=r"broken\.work must be a whole file"):
-        simulate(frames=FRAMES, work=broken)
-
-
-def changed(work: Path, path: Path, change: Callable[[FrameWork], None]) -> Path:
-    """Write a recorded run with other numbers in the second frame of core A."""
-    with zipfile.ZipFile(work) as old, zipfile.ZipFile(path, "w") as new:
-        for name in old.namelist():
-            content = old.read(name)
-            if name == "A/000001":
-                done = _read("A", zstandard.decompress(content))
-                change(done)
-                content = zstandard.compress(_written(done))
-            new.writestr(name, content)
-    return path
-
-
-def test_a_fetch_of_code_that_is_none_is_refused(work: Path, folder: Path) -> None:
-    """Its site must be that of a routine outside of L1."""
-
-    def change(done: FrameWork) -> None:
-        assert (done.accesses[:, KIND] == log.FETCHES).any()
-        done.accesses[done.accesses[:, KIND] == log.FETCHES, SITE] = w.MAX_SITES - 1
-
-    with pytest.raises(WorkError, match="code is fetched from where none lies"):
-        simulate(frames=FRAMES, work=changed(work, folder / "fetch.work", change))
-
-
-@pytest.mark.parametrize(
-    ("kind", "column", "number"),
-    [(w.ACCESS, 4, 1 << 30), (w.COPY, 1, 1 << 30), (w.SET_UP, 3, w.MAX_ACCOUNTS - 1), (w.AWAIT, 3, w.MAX_ACCOUNTS - 1)],
-)  # fmt: skip
-def test_operations_with_what_is_not_there_are_refused(
-    work: Path, folder: Path, kind: int, column: int, number: int
-) -> None:
-    """Calls, copies and accounts that nothing has prepared, in words and not in memory that is somebody else's."""
-
-    def change(done: FrameWork) -> None:
-        done.operations[done.operations[:, 0] == kind, column] = number
-
-    with pytest.raises(WorkError, match="that is not there"):
-        simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
-
-
-def test_memory_and_counters_that_are_not_there_are_refused(work: Path, folder: Path) -> None:
-    """As above."""
-
-    def far(done: FrameWork) -> None:
-        done.accesses[:, BYTE] = log.OFFSET_MASK
-
-    def many(done: FrameWork) -> None:
-        done.events[:, 1] = 1 << 30
-
-    for change in (far, many):
-        with pytest.raises(WorkError, match="that is not there"):
-            simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
-
-
-def rewritten(
-    work: Path, path: Path, change: Callable[[dict[str, Any]], None], part: str = "run.json"
-) -> Path:
-    """Write a recorded run with other words on what was run."""
-    with zipfile.ZipFile(work) as old, zipfile.ZipFile(path, "w") as new:
-        for name in old.namelist():
-            content = old.read(name)
-            if name == part:
-                run = json.loads(content)
-                change(run)
-                content = json.dumps(run).encode()
-            new.writestr(name, content)
-    return path
-
-
-def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
-    """Its fetches are recorded, and those of others are not."""
-    other = rewritten(work, folder / "less.work", lambda run: run["routines_outside"].pop())
-    with pytest.raises(WorkError, match=r"and \w+ of core [AB] is there and is not in both"):
-        simulate(frames=FRAMES, work=other)
-
-
-@pytest.mark.parametrize("routine", [["A"], [0, "routine"], ["A", 7], ["A", "routine", 0], 7])
-def test_a_routine_that_is_none_is_refused(work: Path, folder: Path, routine: Any) -> None:
-    """At opening."""
-    other = rewritten(work, folder / "odd.work", lambda run: run["routines_outside"].append(routine))
-    with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
-        simulate(frames=FRAMES, work=other)
-
-
-@pytest.mark.parametrize(
-    ("part", "key", "value"),
-    [
-        ("run.json", "identity", 3),
-        ("run.json", "identity", {"recording": 3}),
-        ("run.json", "buffers", [1.5]),
-        ("run.json", "buffers", True),
-        ("end.json", "modules", 7),
-        ("end.json", "modules", [None]),
-        ("end.json", "frame_digests", "none"),
-        ("end.json", "obstacles", {}),
-    ],
-)
-def test_what_was_run_must_be_of_its_types(
-    work: Path, folder: Path, part: str, key: str, value: object
-) -> None:
-    """Numbers where names must be, and the other way round, ended in tracebacks."""
-    other = rewritten(work, folder / "odd.work", lambda run: run.update({key: value}), part)
-    with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
-        simulate(frames=FRAMES, work=other)
-
-
-def test_what_was_run_must_be_a_table(work: Path, folder: Path) -> None:
-    """And a whole one, however deep it is nested."""
-    for content in (b"3", b"[]", b"[" * 100_000):
-        with zipfile.ZipFile(work) as old, zipfile.ZipFile(folder / "odd.work", "w") as new:
-            for name in old.namelist():
-                new.writestr(name, content if name == "run.json" else old.read(name))
-        with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
-            simulate(frames=FRAMES, work=folder / "odd.work")
-
-
 def test_firmware_that_imports_while_it_runs_is_played(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -389,28 +225,6 @@ def test_firmware_that_imports_while_it_runs_is_played(
 def test_a_frame_takes_less_than_200_kb(work: Path) -> None:
     """With the LDF of the built-in firmware."""
     assert work.stat().st_size / FRAMES < 200_000
-
-
-NOTHING = FrameWork(
-    core="A",
-    operations=np.zeros((0, 5), np.int64),
-    accesses=np.zeros((0, 5), np.uint32),
-    events=np.zeros((0, 3), np.int64),
-    copies=np.zeros((0, 6), np.int64),
-    calls=(),
-    accounts=(),
-)
-
-
-@pytest.mark.parametrize(
-    "operation",
-    [(CALL + 1, 0, 0, 0, 0), (w.RUN, -1, 0, 0, 0), (w.ACCESS, 1, 0, 1, 0), (w.SET_UP, 1, 0, w.MAX_ACCOUNTS, 0), (CALL, 0, 0, 0, 0)],
-)  # fmt: skip
-def test_numbers_that_the_bus_cannot_play_are_refused(operation: tuple[int, ...]) -> None:
-    """Kinds that there are not, negative cycles, accesses and calls that are missing, accounts that have no room."""
-    check(NOTHING, 3)
-    with pytest.raises(ValueError, match=r"out of its range|as many calls"):
-        check(replace(NOTHING, operations=np.array([operation], np.int64)), 3)
 
 
 def test_what_leaves_l1_is_refused_even_beside_what_was_outside(
