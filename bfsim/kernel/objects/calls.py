@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
 from typing import Any, NoReturn
 
@@ -49,26 +49,12 @@ class ObjectCall:
         stack is, if its accesses are told, too. `memory`: that of the board, if all arrays lie in it.
         """
         function = code.function
-        space = code.subroutine.processor.space
-        parts: Sequence[Placed] = ()
-        hosts = [each.ctypes.data for each in arrays]
-        if memory is None:
-            named = zip(function.array_names, arrays, strict=True)
-            written = [array.flags.writeable and code.may_write(name) for name, array in named]
-            parts, addresses = placed(arrays, written, space)
-        else:
-            from_host = space.window(memory) - memory.ctypes.data
-            addresses = [each + from_host for each in hosts]
+        parts, addresses = _places(code, arrays, memory)
         trace = None
         if access_trace:
-            followed = [
-                Followed(address, array.nbytes, host, first_site + number)
-                for number, (address, array, host) in enumerate(zip(addresses, arrays, hosts, strict=True))
-                if access_trace.logs(host)
-            ]
-            if stack is not None:
-                followed.append(_followed_stack(stack, first_site + len(arrays)))
-            trace = block_of(access_trace.address(), followed)
+            trace = block_of(
+                access_trace.address(), [*_followed(access_trace, arrays, addresses, first_site, stack)]
+            )
         _catch_faults()
         self.stays_in_l1 = access_trace is None
         """Whether no access of it can leave L1."""
@@ -84,14 +70,47 @@ class ObjectCall:
             kept=(arrays, memory, trace, access_trace),
         )
         """Runs the code now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
-        if memory is None:
-            kept_as_they_are = [
-                (name, array, space.at(address, array.nbytes))
-                for name, array, address in zip(function.array_names, arrays, addresses, strict=True)
-                if not array.flags.writeable and code.may_write(name)
-            ]
-            if kept_as_they_are:
-                self.run = partial(_run_beside, self.run, function, kept_as_they_are)
+        if memory is None and (read_only := [*_read_only(code, arrays, addresses)]):
+            self.run = partial(_run_beside, self.run, function, read_only)
+
+
+def _places(
+    code: CompiledObject, arrays: Sequence[NDArray[Any]], memory: NDArray[np.uint8] | None
+) -> tuple[Sequence[Placed], list[int]]:
+    """Return the parts of the Blackfin's memory that arrays are copied to, none of a board's, and the address of each array."""
+    space = code.subroutine.processor.space
+    if memory is not None:
+        from_host = space.window(memory) - memory.ctypes.data
+        return (), [each.ctypes.data + from_host for each in arrays]
+    named = zip(code.function.array_names, arrays, strict=True)
+    written = [array.flags.writeable and code.may_write(name) for name, array in named]
+    return placed(arrays, written, space)
+
+
+def _followed(
+    access_trace: AccessTrace,
+    arrays: Sequence[NDArray[Any]],
+    addresses: Sequence[int],
+    first_site: int,
+    stack: NDArray[np.uint8] | None,
+) -> Iterator[Followed]:
+    """Yield the memory whose accesses are told: arrays, each with a site of its own, and the stack."""
+    for number, (address, array) in enumerate(zip(addresses, arrays, strict=True)):
+        host = array.ctypes.data
+        if access_trace.logs(host):
+            yield Followed(address, array.nbytes, host, first_site + number)
+    if stack is not None:
+        yield _followed_stack(stack, first_site + len(arrays))
+
+
+def _read_only(
+    code: CompiledObject, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
+) -> Iterator[tuple[str, NDArray[Any], NDArray[np.uint8]]]:
+    """Yield the name of each array that must not be changed and that the code may store into, itself, and the bytes of its copy."""
+    space = code.subroutine.processor.space
+    for name, array, address in zip(code.function.array_names, arrays, addresses, strict=True):
+        if not array.flags.writeable and code.may_write(name):
+            yield name, array, space.at(address, array.nbytes)
 
 
 def _refuse(subroutine: Subroutine, failure: int) -> NoReturn:
