@@ -7,9 +7,10 @@ from pathlib import Path
 
 import click
 
+from bfsim.cli.options.firmware import firmware_option
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.errors import ConfigError, shown
-from bfsim.shipped import FIRMWARE, RECORDING
+from bfsim.shipped import RECORDING
 from bfsim.terminal import print_report
 
 
@@ -30,13 +31,7 @@ class _Area(click.ParamType[tuple[int, int, int, int]]):
 
 @click.command(short_help="Show what the firmware calls each colour of a picture.")
 @click.argument("picture", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--firmware",
-    metavar="NAME",
-    default=FIRMWARE[0],
-    show_default=True,
-    help=f"Firmware to ask: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
-)
+@firmware_option("ask")
 @click.option(
     "--frame",
     metavar="N",

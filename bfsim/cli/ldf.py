@@ -6,24 +6,18 @@ from pathlib import Path
 
 import click
 
+from bfsim.cli.options.firmware import firmware_option
 from bfsim.cli.options.hardware import BOARD_OPTIONS, COMPILER_OPTIONS
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.cli.options.sizes import Size
-from bfsim.shipped import FIRMWARE
 from bfsim.terminal import print_report
 
 
 @click.command(short_help="Print where an LDF puts buffers and code.")
 @click.argument("file", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--firmware",
-    metavar="NAME",
-    default=FIRMWARE[0],
-    show_default=True,
-    help=f"Firmware to place: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
-)
+@firmware_option("place")
 @takes((*BOARD_OPTIONS, *COMPILER_OPTIONS))
 @click.option(
     "--size",

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bfsim.cli.options.firmware import firmware_option
 from bfsim.cli.options.hardware import BOARD_OPTIONS, COMPILER_OPTIONS
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
-from bfsim.shipped import FIRMWARE, LDFS
+from bfsim.shipped import LDFS
 from bfsim.signals import interrupted_code
 from bfsim.terminal import progress_bar
 from bfsim.watchers import Watchers, calling
@@ -24,13 +25,7 @@ if TYPE_CHECKING:
 
 _RUN_PARAMETERS = (
     click.argument("recording", required=False, type=click.Path(path_type=Path)),
-    click.option(
-        "--firmware",
-        metavar="NAME",
-        default=FIRMWARE[0],
-        show_default=True,
-        help=f"Firmware to run: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
-    ),
+    firmware_option("run"),
     *BOARD_OPTIONS,
     click.option(
         "--ldf",
