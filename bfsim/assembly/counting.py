@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.assembly.finding import KernelCode
-from bfsim.blackfin.edge_counts import Event
+from bfsim.blackfin.edge_counts import CountedEvent
 from bfsim.kernel import Kernel
 from bfsim.kernel.objects.calls import ObjectCall
 from bfsim.kernel.objects.compiled import CompiledObject
@@ -42,13 +42,13 @@ class _Caller:
             copy[:] = array
         call.run(*(each.array if isinstance(each, Row) else each for each in arguments))
 
-    def events(self) -> Tally[Event]:
+    def events(self) -> Tally[CountedEvent]:
         """Return how often each event was counted."""
         counters = self.compiled.subroutine.translated.counted.counters
-        found: Tally[Event] = Tally()
+        found: Tally[CountedEvent] = Tally()
         for number, count in zip(self.compiled.order.tolist(), self.totals.tolist(), strict=False):
             counter = counters[number]
-            found[Event(counter.block.start, counter.taken, counter.along)] += count
+            found[CountedEvent(counter.block.start, counter.taken, counter.along)] += count
         return found
 
 
@@ -67,9 +67,9 @@ class Counting:
         if caller is not None:
             caller.play(arguments)
 
-    def events(self) -> Tally[Event]:
+    def events(self) -> Tally[CountedEvent]:
         """Return how often each block ran, each branch was taken and each counted way was gone, of the kernel and of what calls it."""
-        found: Tally[Event] = Tally()
+        found: Tally[CountedEvent] = Tally()
         for each in self._callers.values():
             if each is not None:
                 found.update(each.events())

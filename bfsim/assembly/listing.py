@@ -10,7 +10,7 @@ from functools import cached_property
 from bfsim.assembly.finding import KernelCode
 from bfsim.blackfin.blocks import CALLS, Block, Code, does
 from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.edge_counts import Event, times_gone
+from bfsim.blackfin.edge_counts import CountedEvent, times_gone
 from bfsim.blackfin.flow import Edge, Loop, edges, loops
 from bfsim.blackfin.interlocks import Wait
 from bfsim.blackfin.stalls import Stalls, stalls
@@ -27,7 +27,7 @@ CHAIN, ISSUE, JUMPS, WAITS = (
 )
 
 
-def listed(code: KernelCode, events: Mapping[Event, int] | None = None) -> Assembly:
+def listed(code: KernelCode, events: Mapping[CountedEvent, int] | None = None) -> Assembly:
     """Return the code of a kernel as records; with the `events` of a run, how often each instruction ran and what it cost."""
     kernel = code.kernel
     made = _Listing(code, events)
@@ -51,7 +51,7 @@ class _Listing:
     """One kernel's blocks while they are listed."""
 
     kernel_code: KernelCode
-    events: Mapping[Event, int] | None
+    events: Mapping[CountedEvent, int] | None
 
     @property
     def code(self) -> Code:
@@ -86,7 +86,7 @@ class _Listing:
     def calls(self) -> int:
         """How often control came to the kernel from elsewhere."""
         first = self.kernel_code.routine.address
-        return self._times({Event(first): 1}) - sum(
+        return self._times({CountedEvent(first): 1}) - sum(
             self._times(times_gone(self.code, self.edges, each))
             for each in self.edges
             if each.target == first
@@ -113,8 +113,8 @@ class _Listing:
                     waits_for=wait.register,
                     depth=depth,
                     starts_block=number == 0 and block.start in entered,
-                    executions=self._count(Event(block.start)),
-                    taken=self._count(Event(block.start, taken=True)) if branches else None,
+                    executions=self._count(CountedEvent(block.start)),
+                    taken=self._count(CountedEvent(block.start, taken=True)) if branches else None,
                     total_cclk=self._total(block, each, waited),
                 )
 
@@ -138,7 +138,7 @@ class _Listing:
             chain=chain.registers,
             bound=bound_of(most, chain),
             calls=tuple(self.callees(inside)),
-            turns=self._count(Event(loop.head)),
+            turns=self._count(CountedEvent(loop.head)),
             total_cclk=None if self.events is None else sum(self._block_total(each) for each in inside),
         )
 
@@ -169,8 +169,8 @@ class _Listing:
         """Of each instruction of a block its longest wait, and the cycles that it waited in a run."""
         jumped = self.stalls.jumped[block.start]
         carried = {edge: waits for edge, waits in self.stalls.carried.items() if edge.target == block.start}
-        times = {edge: self._times({Event(edge.target, along=edge): 1}) for edge in carried}
-        executed = self._times({Event(block.start): 1})
+        times = {edge: self._times({CountedEvent(edge.target, along=edge): 1}) for edge in carried}
+        executed = self._times({CountedEvent(block.start): 1})
         found = []
         for number, first in enumerate(jumped):
             waits = [first, *(each[number] for each in carried.values())]
@@ -181,10 +181,10 @@ class _Listing:
     def _total(self, block: Block, instruction: Instruction, waited: int) -> int | None:
         if self.events is None:
             return None
-        total = self.timing.of(instruction) * self._times({Event(block.start): 1}) + waited
+        total = self.timing.of(instruction) * self._times({CountedEvent(block.start): 1}) + waited
         if block.branches and instruction is block.instructions[-1]:
             more = self.timing.taken(instruction) - self.timing.of(instruction)
-            total += more * self._times({Event(block.start, taken=True): 1})
+            total += more * self._times({CountedEvent(block.start, taken=True): 1})
         return total
 
     def _block_total(self, block: Block) -> int:
@@ -193,11 +193,11 @@ class _Listing:
             for each, (_, waited) in zip(block.instructions, self._waited(block), strict=True)
         )
 
-    def _count(self, event: Event) -> int | None:
+    def _count(self, event: CountedEvent) -> int | None:
         return None if self.events is None else self._times({event: 1})
 
-    def _times(self, factors: Mapping[Event, int]) -> int:
-        events: Mapping[Event, int] = self.events or Tally()
+    def _times(self, factors: Mapping[CountedEvent, int]) -> int:
+        events: Mapping[CountedEvent, int] = self.events or Tally()
         return sum(events.get(event, 0) * factor for event, factor in factors.items())
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from bfsim.blackfin.blocks import Block
-from bfsim.blackfin.edge_counts import Event
+from bfsim.blackfin.edge_counts import CountedEvent
 from bfsim.blackfin.value import Value
 
 Registers = Mapping[str, Value]
@@ -57,5 +57,5 @@ class AtOnce(Protocol):
     def before_last_turn(self, registers: Registers) -> dict[str, Value]:
         """Return registers as they are before the last turn."""
 
-    def times(self, registers: Registers) -> dict[Event, Value]:
+    def times(self, registers: Registers) -> dict[CountedEvent, Value]:
         """Return how often control went each way in the turns that are made at once."""

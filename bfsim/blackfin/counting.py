@@ -11,7 +11,7 @@ from llvmlite import ir
 
 from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.counts import add, make_writable, sum_of, without, work_out
-from bfsim.blackfin.edge_counts import Event
+from bfsim.blackfin.edge_counts import CountedEvent
 from bfsim.blackfin.effects import I64
 from bfsim.blackfin.flow import Edge
 from bfsim.blackfin.implied import Implied
@@ -65,7 +65,7 @@ class Counting:
             self._add(builder, number, I64(1))
             self.let_pass(builder, I64(self._counters[number].stall_cclk))
 
-    def happened(self, builder: ir.IRBuilder, event: Event, times: ir.Value) -> None:
+    def happened(self, builder: ir.IRBuilder, event: CountedEvent, times: ir.Value) -> None:
         """Count what has happened so many times, if it is counted and does not follow from other counts."""
         if (number := self._numbers.get(event)) is None:
             return

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from bfsim.blackfin.at_once import HardwareLoop, Registers
 from bfsim.blackfin.blocks import Block
-from bfsim.blackfin.edge_counts import Event
+from bfsim.blackfin.edge_counts import CountedEvent
 from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.text import text
 from bfsim.blackfin.value import Value
@@ -72,10 +72,10 @@ class Division:
             self.loop.count: divisor.constant(1),
         }
 
-    def times(self, registers: Registers) -> dict[Event, Value]:
+    def times(self, registers: Registers) -> dict[CountedEvent, Value]:
         """Return how often control went each way."""
         head, ahead = self.loop.head, registers["R0"].constant(AHEAD, 64)
         return {
-            Event(head): ahead,
-            Event(head, along=Edge(head, head, Way.REPEATS)): ahead,
+            CountedEvent(head): ahead,
+            CountedEvent(head, along=Edge(head, head, Way.REPEATS)): ahead,
         }

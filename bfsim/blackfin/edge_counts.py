@@ -10,7 +10,7 @@ from bfsim.blackfin.blocks import Code
 from bfsim.blackfin.flow import Edge, Way
 
 
-class Event(NamedTuple):
+class CountedEvent(NamedTuple):
     """The execution of the block at `block`, or, with `taken`, the branch at its end being taken, or, with `along`, its being entered so."""
 
     block: int
@@ -18,7 +18,7 @@ class Event(NamedTuple):
     along: Edge | None = None
 
 
-Sum = Tally[Event]
+Sum = Tally[CountedEvent]
 """Counts of events, each times a number, which may be negative."""
 
 
@@ -41,15 +41,15 @@ def _times(code: Code, found: Sequence[Edge], edge: Edge, asked: frozenset[Edge]
         first = next(each for each in into if each.way is Way.REPEATS)
         if edge != first:
             return Tally()
-        times = Tally({Event(edge.target): 1})
+        times = Tally({CountedEvent(edge.target): 1})
         others = [each for each in into if each.way is not Way.REPEATS]
     elif edge.way is Way.FALLS:
-        times = Tally({Event(edge.source): 1})
+        times = Tally({CountedEvent(edge.source): 1})
         if block.branches:
-            times[Event(edge.source, taken=True)] -= 1
+            times[CountedEvent(edge.source, taken=True)] -= 1
         others = [each for each in found if each.source == edge.source and each.way is Way.REPEATS]
     else:
-        times = Tally({Event(edge.source, taken=block.branches): 1})
+        times = Tally({CountedEvent(edge.source, taken=block.branches): 1})
         others = []
     for each in others:
         times.subtract(_times(code, found, each, asked))

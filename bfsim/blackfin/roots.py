@@ -15,7 +15,7 @@ from llvmlite import ir
 
 from bfsim.blackfin.at_once import HardwareLoop, Registers
 from bfsim.blackfin.blocks import Block, Code
-from bfsim.blackfin.edge_counts import Event
+from bfsim.blackfin.edge_counts import CountedEvent
 from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.text import text
 from bfsim.blackfin.value import Value
@@ -99,19 +99,19 @@ class Root:
             self.loop.count: upper.constant(1),
         }
 
-    def times(self, registers: Registers) -> dict[Event, Value]:
+    def times(self, registers: Registers) -> dict[CountedEvent, Value]:
         """Return how often control went each way: through all three blocks where a bit is 1."""
         first, middle, last = (each.start for each in self.blocks)
         ones = self._upper(registers).ones().zero_extended(64)
         ahead = ones.constant(AHEAD)
         return {
-            Event(first): ahead,
-            Event(first, taken=True): ahead - ones,
-            Event(first, along=Edge(last, first, Way.REPEATS)): ahead,
-            Event(middle): ones,
-            Event(middle, along=Edge(first, middle, Way.FALLS)): ones,
-            Event(last): ahead,
-            Event(last, along=Edge(middle, last, Way.FALLS)): ones,
+            CountedEvent(first): ahead,
+            CountedEvent(first, taken=True): ahead - ones,
+            CountedEvent(first, along=Edge(last, first, Way.REPEATS)): ahead,
+            CountedEvent(middle): ones,
+            CountedEvent(middle, along=Edge(first, middle, Way.FALLS)): ones,
+            CountedEvent(last): ahead,
+            CountedEvent(last, along=Edge(middle, last, Way.FALLS)): ones,
         }
 
     def _upper(self, registers: Registers) -> Value:

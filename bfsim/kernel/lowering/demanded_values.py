@@ -14,7 +14,7 @@ from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.induction_variables import InductionVariables
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.loop_counters import LoopCounters
-from bfsim.kernel.lowering.redundant import AGAIN
+from bfsim.kernel.lowering.redundant_loads import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
 
 

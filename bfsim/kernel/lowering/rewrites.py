@@ -11,7 +11,7 @@ from bfsim.kernel.ir_reading import read_module
 from bfsim.kernel.ir_text import Routine
 from bfsim.kernel.ir_writing import with_names, write_module
 from bfsim.kernel.lowering.bit_tests import with_bit_tests
-from bfsim.kernel.lowering.carried import carry_over
+from bfsim.kernel.lowering.carried_values import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.early_loads import with_early_loads
 from bfsim.kernel.lowering.extremes import with_extremes
@@ -30,7 +30,7 @@ from bfsim.kernel.lowering.partial_redundancies import without_partial_redundanc
 from bfsim.kernel.lowering.predictive_commoning import with_predictive_commoning
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.range_tests import with_range_tests
-from bfsim.kernel.lowering.redundant import without_redundant_loads
+from bfsim.kernel.lowering.redundant_loads import without_redundant_loads
 from bfsim.kernel.lowering.remainders import with_remainders
 from bfsim.kernel.lowering.repeated_loads import without_repeated_loads
 from bfsim.kernel.lowering.restored_values import with_restored_values

@@ -17,7 +17,7 @@ from bfsim.kernel.lowering.widths import BYTE
 
 
 @dataclass(frozen=True, slots=True)
-class Carried:
+class CarriedValue:
     """A load or an address in the header of a loop; `index` is what follows from iteration to iteration, `following` its next value."""
 
     loop: Loop
@@ -38,7 +38,7 @@ def carry_over(routine: Routine) -> Routine:
     return routine
 
 
-def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> Carried | None:
+def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> CarriedValue | None:
     if set(flow.predecessors[loop.header]) != {flow.entering(loop), loop.latch}:
         return None
     address = _address(flow, each)
@@ -53,7 +53,7 @@ def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> Carried | None
     if each.opcode == "load" and any(_may_write(other, each) for other in before):
         return None
     following = _there(flow, each, arms_of(index)[loop.latch], loop.latch, loop.blocks)
-    return Carried(loop, each, index, following) if following is not None else None
+    return CarriedValue(loop, each, index, following) if following is not None else None
 
 
 def _address(flow: ControlFlow, each: Instruction) -> Instruction | None:
@@ -109,7 +109,7 @@ def _may_write(row: Instruction, load: Instruction) -> bool:
     return row.is_call or (row.opcode == "store" and (row.bits == load.bits or BYTE in (row.bits, load.bits)))
 
 
-def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
+def _moved(flow: ControlFlow, routine: Routine, carried: CarriedValue) -> Routine:
     """Put a phi in the place of a load or an address, and make it before the loop unless it is there."""
     loop, each = carried.loop, carried.each
     entering = flow.entering(loop)
@@ -134,7 +134,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     return replace(routine, blocks=tuple(blocks))
 
 
-def _before(flow: ControlFlow, carried: Carried, index: str) -> Iterator[Instruction]:
+def _before(flow: ControlFlow, carried: CarriedValue, index: str) -> Iterator[Instruction]:
     """What the first iteration loads, or its address."""
     address = _address(flow, carried.each)
     assert address is not None

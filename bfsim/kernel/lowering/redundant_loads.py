@@ -17,7 +17,7 @@ AGAIN = ".again"  # in the name of an address that is only computed to go along
 
 
 @dataclass(frozen=True, slots=True)
-class Carried:
+class RedundantLoad:
     """A load at `address` in the header of a loop, whose value follows that of `index` along the arms of `merged`."""
 
     loop: Loop
@@ -44,7 +44,7 @@ def without_redundant_loads(routine: Routine) -> Routine:
     return routine
 
 
-def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None:
+def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> RedundantLoad | None:
     address = flow.instruction(load.operands[0]) if load.opcode == "load" else None
     if address is None or address.opcode != "getelementptr" or flow.users.get(address.result or "") != [load]:
         return None
@@ -65,7 +65,7 @@ def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None
         for label, value in arms_of(merged).items()
     }
     known = {label: value for label, value in values.items() if value is not None}
-    carried = Carried(loop, load, address, index, merged, known)
+    carried = RedundantLoad(loop, load, address, index, merged, known)
     return carried if len(known) == len(values) and _is_loaded_behind(flow, carried) else None
 
 
@@ -87,7 +87,7 @@ def _kind(load: Instruction) -> str:
     return load.text.split()[1].rstrip(",")
 
 
-def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
+def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
     """Load before the loop; in it, a phi beside that of the index, and one beside each that merges it."""
     load, loop = carried.load, carried.loop
     first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
@@ -122,7 +122,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
 
 
-def _with_addresses(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
+def _with_addresses(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
     """Where the element is wanted behind the loop, its address goes along: computed again on the ways that keep it."""
     kept = {label for label, value in carried.values.items() if value == carried.load.result}
     alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
@@ -139,7 +139,7 @@ def _with_addresses(flow: ControlFlow, routine: Routine, carried: Carried) -> Ro
     return replace(routine, blocks=tuple(blocks))
 
 
-def _addresses_behind(flow: ControlFlow, carried: Carried) -> list[Instruction]:
+def _addresses_behind(flow: ControlFlow, carried: RedundantLoad) -> list[Instruction]:
     """Addresses of the element that was chosen last, computed behind the loop."""
     array = carried.address.operands[:-1]
     chosen = [
@@ -151,11 +151,11 @@ def _addresses_behind(flow: ControlFlow, carried: Carried) -> list[Instruction]:
     return [each for each in users if each.opcode == "getelementptr" and each.operands[:-1] == array]
 
 
-def _is_wanted_behind(flow: ControlFlow, carried: Carried) -> bool:
+def _is_wanted_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
     return bool(_addresses_behind(flow, carried))
 
 
-def _is_loaded_behind(flow: ControlFlow, carried: Carried) -> bool:
+def _is_loaded_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
     """Whether the element that was chosen last is loaded behind the loop on every way, too.
 
     Else the load is not sure to be made where the index is chosen, which -O2 asks for [compute_antic in tree-ssa-pre.cc; partial
