@@ -7,6 +7,7 @@ constant per iteration into a post-incremented pointer; this file finds both.
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -136,13 +137,19 @@ class ControlFlow:
         return tuple(found)
 
     def _body(self, header: str, latch: str) -> set[str]:
-        body, waiting = {header}, [latch]
+        return self.blocks_before([latch] if latch != header else [], {header, latch})
+
+    def blocks_before(
+        self, first: Iterable[str], found: Collection[str], inside: Collection[str] | None = None
+    ) -> set[str]:
+        """Return `found` and the other blocks inside, or in all, from which ways lead to the first ones, none through what is found already."""
+        before, waiting = set(found), [*first]
         while waiting:
-            label = waiting.pop()
-            if label not in body:
-                body.add(label)
-                waiting.extend(self.predecessors[label])
-        return body
+            for each in self.predecessors[waiting.pop()]:
+                if each not in before and (inside is None or each in inside):
+                    before.add(each)
+                    waiting.append(each)
+        return before
 
     def innermost(self, label: str) -> Loop | None:
         """Smallest loop around a block."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
 
@@ -199,19 +199,6 @@ def copied_to(flow: ControlFlow, variables: set[str]) -> set[str]:
             if source is not None and is_copy and source.operands[-1] not in found:
                 found.add(source.operands[-1])
                 waiting.append(source.operands[-1])
-    return found
-
-
-def blocks_before(
-    flow: ControlFlow, first: Iterable[str], found: set[str], inside: Container[str]
-) -> set[str]:
-    """Return `found` and the other blocks inside from which ways lead to the first ones, none through what is found already."""
-    found, waiting = set(found), [*first]
-    while waiting:
-        for before in flow.predecessors[waiting.pop()]:
-            if before not in found and before in inside:
-                found.add(before)
-                waiting.append(before)
     return found
 
 

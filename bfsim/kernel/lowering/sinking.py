@@ -181,11 +181,7 @@ class _Sinking:
             return True
         rows = list(self.flow.blocks[label].instructions)
         rows = rows[next(number for number, row in enumerate(rows) if row is load) :]
-        between, waiting = {label, place}, list(self.flow.predecessors[place])
-        while waiting:
-            if (before := waiting.pop()) not in between:
-                between.add(before)
-                waiting += self.flow.predecessors[before]
+        between = self.flow.blocks_before([place], {label, place})
         for each in between - {label, place}:
             rows += self.flow.blocks[each].instructions
         return any(row.opcode == "store" or row.is_call for row in rows)

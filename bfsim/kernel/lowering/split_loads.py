@@ -37,12 +37,7 @@ def _may_move(flow: ControlFlow, label: str, user: Instruction) -> bool:
     if user.opcode != "load":
         return False
     home, _ = flow.defined[user.result or ""]
-    between, waiting = {label, home}, [home] if home != label else []
-    while waiting:
-        for before in flow.predecessors[waiting.pop()]:
-            if before not in between:
-                between.add(before)
-                waiting.append(before)
+    between = flow.blocks_before([home] if home != label else [], {label, home})
     rows = [each for name in between - {home} for each in flow.blocks[name].instructions]
     own = flow.blocks[home].instructions
     rows += own[: next(number for number, each in enumerate(own) if each is user)]

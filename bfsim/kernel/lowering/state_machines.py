@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bfsim.kernel.ir_text import HIDES, BasicBlock, Routine
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.copied_ways import CopiedWays, Ways, blocks_before, copied_to
+from bfsim.kernel.lowering.copied_ways import CopiedWays, Ways, copied_to
 from bfsim.kernel.lowering.jump_tables import MARK
 
 
@@ -49,5 +49,5 @@ def _thread(ways: CopiedWays, variable: str, kept: set[str]) -> None:
     firsts = [each for each in sorted(tests) if not tests.intersection(flow.predecessors[each])]
     loop = flow.innermost(firsts[0]) if firsts else None
     if loop is not None:
-        leading = blocks_before(flow, firsts, chains, flow.blocks)
+        leading = flow.blocks_before(firsts, chains)
         ways.lead(sorted(loop.blocks - chains), leading, copied_to(flow, {variable, *kept}))

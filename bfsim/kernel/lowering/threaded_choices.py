@@ -24,7 +24,6 @@ from bfsim.kernel.lowering.copied_ways import (
     Node,
     Ways,
     answered,
-    blocks_before,
     copied_to,
 )
 from bfsim.kernel.lowering.number_tests import CONVERSIONS
@@ -119,7 +118,7 @@ def _threaded(routine: Routine, tests: set[str]) -> Routine:
         behind = set(inside) - {loop.header if loop else ""}
         passed = behind & tests
         variables = {each.operands[-1] for each in asked if each is not None and each.opcode == "load"}
-        ways.lead(inside, blocks_before(flow, passed, passed, behind), copied_to(flow, variables))
+        ways.lead(inside, flow.blocks_before(passed, passed, behind), copied_to(flow, variables))
     return ways.routine()
 
 
