@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from fractions import Fraction
 
-from tests.firmware.object_references import BASELINE, FARTHEST, FOCAL, Record, rounded
+from tests.firmware.place_references import BASELINE, FARTHEST, FOCAL, Record, rounded
 
 # Verification
 

@@ -9,7 +9,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tests.firmware.object_references import GOAL, Record, sides, within
+from tests.firmware.object_references import sides, within
+from tests.firmware.place_references import GOAL, Record
 
 PASSED = 3
 
