@@ -41,6 +41,12 @@ def test_functions_of_a_file_share_its_static_variables(tmp_path: Path) -> None:
     assert [add_again(1), add(1)] == [101, 9]
 
 
+def test_the_cycle_counter_counts_in_every_call() -> None:
+    """A program's start has switched it on; code that measured itself found 0. CYCLES is read once and LSETUP issued, then the turns."""
+    clocked = kernel_from(DATA / "clocked.o", "clocked", turns=i32, result=i32)
+    assert [clocked(turns) for turns in (10, 100, 10)] == [2 * turns + 2 for turns in (10, 100, 10)]
+
+
 def test_variables_without_a_value_have_a_place() -> None:
     """They were told as missing."""
     put = kernel_from(DATA / "common.o", "put", value=i32, result=i32)

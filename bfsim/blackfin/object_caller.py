@@ -27,6 +27,8 @@ HEAD = 14
 PART_WORDS = 4
 """Its address here, that of its copy, how many bytes, and how many of them are copied back."""
 ENTRY = "bfsim_run_object"
+SYSCFG = 0x32
+"""[newlib] As `basiccrt.S` leaves it before a program's `main`: CYCLES counts."""
 
 
 def _set(register: str, value: str) -> str:
@@ -95,6 +97,9 @@ START = "".join(
         ("SP", "%top"),
         ("FP", "0"),
         ("CLOCK", "0"),
+        ("CYCLES_OFFSET", "0"),
+        ("CYCLES2", "0"),
+        ("SYSCFG", str(SYSCFG)),
         ("TRACE", "%trace"),
         ("RETS", str(OUTSIDE)),
         ("PC", "%address"),
