@@ -1,10 +1,12 @@
-"""What a run takes from nowhere but bfsim, or doubts: a geometry that nobody gave, cameras that seem exchanged or not rectified, clocks that no PLL makes."""
+"""What a run takes from nowhere but bfsim, or doubts: a geometry that nobody gave, cameras that seem exchanged or not rectified, clocks that no PLL makes, tables too large for L1."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from bfsim.chip.spec import BoardSpec
+from bfsim.kernel import Kernel
+from bfsim.linker import LinkMap
 from bfsim.machine.program import Calibration, Firmware
 from bfsim.trace import RunWarning, WarningKind
 
@@ -51,3 +53,32 @@ def assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
         clocks = f"{float(spec.clocks.cclk_hz) / 1e6:.6g} and {float(spec.clocks.sclk_hz) / 1e6:.6g} MHz"
         text = f"no PLL setting makes the clocks of {spec.name}, {clocks}, of one crystal"
         yield RunWarning(kind=WarningKind.CLOCKS, text=text)
+
+
+def assumed_tables(
+    kernels: Mapping[str, Iterable[Kernel]], spec: BoardSpec, link_map: LinkMap
+) -> Iterator[RunWarning]:
+    """Yield a warning where files of C and assembler have more variables and tables than the L1 of a core has room for.
+
+    `kernels`: those of each core's main loop.
+    """
+    alike: dict[tuple[str, int], list[str]] = {}
+    for core, named in kernels.items():
+        codes = [each.object_code for each in named]
+        files = {tuple(each.files): each for each in codes if each and each.data_bytes}.values()
+        left = _l1_data_left(core, spec, link_map)
+        if sum(each.data_bytes for each in files) > left:
+            listed = ", ".join(f"{each.name} ({each.data_bytes:,} bytes)" for each in files)
+            alike.setdefault((listed, left), []).append(core)
+    for (listed, left), cores in alike.items():
+        text = (
+            f"the variables and tables of {listed} are taken to be in L1, where the LDF leaves {left:,} bytes of data memory "
+            f"of core {' and '.join(cores)}: what they wait for elsewhere is not counted; hand large arrays over as buffers"
+        )
+        yield RunWarning(kind=WarningKind.TABLES, text=text)
+
+
+def _l1_data_left(core: str, spec: BoardSpec, link_map: LinkMap) -> int:
+    banks = [each for each in spec.chip.regions if each.owner == core and each.memory.startswith("L1_DATA")]
+    used = (each.used_bytes for each in link_map.segments if any(bank.holds(each.start, 1) for bank in banks))
+    return sum(each.nbytes for each in banks) - sum(used)

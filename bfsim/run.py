@@ -14,7 +14,13 @@ from types import MappingProxyType
 from typing import ParamSpec, TypeVar
 
 from bfsim import shipped
-from bfsim.assumptions import assumed_clocks, assumed_geometry, doubted_cameras, geometry_in_words
+from bfsim.assumptions import (
+    assumed_clocks,
+    assumed_geometry,
+    assumed_tables,
+    doubted_cameras,
+    geometry_in_words,
+)
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
@@ -27,6 +33,7 @@ from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.calls.call_cache import BeforeCall, Sanitizer
 from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import devices_of, makers_of
 from bfsim.machine.program import Firmware
@@ -291,6 +298,11 @@ def _record(
             *assumed_geometry(fitted.firmware, calibration),
             *doubts,
             *assumed_clocks(spec),
+            *assumed_tables(
+                {core: kernels_named(main) for core, main in fitted.firmware.mains.items()},
+                spec,
+                fitted.link_map,
+            ),
         ),
         losses=firmware.losses,
         memories=tuple(_memories(fitted.link_map, spec)),

@@ -118,7 +118,7 @@ MAY_IMPORT = {
         "trace",
         "work_file",
     },
-    "assumptions": {"chip", "machine", "trace"},
+    "assumptions": {"chip", "kernel", "linker", "machine", "trace"},
     "identifying": {"errors", "loading", "reading_ahead", "recording", "run_setup", "shipped", "trace"},
     "run": {
         "assumptions",

@@ -47,6 +47,12 @@ def test_the_cycle_counter_counts_in_every_call() -> None:
     assert [clocked(turns) for turns in (10, 100, 10)] == [2 * turns + 2 for turns in (10, 100, 10)]
 
 
+def test_large_arrays_have_a_place() -> None:
+    """3 MB: they lay over the code, and the file was refused."""
+    store = kernel_from(DATA / "large.o", "store", place=i32, value=i32, result=i32)
+    assert [store(place, 200) for place in ((3 << 20) - 2, (3 << 20) - 1)] == [200, 400]
+
+
 def test_variables_without_a_value_have_a_place() -> None:
     """They were told as missing."""
     put = kernel_from(DATA / "common.o", "put", value=i32, result=i32)

@@ -1,7 +1,8 @@
 """Object files → an image: what lies where in the Blackfin's memory, with every relocation applied.
 
 A program that is linked already keeps its addresses. Of an object file, code goes to L1 instruction memory and data to L1 data
-memory, or as far beyond as they reach: nothing of the timing depends on it, for compilers' own tables are not traced.
+memory, or as far beyond as they reach, and to SDRAM if that is too far: nothing of the timing depends on it, for compilers' own
+tables are not traced.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ from bfsim.errors import KernelError, cut
 
 BASE = {Use.CODE: 0xFFA00000, Use.DATA: 0xFF900000}
 """[HRM] Core A's L1 instruction memory; L1 data bank B, which has a MB of addresses to itself."""
+SDRAM = 0x01000000
+"""[HRM] Without its first 16 MB, so that a pointer that is nearly 0 hits nothing."""
 ADDRESSES = 1 << 32
 LONGEST_ALIGN = 4096
 WORD_BYTES = 4
@@ -72,7 +75,7 @@ def link(file: ObjectFile, *, is_whole: bool = True) -> Image:
 
 def _places(file: ObjectFile) -> tuple[int, ...]:
     """The address of each section."""
-    ends, places = dict(BASE), []
+    ends, places = dict(_bases(file)), []
     for each in file.sections:
         place = each.address
         if not file.is_linked:
@@ -87,6 +90,12 @@ def _places(file: ObjectFile) -> tuple[int, ...]:
             )
         places.append(place)
     return tuple(places)
+
+
+def _bases(file: ObjectFile) -> Mapping[Use, int]:
+    """Return where code and data of an object file begin."""
+    most = sum(each.nbytes + each.align for each in file.sections if each.use is Use.DATA)
+    return BASE if most <= BASE[Use.CODE] - BASE[Use.DATA] else {**BASE, Use.DATA: SDRAM}
 
 
 def _missing(file: ObjectFile, *, is_whole: bool) -> dict[int, str]:

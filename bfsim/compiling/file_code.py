@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from bfsim.blackfin.image import Image, Routine
+from bfsim.blackfin.image import Image, Routine, Use
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.blackfin.subroutines import LoadedImage
@@ -54,6 +54,16 @@ class FileCode:
     places: Places
 
     _called: LoadedFiles = field(default_factory=LoadedFiles)
+
+    @property
+    def name(self) -> str:
+        """The file's name."""
+        return self.loaded.image.name
+
+    @property
+    def data_bytes(self) -> int:
+        """How many bytes the variables and tables of the file take."""
+        return sum(len(each.octets) for each in self.loaded.image.segments if each.use is Use.DATA)
 
     def compiled(
         self, profile: CompilerProfile, *, traced: bool = False, files: LoadedFiles | None = None

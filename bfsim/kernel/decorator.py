@@ -41,11 +41,18 @@ _IN_PYTHON = ContextVar("_IN_PYTHON", default=False)
 class ObjectCode(Protocol):
     """The object code of a kernel that is not written in Python.
 
-    `files`: what it was made of, with their SHA-256. `compiler`: what compiled it; empty where the file is object code.
+    `files`: what it was made of, with their SHA-256. `compiler`: what compiled it; empty where the file is object code. `name`: that of
+    the file, and `data_bytes` what all its variables and tables take.
     """
 
     @property
     def files(self) -> Mapping[Path, str]: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def data_bytes(self) -> int: ...
 
     @property
     def compiler(self) -> str: ...

@@ -99,7 +99,7 @@ def _owners() -> TypeAdapter[dict[str, tuple[OwnerFrames, ...]]]:
 def _assumptions(plain: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return those of the warnings that cannot be derived from other records."""
     warnings = plain.get("warnings")
-    kinds = {WarningKind.GEOMETRY.value, WarningKind.CLOCKS.value}
+    kinds = {WarningKind.GEOMETRY.value, WarningKind.CLOCKS.value, WarningKind.TABLES.value}
     return [
         {"kind": each["kind"], "text": str(each.get("text"))}
         for each in (warnings if isinstance(warnings, list) else [])

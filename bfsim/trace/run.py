@@ -78,6 +78,7 @@ class WarningKind(StrEnum):
 
     GEOMETRY = "geometry"
     CLOCKS = "clocks"
+    TABLES = "tables"
     MISSED = "missed frames"
     LOST = "lost"
 
