@@ -42,6 +42,10 @@ def pair_of_topics(name: str, found: dict[str, Topic], topics: tuple[str, str] |
                 f"{name}: `--topics LEFT RIGHT` must name two image topics, of {_listed(found)}{of_one}"
             )
         topics = pairs[0]
+    if topics[0] == topics[1]:
+        raise RecordingError(
+            f"{name}: `--topics` must name those of two cameras, not {cut(topics[0])} twice; `--mono` takes one camera for both sides"
+        )
     return tuple(_picture_topic(name, found, each) for each in topics)
 
 

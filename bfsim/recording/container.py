@@ -64,6 +64,10 @@ class McapContainer:
             raise RecordingError(
                 f"{self.path}: recording must be a readable file, not a folder; `bfsim record import` makes one of a folder of pictures"
             )
+        if self.path.is_fifo():  # one that nobody writes to would be waited for
+            raise RecordingError(
+                f"{self.path}: recording must be a file that can be read from any place, not a pipe; save it under a name first"
+            )
         try:
             self._stream: IO[bytes] = self.path.open("rb")
         except OSError as error:

@@ -41,15 +41,7 @@ def check_call(
         raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
     if side_by_side and mono:
         raise RecordingError("a recording must be made with `--side-by-side` or `--mono`, not both")
-    if is_bag and len(names) > 1:
-        raise RecordingError(f"sources must be one bag with the topics of both cameras, not {len(names)}")
-    wanted = 1 if side_by_side or mono or is_bag else 2
-    if len(names) != wanted:
-        raise RecordingError(
-            f"sources must be {wanted}, not {len(names)}: two (left, right), "
-            "or one with `--side-by-side` or `--mono`, or a bag of ROS; the pictures of a camera are a folder, or a pattern in "
-            f"quotes, such as {_both_in(names[0]) or _PATTERN}"
-        )
+    _check_sources(names, is_bag=is_bag, is_single=side_by_side or mono)
     if resize is not None and crop is not None:
         raise RecordingError("pictures must be fitted with `--resize` or `--crop`, not both")
     for option, wanted_size in (("--resize", resize), ("--crop", crop)):
@@ -84,6 +76,34 @@ def check_options(
         raise RecordingError(
             f"{name}: `--bits` must go with {', '.join(DEEP_FORMATS)}, whose pixels may have 16"
         )
+
+
+def _check_sources(names: list[str], *, is_bag: bool, is_single: bool) -> None:
+    """Raise RecordingError unless there are as many sources as cameras, each a file or folder of its own."""
+    if is_bag and len(names) > 1:
+        raise RecordingError(f"sources must be one bag with the topics of both cameras, not {len(names)}")
+    wanted = 1 if is_single or is_bag else 2
+    if len(names) != wanted:
+        raise RecordingError(
+            f"sources must be {wanted}, not {len(names)}: two (left, right), "
+            "or one with `--side-by-side` or `--mono`, or a bag of ROS; the pictures of a camera are a folder, or a pattern in "
+            f"quotes, such as {_both_in(names[0]) or _PATTERN}"
+        )
+    for name in names:
+        if Path(name).is_fifo():
+            raise RecordingError(
+                f"{name}: source must be a file, which is read more than once, not a pipe; save it under a name first"
+            )
+    if wanted == 2 and _is_one(*names):
+        raise RecordingError(
+            f"{names[0]}: sources must be of two cameras, left and right, not one twice; one camera alone is imported with `--mono`"
+        )
+
+
+def _is_one(left: str, right: str) -> bool:
+    """Whether two names are of the same file, folder or pattern."""
+    paths = Path(left), Path(right)
+    return left == right or (all(each.exists() for each in paths) and paths[0].samefile(paths[1]))
 
 
 def _is_of(source: str, file: Path) -> bool:

@@ -28,6 +28,8 @@ from bfsim.recording.writer import RecordingWriter
 LARGEST_TABLE_MB = 256
 """Of a rectification table: 16 bytes a pixel at most."""
 
+SAME_PICTURES = "Warning: both cameras have the same pictures, byte for byte, so that nothing has a depth; `--mono` is for one camera"
+
 Progress = Callable[[int, int | None], None]
 """Called after each stereo frame with the frames done and, where known, the frames there are."""
 
@@ -111,6 +113,7 @@ def import_recording(
     stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
     check = StereoCheck(rig.tables)
     pairs = PicturePairs(opened, side_by_side, resize, crop)
+    is_one_camera = not is_single
     with RecordingWriter(
         output,
         width=picture_size[0],
@@ -123,6 +126,7 @@ def import_recording(
             stamps_ns = stamps.of(index, writer.frame_count)
             coded = left.to_uyvy(), right.to_uyvy()
             check.look_at(*coded)
+            is_one_camera = is_one_camera and np.array_equal(*coded)
             writer.add(*coded, *stamps_ns)
             if progress is not None:
                 progress(index + 1, count)
@@ -143,6 +147,7 @@ def import_recording(
             *(note for source in opened for note in source.notes if fps is None),
             *rig.notes,
             *(f"Warning: {each}" for each in check.warnings),
+            *((SAME_PICTURES,) if is_one_camera else ()),
         ),
     )
 

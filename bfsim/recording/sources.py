@@ -33,9 +33,11 @@ _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ".i420": "i420", ".yuv": "i420", ".yuv420": "i420",
     ".nv12": "nv12", ".grey": "grey", ".gray": "grey", ".y8": "grey",
     ".y4m": "y4m",
-    ".apng": "video", ".avi": "video", ".gif": "video", ".m4v": "video", ".mjpeg": "video", ".mjpg": "video", ".mkv": "video", ".mov": "video",
-    ".mp4": "video", ".mpg": "video", ".mpeg": "video", ".ogv": "video", ".ts": "video", ".webm": "video", ".wmv": "video",
     ".bag": "rosbag", ".db3": "rosbag", ".mcap": "rosbag",
+    **dict.fromkeys((
+        ".264", ".265", ".3gp", ".apng", ".asf", ".avi", ".flv", ".gif", ".h264", ".h265", ".hevc", ".m2ts", ".m2v", ".m4v", ".mjpeg",
+        ".mjpg", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".ogv", ".ts", ".webm", ".wmv",
+    ), "video"),
 }  # fmt: skip
 
 

@@ -100,6 +100,8 @@ def test_topics_that_have_no_pictures_are_refused(kind: str, tmp_path: Path) -> 
             imported(path, topics=(topic, RIGHT))
     with pytest.raises(RecordingError, match="`--topics` must name the one topic twice"):
         imported(path, topics=(LEFT, RIGHT), mono=True)
+    with pytest.raises(RecordingError, match=f"must name those of two cameras, not {LEFT} twice; `--mono`"):
+        imported(path, topics=(LEFT, LEFT))
     with pytest.raises(RecordingError, match="`--topics` must name the camera's topic, twice, of /"):
         imported(path, mono=True)
 
@@ -117,7 +119,7 @@ def test_options_that_do_not_go_with_it_are_refused(
     """And the other way round."""
     ros = Ros("ros1")
     path = ros.write(tmp_path, grey_pair(ros, range(2)))
-    sources = [path] if "fps" in how else [path, path]
+    sources = [path] if "fps" in how else [path, tmp_path]
     with pytest.raises(RecordingError, match=problem):
         import_recording(sources, tmp_path / "a.mcap", topics=(LEFT, RIGHT), **how)
     with pytest.raises(

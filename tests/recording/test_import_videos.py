@@ -13,6 +13,7 @@ import pytest
 
 from bfsim.errors import RecordingError
 from bfsim.recording.importer import import_recording
+from bfsim.recording.sources import guess_format
 from tests.recording.pictures import animation, frames_of, noise
 
 
@@ -126,6 +127,12 @@ def test_pictures_of_a_video_come_when_they_came(
     even = import_recording([tmp_path / "a.mkv"], tmp_path / "even.mcap", mono=True, fps=10)
     assert (even.fps, even.notes) == (10, ())
     assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "even.mcap")] == [0, 100, 200, 300]
+
+
+@pytest.mark.parametrize("name", ["cam.h264", "cam.265", "CAM.HEVC", "cam.m2v", "phone.3gp", "handycam.MTS"])
+def test_videos_of_cameras_are_told_by_their_names(name: str) -> None:
+    """Those of a Raspberry Pi, which are codec alone, needed `--format video`."""
+    assert guess_format(name) == "video"
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.apng"])

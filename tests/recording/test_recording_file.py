@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import tracemalloc
 from pathlib import Path
 
@@ -208,6 +209,13 @@ def test_not_an_mcap(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "x.mcap").write_bytes(content)
     with pytest.raises(RecordingError, match=message):
         RecordingReader(tmp_path / "x.mcap")
+
+
+def test_a_pipe_is_told_as_one(tmp_path: Path) -> None:
+    """It could only be read from its begin to its end; one that nobody writes to is not waited for."""
+    os.mkfifo(tmp_path / "a.mcap")
+    with pytest.raises(RecordingError, match=r"a\.mcap: recording must be a file .*, not a pipe; save it"):
+        RecordingReader(tmp_path / "a.mcap")
 
 
 def test_missing_file(tmp_path: Path) -> None:

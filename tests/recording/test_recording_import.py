@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -286,6 +287,7 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Image.fromarray(np.zeros((4, 8), np.float32)).save("floats.tiff")
     Path("short.uyvy").write_bytes(bytes(100))
     Path("none.uyvy").touch()
+    os.mkfifo("pipe.uyvy")
     Path("frames.raw").write_bytes(bytes(64))
     head = b"YUV4MPEG2 W8 H4 F25:1 C420\n"
     one = b"FRAME\n" + bytes(48)
@@ -373,6 +375,14 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["other.y4m"], {"mono": True}, r"header line must end within 1024 bytes \(frame 0, byte 0\)"),
         (["two"], {}, "sources must be 2, not 1: two"),
         (["two", "two", "two"], {}, 'sources must be 2, not 3: .*, or a pattern in quotes, such as "left'),
+        (["two", "two"], {}, "two: sources must be of two cameras, .* not one twice; .* `--mono`"),
+        (["two", "sides/../two"], {}, "sources must be of two cameras"),
+        (["two/*.png", "two/*.png"], {}, "sources must be of two cameras"),
+        (
+            ["pipe.uyvy"],
+            {"mono": True, "size": (8, 4)},
+            r"pipe\.uyvy: source must be a file, .* not a pipe; save",
+        ),
         (["two", "two"], {"mono": True}, "sources must be 1, not 2"),
         (["two"], {"mono": True, "side_by_side": True}, "not both"),
         (["two"], {"mono": True, "fps": 0}, "frame rate must be 0.000001 to .* not 0"),

@@ -27,6 +27,8 @@ from bfsim.report.check.update import write_cases
         ("latency <= -1 ms", "after <= must come a number that is not negative"),
         ("frame_rate >= 15 fps", "the unit of frame_rate must be Hz, not 'fps'"),
         ("framerate >= 15 Hz", "the unit of the stage framerate must be cycles or s or ms or us, not 'Hz'; what is no stage is called frame_rate"),
+        ("latency <= 1e999 ms", "after <= must come a number written out, such as 12_000 or 0.25"),
+        ("latency <= 1,5 ms", "after <= must come a number written out"),
         ("latency <= 200", "the unit of latency must be cycles or s or ms or us, not ''"),
         ('"Edge detection".max <= 80 sec', "the unit of the stage Edge detection must be cycles or s or ms or us, not 'sec'"),
         ("memory.L2 <= 100 kB", "the unit of memory.L2 must be B or KB or MB or %, not 'kB'"),

@@ -53,6 +53,8 @@ MS_DIGITS = 6
 _PART = re.compile(r'\s*(?:"([^"\n]*)"|([\w-]+))\s*')
 _COMPARISON = re.compile(r"\s*(<=|>=|==)\s*")
 _NUMBER = re.compile(r"(-?\d[\d_]*(?:\.\d+)?)\s*")
+_NOT_WRITTEN_OUT = re.compile(r"[.,]|[eE][+-]?\d")
+"""Behind a number: an exponent, or what is no unit."""
 _COUNT = r"-?\d[\d_]*(?:\*[1-9]\d{0,6})?"
 _COUNTS = re.compile(rf"{_COUNT}(?:\s+{_COUNT})*\s*")
 _TIMES = re.compile(r"\*(\d+)")
@@ -123,6 +125,13 @@ def parse_requirement(text: str, where: str) -> Requirement:
         if not number:
             _fail(wanted, text, at, where)
         numbers, at = (Fraction(number[1].replace("_", "")),), number.end()
+        if _NOT_WRITTEN_OUT.match(text, number.end(1)):
+            _fail(
+                f"after {comparison} must come a number written out, such as 12_000 or 0.25",
+                text,
+                begin,
+                where,
+            )
         named = text[at:].strip()
         if named not in UNITS[unit]:
             known = " or ".join(each or "none" for each in UNITS[unit])
