@@ -32,8 +32,11 @@ load was done, the stamp of the next fetch of its code, and whether it loads a w
 def load_ahead(state: State, until: int) -> bool:
     """Make loads of the cores until one of them does something else; return whether there were any.
 
-    Until tick `until` no DMA can want the port. The last access of a call is left, and so is one before something else.
+    Until tick `until` no DMA can want the port. The last access of a call is left, and so is one before something else. Beside a core that
+    spins on a lock none is made: `access_ahead` plays its tries, too.
     """
+    if state[w.JOBS_AT + w.SPIN] or state[w.JOBS_AT + w.JOB_WORDS + w.SPIN]:
+        return False
     one, other = progress_of(state, A), progress_of(state, B)
     if not (one[LOADS] or other[LOADS]):
         return False
