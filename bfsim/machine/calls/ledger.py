@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
-from bfsim.kernel.native import native_entry, words_at
+from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
@@ -76,6 +76,16 @@ def charge_events(charges_at: Any, count: int, now_at: Any, before_at: Any, cost
         costs[row + INTERLOCKS] += events * charges[OF_INTERLOCKS * count + number]
 
 
+@native
+def has_counted(on_bus: Any, row: int, conflicts: int, before: Any, first: int) -> bool:
+    """Whether a site has stalled, or filled lines, since the last time: its row of the bus and its conflicts beside the counts of `before`."""
+    differs = conflicts ^ before[first + CONFLICTS]
+    for reason in range(w.FILLS):
+        differs |= on_bus[row + reason] ^ before[first + reason]
+    differs |= on_bus[row + w.FILLS] ^ before[first + FILLS]
+    return bool(differs)
+
+
 @native_entry(
     "int64", "int64*", "int64", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*"
 )
@@ -99,15 +109,15 @@ def charge_sites(
     on_bus, conflicts, before = words_at(on_bus_at), words_at(conflicts_at), words_at(before_at)
     places, amounts, found = words_at(places_at), words_at(amounts_at), 0
     for site in range(w.NO_SITE + 1, count):  # semaphores and locks are no kernel's
+        row, first = site * w.SITE_WORDS, site * (FILLS + 1)
+        if not has_counted(on_bus, row, conflicts[site], before, first):
+            continue  # most sites stall nothing in a frame
         for column in range(FILLS + 1):
-            now = conflicts[site]
-            if column != CONFLICTS:
-                now = on_bus[site * w.SITE_WORDS + min(column, w.FILLS)]
-            place = site * (FILLS + 1) + column
-            amount = now - before[place]
+            now = conflicts[site] if column == CONFLICTS else on_bus[row + min(column, w.FILLS)]
+            amount = now - before[first + column]
             if amount:
-                before[place] = now
-                places[found], amounts[found] = place, amount
+                before[first + column] = now
+                places[found], amounts[found] = first + column, amount
                 found += 1
                 if column < FILLS:
                     costs[owners[site] * COLUMNS + columns[column]] += amount
