@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from bfsim.kernel import Kernel
 from bfsim.kernel.c import CProgram, c_program, in_python
 from bfsim.kernel.types import ArrayType, FloatType
 from tests.kernel import c_kernels
-from tests.kernel.host_c import call, compiled, copies, exported, needs_compiler
+from tests.kernel.host_c import COMPILER, call, compiled, copies, exported, needs_compiler
 from tests.kernel.modules import import_text
 from tests.kernel.plain import arrays_of
 from tests.kernel.programs import ARGUMENTS, programs
@@ -171,3 +172,26 @@ def test_kernels_of_one_name_in_two_files_are_told_apart(tmp_path: Path) -> None
 def test_a_name_of_the_c_library_is_left_to_it() -> None:
     """[C99 7.1.3] A program that defines `free` has no other."""
     assert list(c_program([c_kernels.free.function]).names.values()) == ["free_"]
+
+
+GNU = ("y1", "gamma", "random", "select", "uint", "drem")
+"""What the headers of the library declare beyond C99."""
+GNU_MACROS = ("unix", "linux", "M_PI", "NAN", "RAND_MAX", "signgam")
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", GNU)
+def test_what_headers_declare_beyond_c99_is_left_to_them(name: str, tmp_path: Path) -> None:
+    """GCC compiles kernels in its GNU mode, in which more is declared: a kernel `y1` would be a Bessel function with other arguments."""
+    text = (
+        "from bfsim.api import i32, kernel\n\n\n@kernel\ndef NAME(MACRO: i32) -> i32:\n    return 2 * MACRO\n"
+    )
+    names = zip(("NAME", "MACRO"), (name, GNU_MACROS[GNU.index(name)]), strict=True)
+    for word, own in names:
+        text = text.replace(word, own)
+    program = exported([getattr(import_text(text, tmp_path, "own"), name)], tmp_path)
+    sources = [str(tmp_path / each) for each in program.sources]
+    for standard in ("-std=c99", "-std=gnu99"):
+        command = [COMPILER or "cc", standard, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *sources]
+        done = subprocess.run(command, check=False, capture_output=True, text=True)
+        assert not done.returncode, done.stderr

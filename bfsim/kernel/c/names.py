@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from bfsim.kernel.c.headers import MACROS
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, Value
 
@@ -85,7 +86,8 @@ def c_type(kind: Value) -> str:
 
 def is_free(name: str) -> bool:
     """Whether C and its headers leave a name to the program; names with a leading underscore are the compiler's."""
-    return name not in RESERVED and not name.startswith("_") and not TYPE_NAME.fullmatch(name)
+    taken = name in RESERVED or name in MACROS or name.startswith("_") or TYPE_NAME.fullmatch(name)
+    return not taken
 
 
 def free_name(wanted: str, taken: Iterable[str] = ()) -> str:

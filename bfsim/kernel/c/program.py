@@ -12,6 +12,7 @@ from pathlib import PurePath
 from bfsim.kernel import tree
 from bfsim.kernel.c.comments import c_comment
 from bfsim.kernel.c.expressions import number
+from bfsim.kernel.c.headers import DECLARED
 from bfsim.kernel.c.intrinsics import INTRINSICS, intrinsics_header, intrinsics_in, names_in_header
 from bfsim.kernel.c.library import LIBRARY
 from bfsim.kernel.c.names import WORD, free_name, is_free
@@ -94,7 +95,7 @@ def _names(functions: Iterable[Function], static: frozenset[Function]) -> dict[F
         shared = many[each.name] > 1 and each not in static
         wanted = f"{_stem(each.file)}_{each.name}" if shared else each.name
         clashing = {name for other, name in found.items() if other.file == each.file or other not in static}
-        found[each] = free_name(wanted, clashing | LIBRARY | reserved)
+        found[each] = free_name(wanted, clashing | LIBRARY | DECLARED | reserved)
     return found
 
 
