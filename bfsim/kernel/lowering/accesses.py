@@ -106,7 +106,7 @@ class Accesses(Calls):
         """Compute the counters that a pointer stands for; it has been stepped by then, so each iteration keeps what it was."""
         for each in self.context.counters.eliminated.values():
             variable = each.variable
-            if label == variable.loop.header:
+            if label == variable.loop.header and not each.is_stepped:
                 self.code.add(
                     label,
                     MachineInstruction(Op.MOVE, variable.line, None, POINTER, ((variable.name, POINTER),)),
@@ -115,7 +115,7 @@ class Accesses(Calls):
                 terms = ((variable.name, POINTER), (self.context.name(variable.root), POINTER))
                 step = MachineInstruction(Op.ALU, variable.line, each.name, POINTER, terms)
                 self.code.add(label, step)
-                if not each.prepared:
+                if each.sums > 1:
                     self.code.add(label, replace(step, uses=((each.name, POINTER),)))
 
     def pointers(self) -> None:
@@ -143,7 +143,10 @@ class Accesses(Calls):
                 uses = ((variable.name, POINTER),) + (
                     ((variable.stride, POINTER),) if variable.stride else ()
                 )
-                kept = any(each.variable is variable for each in self.context.counters.eliminated.values())
+                kept = any(
+                    each.variable is variable and not each.is_stepped
+                    for each in self.context.counters.eliminated.values()
+                )
                 self.code.add(
                     variable.loop.header if kept else latch,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, uses),

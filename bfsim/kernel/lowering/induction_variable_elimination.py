@@ -14,19 +14,22 @@ from dataclasses import dataclass
 from bfsim.kernel.ir_text import Instruction, each_arm, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
+from bfsim.kernel.lowering.pointer_differences import Choice, wishes_of
 from bfsim.kernel.lowering.preheaders import preheader_of
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
 
 @dataclass(frozen=True, slots=True)
 class EliminatedCounter:
-    """A counter that is computed from the pointer of `variable`, in the blocks `blocks`."""
+    """A counter, or a sum of one, that is computed from the pointer of `variable`, in the blocks `blocks`."""
 
     counter: str
     variable: InductionVariable
     blocks: frozenset[str]
-    prepared: bool
-    """Whether what the pointer differs by is computed before the loop."""
+    sums: int
+    """Operations: one where what the pointer differs by is computed before the loop."""
+    is_stepped: bool = False
+    """Whether the pointer has been stepped when it is wanted."""
 
     @property
     def name(self) -> str:
@@ -42,11 +45,12 @@ def eliminated_counters(
     frequency: Mapping[str, float],
     *,
     prepares: bool,
+    weighs: bool,
 ) -> dict[str, EliminatedCounter]:
     """Return such counters of the `counted` loops (by header): of bytes, so that the distance is the index.
 
     `frequency`: how often each block runs; empty where that is not asked. `prepares`: whether differences to what is computed before the
-    loop count.
+    loop count. `weighs`: whether costs are compared where that is known to be right.
     """
     found: dict[str, EliminatedCounter] = {}
     for variable in variables.all:
@@ -59,6 +63,11 @@ def eliminated_counters(
         for each in flow.blocks[loop.header].instructions:
             name = each.result or ""
             if each.opcode != "phi" or name in found or affine.get(name) != 1:
+                continue
+            wishes = wishes_of(flow, evolution, loop, name) if weighs else None
+            if wishes and (len(steady) == 1 or not wishes.has_counter):
+                choice = Choice(flow, evolution, variable, wishes)
+                found |= _differences(choice) if choice.spares else {}
                 continue
             start = evolution.first(name, loop) or ""
             prepared = (
@@ -78,8 +87,18 @@ def eliminated_counters(
                     for label in blocks
                 )
             ):
-                found[name] = EliminatedCounter(name, variable, blocks, prepared)
+                found[name] = EliminatedCounter(name, variable, blocks, 1 if prepared else 2)
     return found
+
+
+def _differences(choice: Choice) -> dict[str, EliminatedCounter]:
+    counter = choice.wishes.counter
+    return {
+        each.name: EliminatedCounter(
+            each.name, choice.variable, each.blocks, choice.sums(each), each.name != counter
+        )
+        for each in choice.wishes.all
+    }
 
 
 def _wanted(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter: str) -> Iterator[str]:

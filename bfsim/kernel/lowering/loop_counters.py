@@ -41,6 +41,7 @@ class LoopCounters:
                 self.counted,
                 frequency if profile.applies(Rule.FREQUENT_COUNTERS) else {},
                 prepares=profile.applies(Rule.PREPARED_DIFFERENCES),
+                weighs=profile.applies(Rule.POINTER_DIFFERENCES),
             )
             if profile.applies(Rule.ELIMINATED_COUNTERS)
             else {}

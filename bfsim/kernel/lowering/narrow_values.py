@@ -168,7 +168,9 @@ class NarrowValues:
 
     def _is_stepped_between(self, load: Instruction, variable: InductionVariable | None) -> bool:
         """Whether a pointer that a counter is computed from is stepped between a load and the extension [modified_between_p in combine.cc]."""
-        kept = any(each.variable is variable for each in self.counters.eliminated.values())
+        kept = any(
+            each.variable is variable and not each.is_stepped for each in self.counters.eliminated.values()
+        )
         wide = any(user.opcode in ("zext", "sext") for user in self.folding.users(load.result or ""))
         return (
             self.profile.applies(Rule.STEPPED_BETWEEN)
