@@ -5,7 +5,7 @@ Arithmetic moves freely, for this is about cost alone; loads have moved already 
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.value_numbers import ValueNumbers
 
@@ -63,7 +63,11 @@ class InvariantCodeMotion:
         for loop in self.flow.loops_of(label):
             if not all(self.is_invariant(operand, loop) for operand in each.operands):
                 break
-            if each.is_division:
+            if each.is_division and not self._divides_always(each, label, loop):
                 break
             place = self.flow.entering(loop)
         return place
+
+    def _divides_always(self, each: Instruction, label: str, loop: Loop) -> bool:
+        """Whether a division cannot fail before `loop` that does not fail in it [movement_possibility in tree-ssa-loop-im.cc of GCC 12]."""
+        return is_number(each.operands[1]) or label in self.flow.dominators[loop.latch]

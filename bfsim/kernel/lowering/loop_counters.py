@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.induction_variable_elimination import eliminated_counters
@@ -54,13 +55,17 @@ class LoopCounters:
             each.is_call
             or each.opcode == "switch"
             or each.is_soft_float
-            or (each.is_division and self.divisions.divides_by_call(each))
+            or (each.is_division and self._is_inside(each, loop) and self.divisions.divides_by_call(each))
             for each in inside
         ) or not self.calling.isdisjoint(loop.blocks)
         iterations = self.evolution.iterations(loop)
         many = iterations is None or iterations > FEWEST_ITERATIONS
         counted = self.evolution.is_counted(loop) and not self.endless_loops.may_be(loop)
         return not library and many and counted and (iterations is not None or self._steps_by_power(loop))
+
+    def _is_inside(self, each: Instruction, loop: Loop) -> bool:
+        """Whether a value is computed in each iteration, and not before the loop."""
+        return self.evolution.code_motion.of[each.result or ""] in loop.blocks
 
     def _steps_by_power(self, loop: Loop) -> bool:
         """Whether the number of iterations takes a shift to find, not a division ["Costs of niter computation too high" there]."""
