@@ -97,10 +97,26 @@ class Accesses(Calls):
         """An address that does not walk: base plus scaled index; constant offsets belong to the access."""
         base, index = each.operands[0], each.operands[-1]
         if not index.startswith("%"):
+            self._field(each)
             return
         nbytes = pointee_nbytes(each)
         op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
         self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
+
+    def _field(self, each: Instruction) -> None:
+        """The address of a field, where that is not an offset in the access."""
+        fields, name = self.context.fields, each.result or ""
+        if fields is None or (name not in fields.own and name not in fields.first):
+            return
+        record = (self.context.base(each.operands[0]), POINTER)
+        if name in fields.copies:
+            self.append(Op.MOVE, each, name, POINTER, record)
+        if name in fields.own:
+            self.append(Op.ALU, each, name, POINTER, record)
+            self.append(Op.ALU, each, name, POINTER, (name, POINTER))
+        else:
+            self.append(Op.ALU, each, None, POINTER, record)
+            self.append(Op.ADD_SHIFT, each, None, POINTER, record)
 
     def counters(self, label: str) -> None:
         """Compute the counters that a pointer stands for; it has been stepped by then, so each iteration keeps what it was."""

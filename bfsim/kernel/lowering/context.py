@@ -7,6 +7,7 @@ from functools import cached_property
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, each_arm, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.demanded_values import DemandedValues
+from bfsim.kernel.lowering.field_addresses import FieldAddresses
 from bfsim.kernel.lowering.folding import Folding
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.if_conversion import ConvertedIf, IfConversion
@@ -54,6 +55,8 @@ class Context:
         self.induction_variables = InductionVariables(
             self.flow, self.evolution, self.likelihood.frequency, profile
         )
+        has_fields = profile.applies(Rule.FIELD_ADDRESSES)
+        self.fields = FieldAddresses(self.flow, self.induction_variables) if has_fields else None
         counts_bits = profile.applies(Rule.BIT_COUNTS)
         self.bit_counts = bit_counting_loops(self.flow, self.evolution) if counts_bits else {}
         self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}
@@ -186,9 +189,14 @@ class Context:
         return value
 
     def base(self, pointer: str) -> str:
-        """The pointer behind constant offsets."""
-        each = self.flow.instruction(pointer)
-        while each is not None and each.opcode == "getelementptr" and not each.operands[-1].startswith("%"):
+        """The pointer behind constant offsets, as far as an access has them."""
+        each, own = self.flow.instruction(pointer), self.fields.own if self.fields else ()
+        while (
+            each is not None
+            and each.opcode == "getelementptr"
+            and not each.operands[-1].startswith("%")
+            and pointer not in own
+        ):
             pointer = each.operands[0]
             each = self.flow.instruction(pointer)
         return pointer
