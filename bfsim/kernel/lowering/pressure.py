@@ -3,7 +3,8 @@
 The one to go is used least for the room it takes: the places where there are too many while it is alive [allocno_spill_priority in
 ira-color.cc of GCC 12].
 
-Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move.
+Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move. A sum that is only added to stays
+in an I register: what is added moves to an M register, I0 += M0 [addsi3 in bfin.md].
 """
 
 from __future__ import annotations
@@ -130,6 +131,10 @@ class Pressure:
         for label in self.flow.inside(loop):
             block: list[MachineInstruction] = []
             for instruction in self.code.of[label]:
+                if self._adds_to(web, instruction):
+                    block.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
+                    block.append(instruction)
+                    continue
                 if (
                     any(self.find(name) == web for name, _ in instruction.uses)
                     and instruction.op is not Op.IMM
@@ -145,6 +150,20 @@ class Pressure:
                 if instruction.result and self.find(instruction.result) == web:
                     block.append(MachineInstruction(Op.STORE32, instruction.line, None, RegisterBank.ANY))
             self.code.of[label] = block
+
+    def _adds_to(self, web: str, instruction: MachineInstruction) -> bool:
+        """Whether an instruction adds another value to the sum in `web`."""
+        result = instruction.result or ""
+        made_for = self.flow.instruction(result)
+        return (
+            self.webs.context.profile.applies(Rule.SPILLED_SUMS)
+            and instruction.op is Op.ALU
+            and self.find(result) == web
+            and made_for is not None
+            and made_for.opcode == "add"
+            and sum(self.find(name) == web for name, _ in instruction.uses) == 1
+            and not any(name.startswith("#") for name, _ in instruction.uses)
+        )
 
     def _reloading(self, web: str, instruction: MachineInstruction) -> MachineInstruction:
         """What brings a value, or a constant, to where an instruction uses it."""
