@@ -116,6 +116,19 @@ def test_a_hardware_loop_with_a_branch_in_it() -> None:
     assert loop.bound == "branches"
 
 
+def test_a_switch_is_no_loop_and_no_way_into_its_function() -> None:
+    """Its jump was taken to lead to the function's start, too: that was a loop, and a state machine had -638 calls."""
+    switched = kernel_from(DATA / "switched.o", "switched", x=i32, result=i32)
+    counting = Counting(find_code(switched, load_firmware("tinyphoon"), GCC_O2, None))
+    for x in (0, 2, 2):
+        counting.see(switched, [x])
+    shown = listed(counting.code, counting.events())
+    assert shown.loops == ()
+    assert shown.calls == 3
+    returns = [each.executions for each in shown.instructions if each.text == ("RTS",)]
+    assert returns == [1, 0, 2]
+
+
 def test_instructions_that_are_issued_slot_by_slot_bound_a_loop() -> None:
     """`sobel_row`: 35 instructions a turn and nothing else; the pointers that step on are its chain."""
     [loop] = listed(of("sobel_row")).loops

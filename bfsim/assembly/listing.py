@@ -72,7 +72,13 @@ class _Listing:
 
     @cached_property
     def edges(self) -> list[Edge]:
-        return edges(self.code, [each.start for each in self.blocks])
+        """Ways within it. No case of a switch is the start of its function, to which computed jumps of others may lead."""
+        first, within = self.kernel_code.routine.address, [each.start for each in self.blocks]
+        return [
+            each
+            for each in edges(self.code, within)
+            if each.target != first or not self.code.blocks[each.source].is_computed
+        ]
 
     @cached_property
     def loops(self) -> list[Loop]:

@@ -86,6 +86,11 @@ class Block:
         """Whether it ends with a conditional branch."""
         return bool(self.instructions) and does(self.instructions[-1]) in BRANCHES
 
+    @property
+    def is_computed(self) -> bool:
+        """Whether it ends by going to a computed address."""
+        return bool(self.instructions) and does(self.instructions[-1]) in COMPUTED
+
 
 @dataclass(slots=True)
 class Code:

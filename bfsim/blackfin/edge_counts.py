@@ -32,10 +32,10 @@ def times_gone(code: Code, found: Sequence[Edge], edge: Edge) -> Sum:
 
 
 def _times(code: Code, found: Sequence[Edge], edge: Edge, asked: frozenset[Edge]) -> Sum:
-    if edge in asked:
+    block = code.blocks[edge.source]
+    if edge in asked or (edge.way is Way.JUMPS and block.is_computed):
         return Tally()
     asked |= {edge}
-    block = code.blocks[edge.source]
     if edge.way is Way.REPEATS:
         into = [each for each in found if each.target == edge.target]
         first = next(each for each in into if each.way is Way.REPEATS)
