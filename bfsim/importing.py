@@ -24,7 +24,8 @@ from types import CodeType, ModuleType
 
 from bfsim import store
 
-NEVER_OWN = {*sys.stdlib_module_names, "__main__", "bfsim"}
+NEVER_OWN = {*sys.stdlib_module_names, "__main__", "bfsim", "llvmlite", "numpy", "scipy", "simpy"}
+"""Names of the modules that firmware and bfsim have in common: of a second one of the name, objects would be no objects of the first."""
 
 
 @dataclass(frozen=True, slots=True)

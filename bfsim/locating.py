@@ -42,7 +42,9 @@ def located(place: str, advice: str = "") -> tuple[str, Root]:
     module, root = _in_file(place) if place.endswith(".py") else (place, _root_of(place.partition(".")[0]))
     top = module.partition(".")[0]
     if top in NEVER_OWN:
-        raise FirmwareError(f"{cut(place)} must have another name: {top} is a module of Python or bfsim")
+        raise FirmwareError(
+            f"{cut(place)} must have another name: {top} is a module of Python, of bfsim or of what it needs"
+        )
     if root is None:
         raise FirmwareError(
             f"the package {shown(place)} must be installed or in the folder {Path.cwd()}, but there is none{advice}"

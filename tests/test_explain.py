@@ -118,7 +118,10 @@ def test_the_one_kernel_of_a_file_needs_no_name(tmp_path: Path) -> None:
             "clear_labels",
             r"names 2; write tinyphoon\.\w+\.blob_detection:clear_labels or tinyphoon\..*:clear_labels",
         ),
-        ("bfsim.errors:kernel", "bfsim.errors must have another name: bfsim is a module of Python or bfsim"),
+        (
+            "bfsim.errors:kernel",
+            "bfsim.errors must have another name: bfsim is a module of Python, of bfsim or of",
+        ),
         ("no_such_package:f", "the package 'no_such_package' must be installed"),
     ],
 )

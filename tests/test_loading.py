@@ -202,6 +202,12 @@ def test_what_libraries_import_is_not_the_firmwares(write: Write) -> None:
     assert load_firmware("fw_good:fw").files == ("fw_good.py", "fw_late.py", "fw_library.py")
     with pytest.raises(FirmwareError, match="types.py must have another name: types is a module of Python"):
         load_firmware("types.py:fw")
+    write("numpy.py", GOOD)
+    assert load_firmware("fw_good:fw").files == ("fw_good.py", "fw_late.py", "fw_library.py")
+    with pytest.raises(
+        FirmwareError, match="numpy.py must have another name: numpy is a module of .* what it needs"
+    ):
+        load_firmware("numpy.py:fw")
 
 
 def test_built_in_firmware_can_be_built_on(write: Write) -> None:

@@ -69,6 +69,11 @@ def division(core: Core, frame: Frame) -> Play:
     yield core.run(spin, 1 // frame.index)
 
 
+def no_method(core: Core, frame: Frame) -> Play:
+    """Ask the core for what it has by another name."""
+    yield core.run(first, core.arrray("in_ring"))  # type: ignore[attr-defined]
+
+
 def float_result(core: Core, frame: Frame) -> Play:
     """Publish what is no integer."""
     core.publish(share=0.5)
@@ -149,6 +154,12 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'", 2),
         (gone_line, FirmwareError, "line 0 is not in ring in_ring", 3),
         (division, FirmwareError, "core A: firmware failed with ZeroDivisionError: integer division", 2),
+        (
+            no_method,
+            FirmwareError,
+            "AttributeError: 'Core' object has no attribute 'arrray'; near it are array",
+            2,
+        ),
         (end_of_all, FirmwareError, "core A: firmware failed with SystemExit: 0", 3),
         (float_result, FirmwareError, "core A: the result share must be an integer, not 0.5; ", 2),
     ],
@@ -176,6 +187,20 @@ def test_the_last_work_of_all_must_be_yielded_as_well() -> None:
         core.run(spin, 10)
 
     with pytest.raises(FirmwareError, match=r"core\.run\(\.\.\.\) must be yielded"):
+        run(main)
+
+
+def test_a_frame_after_the_last_is_told_as_that() -> None:
+    """It was an attribute that None has not."""
+
+    def main(core: Core) -> Play:
+        while True:
+            frame = yield from core.next_frame()
+            assert frame.rows
+
+    with pytest.raises(
+        FirmwareError, match=r"AttributeError: .*; core\.next_frame\(\) had given None, .* must end \("
+    ):
         run(main)
 
 

@@ -32,8 +32,6 @@ class Pictures:
     ) -> None:  # fmt: skip
         """`on_finished`: called at a frame's end. `view`: reads out what was seen, if anyone wants to know."""
         self.finished: list[FinishedFrame] = []
-        self.is_over = False
-        """Whether the firmware was told that the recording is over."""
         self._chip = chip
         self._progress = progress
         self._clock = progress.clock
@@ -49,6 +47,11 @@ class Pictures:
         self._results: dict[str, int] = {}
         self._remarks: list[str] = []
 
+    @property
+    def is_over(self) -> bool:
+        """Whether the firmware was told that the recording is over."""
+        return self._tasks.is_over
+
     def next_frame(self) -> Wait:
         """Finish the current frame and wait for the next picture; None when the recording is over."""
         if self._calls.stage != REST:
@@ -63,7 +66,7 @@ class Pictures:
         pair = yield from self._progress.blocked(claim, "the next picture", None)
         self._clock.wake(None, CAMERAS, ended_by=pair.last if pair else None)
         if pair is None:
-            self.is_over = True
+            self._tasks.is_over = True
             return None
         events = self._chip.events  # the interrupt of the PPI's DMA ends the wait
         self._clock.stall(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Generator
 from typing import Any, Protocol
 
@@ -51,6 +52,8 @@ class Tasks:
         """Runs a kernel now, or promises to: what it gives must be yielded next."""
         self.frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
+        self.is_over = False
+        """Whether the firmware was told that the recording is over."""
 
     def _run(self, kernel: Kernel, *arguments: Row | int) -> Work:
         """Run a kernel that machine code does not know, or promise to."""
@@ -157,12 +160,22 @@ class Tasks:
             return self._in_call(error, line)
         if isinstance(error, BfsimError):
             return type(error)(f"{error}{line}")
-        what = f"{type(error).__name__}: {error}"
+        what = f"{type(error).__name__}: {error}{self._advice(error)}"
         if forgotten := self._progress.waits.forgotten():
             return FirmwareError(f"{forgotten} ({what}){line}")
         if self._asked.unclaimed:
             return FirmwareError(f"core {self._name}: {UNYIELDED} ({what}){line}")
         return FirmwareError(f"core {self._name}: firmware failed with {what}{line}")
+
+    def _advice(self, error: Exception | SystemExit) -> str:
+        """Return what the author of the firmware may have overlooked."""
+        if self.is_over:
+            return "; core.next_frame() had given None, for the recording is over, and then the main loop must end"
+        if isinstance(error, AttributeError) and error.name is not None:
+            known = [each for each in dir(error.obj) if not each.startswith("_")]
+            near = difflib.get_close_matches(error.name, known, n=3, cutoff=0.4)
+            return f"; near it are {', '.join(near)}" if near else ""
+        return ""
 
     def _check_waits(self, task: Generator[Any, Any, Any]) -> None:
         """Raise FirmwareError if `task`, which has ended, has forgotten a wait."""
