@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.firmware import circle_references as expected
+from tests.firmware import circle_fit_references as expected
 from tests.tiers import exhaustive
 from tinyphoon.stages.circle_fit import (
     FIT_WORDS,
