@@ -64,17 +64,17 @@ def eliminated_counters(
             name = each.result or ""
             if each.opcode != "phi" or name in found or affine.get(name) != 1:
                 continue
-            wishes = wishes_of(flow, evolution, loop, name) if weighs else None
-            if wishes and (len(steady) == 1 or not wishes.has_counter):
-                choice = Choice(flow, evolution, variable, wishes)
-                found |= _differences(choice) if choice.spares else {}
-                continue
             start = evolution.first(name, loop) or ""
             prepared = (
                 prepares
                 and (affine.keys() != {name, variable.root} or not is_number(start))
                 and not evolution.ends_behind_start(loop)
             )
+            wishes = wishes_of(flow, evolution, loop, name) if weighs else None
+            if wishes and (not wishes.has_counter or (len(steady) == 1 and not prepared)):
+                choice = Choice(flow, evolution, variable, wishes)
+                found |= _differences(choice) if choice.spares else {}
+                continue
             wanted = [_before_inner(flow, loop, label) for label in _wanted(flow, evolution, loop, name)]
             blocks = frozenset(wanted)
             often = sum(frequency.get(label, 0) for label in wanted) / frequency.get(loop.header, 1)
