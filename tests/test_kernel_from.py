@@ -110,6 +110,14 @@ def test_what_is_no_kernel_is_refused(file: str, what: dict, why: str) -> None:
         kernel_from(DATA / file, "sums", **what)
 
 
+def test_data_is_no_kernel() -> None:
+    """Nor is what the assembler of GNU takes for notes, as by VisualDSP++'s `.section program`: it was no instruction at 0."""
+    with pytest.raises(
+        KernelError, match=r"table of returning.o must be code, but is none: code is in .text"
+    ):
+        kernel_from(DATA / "returning.o", "table")
+
+
 def test_a_file_has_a_path() -> None:
     """Anything else was told as what Python cannot divide."""
     with pytest.raises(KernelError, match="the file of sums must be a path, not None"):

@@ -88,6 +88,11 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
     image = link(read_object(octets, path.name), is_whole=False)
     symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
     address = image.address_of(symbol)
+    if not image.is_code(address):
+        raise KernelError(
+            f"{name} of {path.name} must be code, but is none: code is in .text, or in a section that the assembler is told to "
+            'be of code, as by .section fast, "ax"'
+        )
     require_declared(image, path.name, name, parameters, result)
     routine = image.routine_at(address) or Routine(symbol, address, address)
     kernels: dict[str, Function] = {}
