@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Instruction, each_arm, is_number
+from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
-from bfsim.kernel.lowering.pointer_differences import Choice, wishes_of
+from bfsim.kernel.lowering.pointer_differences import Choice, homes_of, wishes_of
 from bfsim.kernel.lowering.preheaders import preheader_of
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
@@ -64,29 +64,15 @@ def eliminated_counters(
             name = each.result or ""
             if each.opcode != "phi" or name in found or affine.get(name) != 1:
                 continue
-            start = evolution.first(name, loop) or ""
-            prepared = (
-                prepares
-                and (affine.keys() != {name, variable.root} or not is_number(start))
-                and not evolution.ends_behind_start(loop)
-            )
+            is_plain = affine.keys() == {name, variable.root} and is_number(evolution.first(name, loop) or "")
             wishes = wishes_of(flow, evolution, loop, name) if weighs else None
-            if wishes and (not wishes.has_counter or (len(steady) == 1 and not prepared)):
+            if wishes and (not wishes.has_counter or (is_plain and len(steady) == 1)):
                 choice = Choice(flow, evolution, variable, wishes)
                 found |= _differences(choice) if choice.spares else {}
                 continue
-            wanted = [_before_inner(flow, loop, label) for label in _wanted(flow, evolution, loop, name)]
-            blocks = frozenset(wanted)
-            often = sum(frequency.get(label, 0) for label in wanted) / frequency.get(loop.header, 1)
-            if (
-                (len(steady) > 1 or prepared)
-                and blocks
-                and often <= 1
-                and all(
-                    flow.innermost(label) is loop and not flow.every_iteration(label, loop)
-                    for label in blocks
-                )
-            ):
+            prepared = prepares and not is_plain and not evolution.ends_behind_start(loop)
+            blocks = _seldom_wanted(flow, evolution, loop, name, frequency)
+            if blocks and (len(steady) > 1 or prepared):
                 found[name] = EliminatedCounter(name, variable, blocks, 1 if prepared else 2)
     return found
 
@@ -101,18 +87,32 @@ def _differences(choice: Choice) -> dict[str, EliminatedCounter]:
     }
 
 
+def _seldom_wanted(
+    flow: ControlFlow,
+    evolution: ScalarEvolution,
+    loop: Loop,
+    counter: str,
+    frequency: Mapping[str, float],
+) -> frozenset[str]:
+    """Blocks that want a counter, at most once in an iteration and none in every one; else none."""
+    wanted = [_before_inner(flow, loop, label) for label in _wanted(flow, evolution, loop, counter)]
+    often = sum(frequency.get(label, 0) for label in wanted) / frequency.get(loop.header, 1)
+    is_seldom = often <= 1 and all(
+        flow.innermost(label) is loop and not flow.every_iteration(label, loop) for label in wanted
+    )
+    return frozenset(wanted) if is_seldom else frozenset()
+
+
 def _wanted(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter: str) -> Iterator[str]:
     """Blocks that want the value of a counter itself: not its step, nor an address, nor the end of the loop."""
     phi = flow.instruction(counter)
     for user in flow.users.get(counter, []):
         if user.opcode == "getelementptr" or user.result == evolution.exit_test(loop):
             continue
-        if user.opcode == "phi":
-            yield from (source for value, source in each_arm(user) if value == counter)
-        elif phi is not None and user.result in phi.operands:
+        if user.opcode != "phi" and phi is not None and user.result in phi.operands:
             yield from _wanted_of_step(flow, evolution, loop, user, phi)
         else:
-            yield _home(flow, user)
+            yield from homes_of(flow, user, counter)
 
 
 def _wanted_of_step(
@@ -135,9 +135,3 @@ def _before_inner(flow: ControlFlow, loop: Loop, label: str) -> str:
         return label
     before = flow.entering(inner[-1])
     return flow.predecessors[before][0] if before == preheader_of(inner[-1]) else before
-
-
-def _home(flow: ControlFlow, user: Instruction) -> str:
-    return next(
-        label for label, block in flow.blocks.items() if any(each is user for each in block.instructions)
-    )

@@ -71,7 +71,7 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
                     seen.add(user.result or "")
                     waiting.append(user.result or "")
                 continue
-            found.setdefault(name, set()).update(_homes(flow, user, name))
+            found.setdefault(name, set()).update(homes_of(flow, user, name))
     blocks = {label for each in found.values() for label in each}
     if not blocks or any(
         flow.innermost(each) is not loop or flow.every_iteration(each, loop) for each in blocks
@@ -116,7 +116,7 @@ def _is_multiple(each: Instruction) -> bool:
     return each.opcode in ("shl", "mul") and is_number(each.operands[1])
 
 
-def _homes(flow: ControlFlow, user: Instruction, name: str) -> Iterator[str]:
+def homes_of(flow: ControlFlow, user: Instruction, name: str) -> Iterator[str]:
     """Blocks in which `user` wants a value: a phi on the ways to it."""
     if user.opcode == "phi":
         yield from (source for value, source in each_arm(user) if value == name)
