@@ -24,11 +24,11 @@ class FieldAddresses:
 
     flow: ControlFlow
     variables: InductionVariables
-    own: set[str] = field(default_factory=set)
+    own: set[str] = field(init=False, default_factory=set)
     """Fields that have an address of their own."""
-    copies: set[str] = field(default_factory=set)
+    copies: set[str] = field(init=False, default_factory=set)
     """Of these, those behind which another one is computed from the same index: a copy of that is added to."""
-    first: set[str] = field(default_factory=set)
+    first: set[str] = field(init=False, default_factory=set)
     """The first fields of records whose index is such a product."""
 
     def __post_init__(self) -> None:

@@ -50,7 +50,8 @@ def eliminated_counters(
     """Return such counters of the `counted` loops (by header): of bytes, so that the distance is the index.
 
     `frequency`: how often each block runs; empty where that is not asked. `prepares`: whether differences to what is computed before the
-    loop count. `weighs`: whether costs are compared where that is known to be right.
+    loop count. `weighs`: whether GCC's costs are added up (`pointer_differences`), for sums
+    of a counter, and for the counter itself beside an access of an array from its start.
     """
     found: dict[str, EliminatedCounter] = {}
     for variable in variables.all:

@@ -32,7 +32,7 @@ class Wanted:
     name: str
     sum: Affine
     is_narrow: bool
-    """Whether it has less bits than a register."""
+    """Whether it has fewer bits than a register."""
     blocks: frozenset[str]
 
 

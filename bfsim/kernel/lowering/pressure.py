@@ -4,7 +4,7 @@ The one to go is used least for the room it takes: the places where there are to
 ira-color.cc of GCC 12].
 
 Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move. A sum that is only added to stays
-in an I register: what is added moves to an M register, I0 += M0 [addsi3 in bfin.md].
+in an I register: what is added moves to an M register, I0 += M0 [addsi3 in bfin.md]. How many of these there are, four, is not asked.
 """
 
 from __future__ import annotations
