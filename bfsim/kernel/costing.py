@@ -24,6 +24,7 @@ from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
 from bfsim.kernel.lowering.charges import Access, merged
 from bfsim.kernel.lowering.hidden_numbers import revealed
+from bfsim.kernel.lowering.kept_bounds import with_kept_bounds
 from bfsim.kernel.lowering.rewrites import rewritten, rewritten_early
 from bfsim.kernel.lowering.rotations import held, released
 from bfsim.kernel.lowering.skipped_iterations import with_skipped_iterations
@@ -91,7 +92,8 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         module = llvm.parse_assembly(unrolling)
         generic.run(("loop_unroll", *CLEANING), module)
         text = str(module)
-    return rewritten(with_rounded_names(text, function), profile)
+    text = rewritten(with_rounded_names(text, function), profile)
+    return with_kept_bounds(text) if profile.applies(Rule.KEPT_BOUNDS) else text
 
 
 def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:

@@ -17,6 +17,8 @@ NEAR_OVERFLOW = (1 << 31) - (1 << 16)
 """Who compares with so large a number asks whether an i32 is about to wrap."""
 COPIED = ".copied"
 """Ends the names of what is copied from the header of a loop to stand in front of it: a label, and values."""
+BACK = ".back"
+"""Ends the label of a block without code in which ways back to the header of a loop come together: the code has none, and goes back from each."""
 OUTER = ".outer"
 """Ends the label that LLVM gives the outer of two loops which it has made of one."""
 

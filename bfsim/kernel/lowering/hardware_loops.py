@@ -7,7 +7,7 @@ from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode
 from bfsim.kernel.lowering.registers import Allocation
-from bfsim.kernel.lowering.traces import COPY_BYTES
+from bfsim.kernel.lowering.traces import Layout
 from bfsim.kernel.rules import Rule
 
 
@@ -44,13 +44,18 @@ class HardwareLoops:
         return bool(self.code.of[end]) or len(before) == 1
 
     def _begins_behind_end(self, loop: Loop) -> bool:
-        """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it.
-
-        A small first block would be copied to where it is entered [copy_bb_p in bb-reorder.cc], and is not moved behind.
-        """
-        size = sum(each.code_bytes for each in self.code.of[loop.header])
+        """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it."""
         is_next = loop.latch in self.flow.blocks[self.flow.ending(loop)].successors
-        return is_next and size > COPY_BYTES and not self._is_one_block(loop)
+        return is_next and not self._is_one_block(loop)
+
+    def reorder(self, layout: Layout) -> None:
+        """Move what is behind the test that counts before the first block of its loop, in the order of the blocks in the code."""
+        for loop in self.flow.loops:
+            begins = loop.latch != self.flow.ending(loop) and not self.flow.is_split(loop)
+            if loop.header in self.all and begins and {loop.latch, loop.header} <= {*layout.order}:
+                layout.order.remove(loop.latch)
+                layout.order.insert(layout.order.index(loop.header), loop.latch)
+                layout.copied = {each for each in layout.copied if each[0] != loop.latch}
 
     def begins_with_copies(self, loop: Loop) -> bool:
         """Whether values are copied from iteration to iteration in a block of its own.

@@ -8,7 +8,7 @@ from dataclasses import replace
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine, is_number
 from bfsim.kernel.isa import COSTS, Op
-from bfsim.kernel.loops import Loop
+from bfsim.kernel.loops import BACK, Loop
 from bfsim.kernel.lowering.block_order import ordered
 from bfsim.kernel.lowering.branch_costs import BranchCosts
 from bfsim.kernel.lowering.bundles import bundled
@@ -57,9 +57,10 @@ class _OptimisedLowering:
         self.blocks = CodeBlocks(self.flow, landing, copies, self.crossed, dict(self._threaded()))
         ways_back = frozenset(self._way_back(loop) for loop in self._counted())
         self.layout = ordered(self.blocks, self.context.likelihood, self._nbytes, ways_back)
-        self.branches = BranchCosts(self.blocks, self.layout, self.context.likelihood, copies)
         copied = frozenset(target for _, target in self.layout.copied)
         self.hardware = HardwareLoops(self.context, self.code, self.allocation, copied)
+        self.hardware.reorder(self.layout)
+        self.branches = BranchCosts(self.blocks, self.layout, self.context.likelihood, copies)
 
     def _nbytes(self, name: str) -> int:
         """Code bytes of a block with its branch or return, or of the copies on an edge."""
@@ -102,7 +103,7 @@ class _OptimisedLowering:
 
     def _is_empty(self, label: str) -> bool:
         block = self.flow.blocks[label]
-        is_latch = any(loop.latch == label for loop in self.flow.loops)
+        is_latch = any(loop.latch == label for loop in self.flow.loops) and not label.endswith(BACK)
         return not self.code.of[label] and len(block.successors) == 1 and not is_latch and (
             label != self.flow.routine.blocks[0].label
         )  # fmt: skip
@@ -209,9 +210,8 @@ class _OptimisedLowering:
                     cost.charges += [charge(Op.ALU, line)] * 3
                 if loop.header in self.hardware.all:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
-                    if self.flow.ending(loop) != loop.latch or (
-                        self.hardware.begins_with_copies(loop)
-                        and self.branches.falls(block.label, loop.header)
+                    if self.hardware.begins_with_copies(loop) and self.branches.falls(
+                        block.label, loop.header
                     ):
                         cost.charges.append(charge(Op.JUMP, line))
 

@@ -52,6 +52,7 @@ class ScalarEvolution:
         self, flow: ControlFlow, code_motion: InvariantCodeMotion, *, evaluates: bool = True
     ) -> None:
         self.flow, self.code_motion, self.evaluates = flow, code_motion, evaluates
+        self.headers = {loop.header for loop in flow.loops}
 
     def affine(self, value: str, depth: int = DEEPEST) -> Affine:
         """Return `value` as a sum; an address in bytes."""
@@ -67,9 +68,7 @@ class ScalarEvolution:
             case "getelementptr":
                 base, index = self.affine(each.operands[0], depth - 1), self.affine(last, depth - 1)
                 return base.plus(index, pointee_nbytes(each))
-            case "add":
-                return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1))
-            case "or" if " disjoint " in each.text:
+            case "add" | "or" if each.opcode == "add" or " disjoint " in each.text:
                 return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1))
             case "sub":
                 return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1), -1)
@@ -79,7 +78,14 @@ class ScalarEvolution:
                 return Affine().plus(self.affine(each.operands[0], depth - 1), 1 << number)
             case "mul" if number is not None:
                 return Affine().plus(self.affine(each.operands[0], depth - 1), number)
+            case "phi" if self.flow.defined[value][0] not in self.headers:
+                return self._merged(each, depth) or alone
         return alone
+
+    def _merged(self, phi: Instruction, depth: int) -> Affine | None:
+        """The sum that comes to a phi on every way, as where the end of a loop was copied."""
+        first, *others = {self.affine(arm, depth - 1) for arm in arms_of(phi).values()}
+        return None if others else first
 
     def increment(self, value: str, loop: Loop) -> Increment | None:
         """Return what `value` gains per iteration of `loop`; None if that changes from iteration to iteration."""
