@@ -9,6 +9,7 @@ from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR
 from bfsim.kernel.ir_text import Instruction, is_number
+from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.folding import Folding
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.induction_variables import InductionVariables
@@ -119,9 +120,10 @@ class DemandedValues:
         label = next(block.label for block in self.flow.routine.blocks if block.terminator is each)
         for loop in self.flow.loops:
             if self.flow.ending(loop) == label and loop.header in self.counters.counted:
-                return tuple(
-                    operand for operand in each.operands if operand != self.evolution.exit_test(loop)
-                )
+                counting = self.evolution.exit_test(loop)
+                test = self.flow.instruction(counting or "")
+                limits = self._limits(test, loop) if test is not None and test.opcode == "icmp" else ()
+                return (*(operand for operand in each.operands if operand != counting), *limits)
         conversion = self.if_conversion.by_label.get(label)
         if conversion is not None and conversion.kind in (
             ConversionKind.ABSOLUTE,
@@ -150,7 +152,15 @@ class DemandedValues:
         moving = [gain for gain in gains.values() if gain is None or gain.moves]
         if len(moving) != 1 or moving[0] is None or moving[0].symbolic:
             return self.folding.compared(each)
-        return tuple(operand for operand, gain in gains.items() if gain and not gain.moves)
+        return self._limits(each, loop)
+
+    def _limits(self, test: Instruction, loop: Loop) -> tuple[str, ...]:
+        """What a counter that ends `loop` starts at and ends at, from which the iterations are counted, or where a pointer ends."""
+        return tuple(
+            operand if self.evolution.code_motion.is_invariant(operand, loop) else first
+            for operand in test.operands[:2]
+            if (first := self.evolution.first(operand, loop) or operand)
+        )
 
     def ends_in(self, value: str, call: Instruction) -> bool:
         """Whether `call` is the only use of a value: then it is computed in the argument's register."""

@@ -38,7 +38,7 @@ class _Operation:
 def _hoisted(flow: ControlFlow, label: str) -> Routine | None:
     """Return the routine with one operation moved before the test of a block, None if there is none to move."""
     ways = set(flow.blocks[label].successors)
-    if len(ways) < 2 or any(flow.predecessors[way] != [label] for way in ways):
+    if len(ways) < 2 or any(label not in flow.dominators[way] or label == way for way in ways):
         return None
     for operation in _operations(flow):
         if _is_hoistable(flow, label, operation):
@@ -70,7 +70,8 @@ def _is_hoistable(flow: ControlFlow, label: str, operation: _Operation) -> bool:
         ):
             return False
     loop = flow.innermost(label)
-    stays = [way for way in flow.blocks[label].successors if loop is None or way in loop.blocks]
+    sides = [way for way in flow.blocks[label].successors if flow.predecessors[way] == [label]]
+    stays = [way for way in sides if loop is None or way in loop.blocks]
     return any(way in operation.homes for way in stays) and label in _anticipating(flow, operation)
 
 

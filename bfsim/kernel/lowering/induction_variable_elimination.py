@@ -65,7 +65,7 @@ def eliminated_counters(
             name = each.result or ""
             if each.opcode != "phi" or name in found or affine.get(name) != 1:
                 continue
-            is_plain = affine.keys() == {name, variable.root} and is_number(evolution.first(name, loop) or "")
+            is_plain = affine.keys() == {name, variable.root}
             wishes = wishes_of(flow, evolution, loop, name) if weighs else None
             if wishes and (not wishes.has_counter or (is_plain and len(steady) == 1)):
                 choice = Choice(flow, evolution, variable, wishes)
