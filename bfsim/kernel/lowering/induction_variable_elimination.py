@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Instruction, is_number
+from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
 from bfsim.kernel.lowering.pointer_differences import Choice, homes_of, wishes_of

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import permutations
 
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow
@@ -20,7 +19,6 @@ MOVABLE = (
 )  # fmt: skip
 CHOOSING = ("@llvm.smin", "@llvm.smax", "@llvm.umin", "@llvm.umax", "@llvm.abs")
 CASTS = ("zext", "sext", "trunc")  # in C, what is tested is extended already
-LEFT = "else"
 RARER, RARER_LOAD = (
     0.75,
     0.82,
@@ -72,17 +70,15 @@ def _is_for(flow: ControlFlow, value: str, way: str) -> bool:
 
 
 def _places(flow: ControlFlow) -> list[tuple[str, str]]:
-    """Return ways to a choice of a value that nothing else needs, on which the source has a block.
-
-    Of `if a > b: s = v` LLVM has the other side's empty block left.
-    """
-    found = []
-    for label in flow.order:
-        for way, other in permutations(dict.fromkeys(flow.blocks[label].successors), 2):
-            is_left = other.startswith(LEFT) and len(flow.blocks[other].instructions) == 1
-            if is_left and way in flow.blocks[other].successors and _is_chosen(flow, label, way):
-                found.append((label, way))
-    return found
+    """Return ways to a choice of a value that nothing else needs, from tests and to where others come as well: they get a block [split_edges_for_insertion]."""
+    return [
+        (label, way)
+        for label in flow.order
+        for way in dict.fromkeys(flow.blocks[label].successors)
+        if len(set(flow.blocks[label].successors)) > 1
+        and len(flow.predecessors[way]) > 1
+        and _is_chosen(flow, label, way)
+    ]
 
 
 def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
