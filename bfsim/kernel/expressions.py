@@ -105,6 +105,9 @@ class Expressions(Names):
                     f"use a value in {low}..{high} or another type",
                 )
             return replace(value, type=wanted)
+        if isinstance(value, tree.Choose) and _is_of_source(value):
+            yes, no = (self._as_type(node, each, wanted) for each in (value.yes, value.no))
+            return replace(value, yes=yes, no=no, type=wanted)
         self.source.refuse(
             node,
             f"{wanted} is needed here, not {value.type}",
@@ -180,11 +183,11 @@ class Expressions(Names):
     def _common_type(self, right_node: ast.expr, left: tree.Expr, right: tree.Expr) -> IntType:
         assert isinstance(left.type, IntType)
         assert isinstance(right.type, IntType)
-        if isinstance(left, tree.Const) and isinstance(right, tree.Const):
+        if _is_of_source(left) and _is_of_source(right):
             return u32 if u32 in (left.type, right.type) else i32
-        if isinstance(left, tree.Const):
+        if _is_of_source(left):
             return right.type
-        if not isinstance(right, tree.Const) and left.type is not right.type:
+        if not _is_of_source(right) and left.type is not right.type:
             self.source.refuse(
                 right_node,
                 f"the two sides are {left.type} and {right.type}",
@@ -309,6 +312,13 @@ class Expressions(Names):
                 f"write {name}[len({name}) - {-index.value}] for the end",
             )
         return index
+
+
+def _is_of_source(value: tree.Expr) -> bool:
+    """Whether a value is an integer of the source, or a choice of two: it takes the type that is wanted."""
+    if isinstance(value, tree.Choose):
+        return _is_of_source(value.yes) and _is_of_source(value.no)
+    return isinstance(value, tree.Const) and isinstance(value.value, int)
 
 
 def _are_ints(*values: tree.Expr) -> bool:

@@ -75,8 +75,16 @@ def named(row: u8[:], x: i32, y: i32) -> i32:
 @kernel
 def bounded(row: u8[:], x: i32, y: i32) -> i32:
     return min(x, y, row[0]) ^ max(row[1], x, y, 40, 50) + max(1, 2, 3)
+
+@kernel
+def chosen(row: u8[:], x: i32, y: i32) -> i32:
+    bits: u32 = 1 if x < 0 else 0
+    for i in range(len(row)):
+        bits = (bits << 1) | (1 if row[i] < 40 else 0)
+        bits += 0 if y < 0 else (3 if x > y else 2)
+    return i32(bits)
 """
-NAMES = ("joined", "compared", "crossings", "named", "bounded")
+NAMES = ("joined", "compared", "crossings", "named", "bounded", "chosen")
 
 
 @pytest.fixture(scope="module")
