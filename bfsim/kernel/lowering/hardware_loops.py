@@ -7,6 +7,7 @@ from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode
 from bfsim.kernel.lowering.registers import Allocation
+from bfsim.kernel.lowering.short_circuits import SECOND
 from bfsim.kernel.lowering.traces import Layout
 from bfsim.kernel.rules import Rule
 
@@ -46,7 +47,8 @@ class HardwareLoops:
     def _begins_behind_end(self, loop: Loop) -> bool:
         """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it."""
         is_next = loop.latch in self.flow.blocks[self.flow.ending(loop)].successors
-        return is_next and not self._is_one_block(loop)
+        is_all = not loop.header.endswith(SECOND)  # of a test with several parts each would have to be moved
+        return is_next and is_all and loop.header not in self.copied and not self._is_one_block(loop)
 
     def reorder(self, layout: Layout) -> None:
         """Move what is behind the test that counts before the first block of its loop, in the order of the blocks in the code."""
