@@ -22,7 +22,7 @@ from bfsim.machine.calls.code_fetches import fetch_lines, fetch_singly
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
-from bfsim.machine.retiming.stretch_writer import pass_call, write_stretch
+from bfsim.machine.retiming.stretch_writer import write_stretch
 from bfsim.machine.retiming.work_check import are_accesses, calls_in
 from bfsim.store import KEPT
 
@@ -46,7 +46,6 @@ ENTRIES = (
     charge_events,
     charge_sites,
     write_stretch,
-    pass_call,
     calls_in,
     are_accesses,
 )

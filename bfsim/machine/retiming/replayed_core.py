@@ -6,6 +6,7 @@ from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
@@ -49,10 +50,10 @@ class ReplayedCore(Core):
         self._kernels = kernels
         self._firsts = np.array(parts.bus.owners.first, np.int64)
         self._firsts_outside = np.where(self._firsts < int(parts.bus.words[w.L2_END]), self._firsts, IN_L1)
-        self._kinds = np.zeros(0, np.int64)  # of calls that were prepared: what running them is to the bus
+        self._know(np.zeros(0, np.int64))
         self._account_names: list[str] = []
         self._copies = np.zeros((0, 3), np.int64)
-        self._known_calls: dict[str, Callable[..., Any]] = {
+        self._known_calls: dict[str, Callable[..., Wait | None]] = {
             "prepare": self._prepare,
             "stage": self._enter,
             "end_frame": lambda: None,
@@ -101,16 +102,24 @@ class ReplayedCore(Core):
         )
         for name, arguments in work.calls:
             yield from self._play_stretches(frame)
-            frame.pass_call(*self._parts.calls.counters_at)
-            yield from self._call(name, arguments)
+            wait = self._known_calls[name](*arguments)
+            if wait is not None:
+                yield from wait
         yield from self._play_stretches(frame)
 
     def _play_stretches(self, frame: StretchWriter) -> Wait:
-        """Play what is done before the next call of firmware; most often that is one stretch."""
+        """Play what is done before the next call of firmware; most often that is one stretch, or nothing."""
         number, clock, stretches = self._parts.number, self._parts.clock, self._bus.stretches
-        while operations := frame.write(self._kinds):
-            yield stretches.play(number, clock.cclk, operations)
-            clock.stretch(stretches.played(number, len(self._account_names)), self._account_names)
+        operations = w.MAX_OPERATIONS
+        while operations == w.MAX_OPERATIONS:
+            operations = frame.write(*self._kinds_at, *self._parts.calls.counters_at)
+            if operations:
+                yield stretches.play(number, clock.cclk, operations)
+                clock.stretch(stretches.played(number, len(self._account_names)), self._account_names)
+
+    def _know(self, kinds: NDArray[np.int64]) -> None:
+        """Keep of each call that is prepared what running it is to the bus; numpy takes longer to find its address than most stretches do."""
+        self._kinds, self._kinds_at = kinds, (kinds.ctypes.data, len(kinds))
 
     def _planned(self, copies: Table) -> Table:
         """Plan copies; return the numbers of their plans, and where they go from and to: rows of what is behind COPY.
@@ -137,11 +146,6 @@ class ReplayedCore(Core):
         return self._parts.rings.streams[stream].plan(*rows).words
 
     # Calls of firmware, by the name that they are noted by
-
-    def _call(self, name: str, arguments: tuple[Any, ...]) -> Wait:
-        again = self._known_calls[name](*arguments)
-        if isinstance(again, Generator):
-            yield from again
 
     def _take_semaphore(self, name: str, turn: int) -> Wait:
         yield from self.wait(name)
@@ -213,7 +217,7 @@ class ReplayedCore(Core):
                 f"{', '.join(dict.fromkeys(moved_out))} must be in L1, for it was when the run was recorded, and of what lies there "
                 "the accesses are not; record a run with this LDF, which can be played where it is in L1, too"
             )
-        self._kinds = np.append(self._kinds, w.RUN if call.stays_in_l1 else w.ACCESS)
+        self._know(np.append(self._kinds, w.RUN if call.stays_in_l1 else w.ACCESS))
 
     def _offset(self, place: Place) -> int:
         return int(self._firsts[place.owner]) + place.first

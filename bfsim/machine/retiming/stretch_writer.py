@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import MutableSequence
 from typing import Any
 
@@ -15,6 +14,7 @@ from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, FrameWork, Table
+from bfsim.machine_code.built_in import built_in
 
 IN_L1 = -1
 """Where an owner begins whose memory is in L1: what accesses it is not in the log."""
@@ -32,19 +32,19 @@ PROBLEMS = {
     ACCESSES, ACCESS,  # the same of accesses,
     EVENTS, EVENT,     # and of rows of events,
     PASSED,            # which are counted up to this call of firmware
-    CALLS, COPIES, ACCOUNTS, COUNTERS,  # how many there are of each so far
+    COPIES, ACCOUNTS,  # how many there are of each so far
     MMR_WRITE, MMR_READ,  # cycles of a core for a register
-) = range(13)  # fmt: skip
-FRAME_WORDS = 13
+) = range(11)  # fmt: skip
+FRAME_WORDS = 11
 
 Words = MutableSequence[int]
 
 
 @native
-def is_there(frame: Words, kind: int, one: int, three: int, four: int) -> bool:
-    """Whether what the numbers of an operation refer to is there."""
+def is_there(frame: Words, kind: int, one: int, three: int, four: int, calls: int) -> bool:
+    """Whether what the numbers of an operation refer to is there, of so many `calls`."""
     if kind == w.ACCESS:
-        return four < frame[CALLS]
+        return four < calls
     if kind == w.COPY:
         return one < frame[COPIES]
     return kind not in (w.SET_UP, w.AWAIT) or three < frame[ACCOUNTS]
@@ -78,21 +78,38 @@ def write_accesses(
     return logged
 
 
-@native_entry("int64", "int64*", "int64", "int64*", "int64*", "uint32*", "int64*", "int64*", "int64*")
+@native
+def pass_call(frame: Words, events: Words, counters: Words, count: int) -> int:
+    """Count the events up to the next call of firmware, and go on behind it; return 0, or NOT_THERE for a counter not among `count`.
+
+    The arrays: the words above, columns of events one after the other, and the core's counters.
+    """
+    rows = frame[EVENTS]
+    while frame[EVENT] < rows and events[frame[EVENT]] == frame[PASSED]:
+        counter = events[rows + frame[EVENT]]
+        if counter >= count:
+            return NOT_THERE
+        counters[counter] += events[2 * rows + frame[EVENT]]
+        frame[EVENT] += 1
+    frame[PASSED] += 1
+    frame[NEXT] += 1
+    return 0
+
+
+@native_entry(
+    "int64", "int64*", "int64", "int64*", "int64*", "uint32*", "int64*", "int64*", "int64*",
+    "int64*", "int64", "int64*", "int64",
+)  # fmt: skip
 def write_stretch(
-    state_at: Any,
-    core: int,
-    frame_at: Any,
-    operations_at: Any,
-    accesses_at: Any,
-    firsts_at: Any,
-    copies_at: Any,
-    kinds_at: Any,
-) -> int:
+    state_at: Any, core: int, frame_at: Any, operations_at: Any, accesses_at: Any, events_at: Any, firsts_at: Any, copies_at: Any,
+    kinds_at: Any, calls: int, counters_at: Any, counters: int,
+) -> int:  # fmt: skip
     """Write the next operations of a frame up to a call of its firmware or its end, or as many as a stretch can have; return how many.
 
-    The arrays: the words above; columns of operations and of accesses one after the other; where the memory of each owner begins or
-    IN_L1; rows of what is behind COPY for each copy; and what running each call is to the bus.
+    Where they are fewer than that it goes on behind the call, up to which the core's kernels have counted their events.
+
+    The arrays: the words above; columns of operations, of accesses and of events one after the other; where the memory of each owner
+    begins or IN_L1; rows of what is behind COPY for each copy; what running each of so many `calls` is to the bus; and the core's counters.
     """
     state, frame, operations, accesses = (
         words_at(state_at),
@@ -108,8 +125,9 @@ def write_stretch(
         kind, one, two = operations[number], operations[rows + number], operations[2 * rows + number]
         three, four = operations[3 * rows + number], operations[4 * rows + number]
         if kind == CALL:
-            break
-        if not is_there(frame, kind, one, three, four):
+            passed = pass_call(frame, words_at(events_at), words_at(counters_at), counters)
+            return passed if passed < 0 else written
+        if not is_there(frame, kind, one, three, four, calls):
             return NOT_THERE
         if kind == w.ACCESS:
             kind, begin = kinds[four], logged
@@ -129,29 +147,6 @@ def write_stretch(
     return written
 
 
-@native_entry("int64", "int64*", "int64*", "int64*")
-def pass_call(frame_at: Any, events_at: Any, counters_at: Any) -> int:
-    """Count the events up to the next call of firmware, and go on behind it; return 0, or NOT_THERE for a counter that is none.
-
-    The arrays: the words above, columns of events one after the other, and the core's counters.
-    """
-    frame, events, counters = words_at(frame_at), words_at(events_at), words_at(counters_at)
-    rows = frame[EVENTS]
-    while frame[EVENT] < rows and events[frame[EVENT]] == frame[PASSED]:
-        counter = events[rows + frame[EVENT]]
-        if counter >= frame[COUNTERS]:
-            return NOT_THERE
-        counters[counter] += events[2 * rows + frame[EVENT]]
-        frame[EVENT] += 1
-    frame[PASSED] += 1
-    frame[NEXT] += 1
-    return 0
-
-
-PASS = ctypes.PYFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3)
-WRITE = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 6)
-
-
 class StretchWriter:
     """Writes the stretches of one frame's `work` into the `state` of a bus, its words, for a core.
 
@@ -166,36 +161,19 @@ class StretchWriter:
         words[[ROWS, ACCESSES, EVENTS]] = len(work.operations), len(work.accesses), len(work.events)
         words[[COPIES, ACCOUNTS]] = len(copies), accounts
         words[[MMR_WRITE, MMR_READ]] = events.mmr_write_cclk, events.mmr_read_cclk
-        self._words: Any = words.data
         tables = (np.ascontiguousarray(each.T) for each in (work.operations, work.accesses, work.events))
         self._kept = words, *tables, firsts, copies
-        frame, operations, accesses, counted, *places = (each.ctypes.data for each in self._kept)
-        self._write, self._pass = WRITE(write_stretch.address()), PASS(pass_call.address())
-        self._stretch = np.asarray(state).ctypes.data, core, frame, operations, accesses, *places
-        self._call = frame, counted
-        self._kinds, self._kinds_at = np.zeros(0, np.int64), 0
+        self._write = built_in(
+            write_stretch.address(), 4, np.asarray(state).ctypes.data, core, *(each.ctypes.data for each in self._kept)
+        )  # fmt: skip
 
-    def write(self, kinds: NDArray[np.int64]) -> int:
-        """Write the next stretch and return how many operations it has, 0 before a call of firmware and at the end.
+    def write(self, kinds_at: int, calls: int, counters_at: int, counters: int) -> int:
+        """Write the next stretch and return how many operations it has: if fewer than it can have, all up to the next call of firmware.
 
-        `kinds`: of each call that is prepared by now, what running it is to the bus. Raises ValueError for what is not there.
+        The addresses of arrays, and how many they have: of each call that is prepared by now, what running it is to the bus; and the
+        core's counters, which count what its kernels have until that call. Raises ValueError for what is not there.
         """
-        if (
-            kinds is not self._kinds
-        ):  # numpy takes longer to find its address than this to write most stretches
-            self._kinds, self._kinds_at, self._words[CALLS] = kinds, kinds.ctypes.data, len(kinds)
-        return _done(self._write(*self._stretch, self._kinds_at))
-
-    def pass_call(self, counters_at: int, counters: int) -> None:
-        """Go on behind a call of firmware: let the core's counters, so many at an address, count what its kernels have until then.
-
-        Raises ValueError where one is not there.
-        """
-        self._words[COUNTERS] = counters
-        _done(self._pass(*self._call, counters_at))
-
-
-def _done(outcome: int) -> int:
-    if outcome < 0:
-        raise ValueError(PROBLEMS[outcome])
-    return outcome
+        written = self._write(kinds_at, calls, counters_at, counters)
+        if written < 0:
+            raise ValueError(PROBLEMS[written])
+        return written
