@@ -65,23 +65,22 @@ def stall(state: State, core: int, done: int, reason: int) -> None:
 
 
 @native
-def next_fetch(state: State, job: int) -> int:
-    """Return the stamp of the next fetch of a core's code, behind that of all accesses if there is none."""
-    if state[job + w.FETCHED] == state[job + w.FETCHES]:
-        return w.NEVER
-    return state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
+def count_fetched(state: State, job: int, fetched: int) -> None:
+    """Note that a core has fetched its code so often in its call; all fetches are spread evenly over that."""
+    state[job + w.FETCHED], fetches = fetched, state[job + w.FETCHES]
+    state[job + w.NEXT_FETCH] = fetched * state[job + w.TOTAL] // fetches if fetched < fetches else w.NEVER
 
 
 @native
 def find_present(state: State, core: int) -> bool:
     """Find what the core accesses next, in its log or in code that it fetches; return whether there is anything.
 
-    Fetches are spread evenly over the call; of a fetch and accesses of its cycle these come first.
+    Of a fetch and accesses of its cycle these come first.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     at = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
     is_logged = state[job + w.ENTRY] < state[job + w.END]
-    stamp = next_fetch(state, job)
+    stamp = state[job + w.NEXT_FETCH]
     if stamp != w.NEVER and (not is_logged or stamp < state[at] >> log.STAMP_BIT):
         site = state[job + w.SITE] = state[job + w.ROUTINE]
         code = state[site_at(core, site) + w.CODE]
@@ -103,7 +102,7 @@ def go_past(state: State, core: int) -> None:
         state[job + w.ENTRY] += 1
         return
     row = site_at(core, state[job + w.SITE])
-    state[job + w.FETCHED] += 1
+    count_fetched(state, job, state[job + w.FETCHED] + 1)
     state[job + w.WORD] += 1
     if state[job + w.WORD] == state[row + w.CODE_WORDS]:
         state[job + w.WORD], state[job + w.ROUTINE] = 0, state[row + w.NEXT_ROUTINE]
@@ -161,12 +160,13 @@ def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: i
     state[job + w.STATE] = w.RUNNING
     state[job + w.BEGIN], state[job + w.TOTAL], state[job + w.STALLED] = begin, cclk, 0
     state[job + w.ENTRY], state[job + w.END] = first, end
-    state[job + w.FETCHES], state[job + w.FETCHED] = 0, 0
+    state[job + w.FETCHES] = 0
     last = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + end - 1
     if first < end and kind_of(state[last]) == log.FETCHES:
         state[job + w.END] -= 1
         state[job + w.FETCHES] = state[last] >> log.STAMP_BIT
         state[job + w.ROUTINE], state[job + w.WORD] = state[last + w.LOG_ENTRIES], 0
+    count_fetched(state, job, 0)
     for reason in range(w.STALLS):
         state[job + w.STALL + reason] = 0
     next_entry(state, core, begin)

@@ -140,8 +140,11 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
 
 
 @native
-def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) -> int:
-    """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE."""
+def serve_dma(state: State, memory: Memory, number: int, at: int, until: int, quiet_until: int) -> int:
+    """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE.
+
+    `quiet_until`: see `others_quiet_until`, and earlier where nothing is done at once.
+    """
     where = w.MASTERS_AT + number
     mode = state[w.TRANSFERS_AT + state[where + w.TRANSFER] * w.TRANSFER_WORDS + w.MODE]
     if mode == w.BOTH:
@@ -152,4 +155,4 @@ def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) ->
         return copy_through_l2_port(state, memory, number, at, until)
     if mode in (w.PACED_IN, w.PACED_OUT):
         return exchange_with_device(state, memory, number, at)
-    return move_run(state, memory, number, at, until)
+    return move_run(state, memory, number, at, until, quiet_until)

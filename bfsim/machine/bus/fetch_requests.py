@@ -8,7 +8,7 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import charge, cycles_until, go_past, next_entry
+from bfsim.machine.bus.core_jobs import charge, count_fetched, cycles_until, go_past, next_entry
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.l2_port import has_turn, hold_l2, read_l2, try_lock
 from bfsim.machine.bus.memory_owners import piece_for
@@ -107,9 +107,9 @@ def fetch_words(state: State, core: int, words: int) -> None:
     count_traffic(state, w.CORE_A + core, owner, False, words * w.FETCH_BYTES)
     if stalled:
         charge(state, core, w.CODE_FETCH, words * stalled)
-    state[job + w.FETCHED] += words
+    stamp = (state[job + w.FETCHED] + words - 1) * state[job + w.TOTAL] // state[job + w.FETCHES]
+    count_fetched(state, job, state[job + w.FETCHED] + words)
     state[job + w.WORD] += words
-    stamp = (state[job + w.FETCHED] - 1) * state[job + w.TOTAL] // state[job + w.FETCHES]
     last = state[job + w.BEGIN] + state[job + w.STALLED] + (stamp + (words - 1) * stalled) * cclk
     state[job + w.STALLED] += words * stalled * cclk
     hold_l2(state, core, last, w.FETCH_BYTES)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import cycles_until, next_fetch
+from bfsim.machine.bus.core_jobs import cycles_until
 from bfsim.machine.bus.core_logs import kind_of, site_at
 from bfsim.machine.bus.fetch_requests import stall_of_word
 from bfsim.machine.bus.l2_port import has_turn, hold_l2
@@ -65,7 +65,7 @@ def load_ahead(state: State, until: int) -> bool:
 def progress_of(state: State, core: int) -> LoadState:
     """Return how far a core is."""
     job = w.JOBS_AT + core * w.JOB_WORDS
-    number, fetches_at = state[job + w.ENTRY], next_fetch(state, job)
+    number, fetches_at = state[job + w.ENTRY], state[job + w.NEXT_FETCH]
     loads = (
         kind_of(state[job + w.PRESENT]) == log.LOAD
         and not state[job + w.STORES]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import charge_site, cycles_until, next_fetch
+from bfsim.machine.bus.core_jobs import charge_site, cycles_until
 from bfsim.machine.bus.core_logs import kind_of
 from bfsim.machine.bus.fetch_requests import stall_of_word
 from bfsim.machine.bus.l2_port import has_turn, hold_l2, try_lock
@@ -137,7 +137,7 @@ def play_words(state: State, core: int, other: int, limit: int) -> None:
         w.MASTERS_AT + w.STORES_A + core,
         w.MASTERS_AT + w.CORE_A + other,
     )
-    began, fetches_at, cclk = state[job + w.BEGIN], next_fetch(state, job), state[w.CCLK]
+    began, fetches_at, cclk = state[job + w.BEGIN], state[job + w.NEXT_FETCH], state[w.CCLK]
     ready = issued = state[job + w.ISSUED_AT]
     stalled, number, waits = state[job + w.STALLED], state[job + w.ENTRY], w.RUNNING
     entry, site = state[job + w.PRESENT], state[job + w.SITE]

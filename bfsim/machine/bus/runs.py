@@ -11,12 +11,29 @@ from bfsim.machine.bus.transfers import after_move, moved, soonest_wake
 
 
 @native
-def alone_until(state: State, until: int) -> int:
-    """Until when a master that asks for nothing just now has the bus to itself: nobody asks for it before, or does anything without it."""
+def others_quiet_until(state: State, until: int) -> int:
+    """Until when nobody but PPIs and memory DMAs asks for any bus, or does anything without one, and no refresh is due."""
     limit = min(until, state[w.NEXT_REFRESH])
-    for master in range(w.MASTERS_AT, w.MASTERS_AT + w.MASTERS):
-        limit = min(limit, state[master + w.READY])
+    for other in range(w.PPI1 + 1, w.MASTERS):
+        if not w.MDMA1_0 <= other <= w.MDMA2_1:
+            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
     return limit
+
+
+@native
+def copies_quiet_until(state: State, until: int) -> int:
+    """Until when none of the memory DMAs asks for its bus."""
+    limit = until
+    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
+        limit = min(limit, state[w.MASTERS_AT + number + w.READY])
+    return limit
+
+
+@native
+def alone_until(state: State, quiet_until: int) -> int:
+    """Until when a master that asks for nothing just now has the bus to itself, the others but PPIs and memory DMAs being quiet until a tick."""
+    left, right = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
+    return copies_quiet_until(state, min(quiet_until, left, right))
 
 
 @native
@@ -71,8 +88,10 @@ def preferred_until(state: State, number: int, until: int, alone: int) -> int:
 
 
 @native
-def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, until: int) -> int:
-    """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between.
+def run_ahead(
+    state: State, number: int, transfer: int, ahead: int, ticks: int, until: int, quiet_until: int
+) -> int:
+    """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between; `quiet_until`: see `others_quiet_until`.
 
     Where nobody else wants the bus the pauses of a memory DMA that reads are part of the run; else a run ends with the first.
     """
@@ -80,7 +99,7 @@ def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, 
     if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
         return 0
     ahead = min(ahead, min(state[transfer + w.FROM_X_LEFT], state[transfer + w.TO_X_LEFT]) - 1)
-    free, alone = state[w.COMMAND_FREE], alone_until(state, until)
+    free, alone = state[w.COMMAND_FREE], alone_until(state, quiet_until)
     room = preferred_until(state, number, until, alone) - free
     if ahead <= 0 or room <= 0:
         return 0
@@ -120,7 +139,7 @@ def take_turn(state: State, master: int, count: int) -> None:
 
 
 @native
-def move_run(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+def move_run(state: State, memory: Memory, number: int, at: int, until: int, quiet_until: int) -> int:
     """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
     master = w.MASTERS_AT + number
     state[master + w.READY] = w.NEVER  # until the end of its run
@@ -134,7 +153,7 @@ def move_run(state: State, memory: Memory, number: int, at: int, until: int) -> 
     if beats > 1:
         through = stream(state, beats - 1, write, offset)
     ahead = hits_ahead(state, offset + step, step)
-    more = run_ahead(state, number, transfer, ahead, beats * state[w.SCLK], until)
+    more = run_ahead(state, number, transfer, ahead, beats * state[w.SCLK], until, quiet_until)
     paused = 0
     if more:
         paused = 0 if write else pause(state, master, more)

@@ -133,10 +133,11 @@ AT_END, AT_ROWS = 1, 2  # what wakes somebody
     PRESENT, SITE,  # the present access, as an entry of the log, and its site,
     IN_TURN,        # and whether it is a fetch of the code below
     FETCHES, FETCHED,  # how often code is fetched that no cache holds, and how often it has been
+    NEXT_FETCH,     # the stamp of the next of these, behind that of all accesses if there is none
     ROUTINE, WORD,  # the site of the routine that is fetched next, and which of its words
-) = range(18)  # fmt: skip
+) = range(19)  # fmt: skip
 IDLE, STARTING, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(5)
-STALL = 18
+STALL = 19
 (
     L2_LATENCY, L2_PORT, PAGE_HIT, PAGE_MISS, PAGE_CONFLICT, REFRESHING, ARBITRATION, STORE_BUFFER, CACHE_FILL, CODE_FETCH,
 ) = range(10)  # fmt: skip

@@ -23,7 +23,7 @@ from bfsim.machine.bus.fetch_requests import fetch_ahead
 from bfsim.machine.bus.l2_loads import load_ahead
 from bfsim.machine.bus.l2_requests import access_ahead
 from bfsim.machine.bus.pacing import arrival
-from bfsim.machine.bus.runs import l2_left_until
+from bfsim.machine.bus.runs import copies_quiet_until, l2_left_until, others_quiet_until
 from bfsim.machine.bus.sdram import hold_up
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.store_buffer import serve_stores
@@ -106,27 +106,15 @@ def serve_with_cameras(state: State, memory: Memory, number: int, at: int, until
 
     Most requests are theirs; this saves looking at everybody each time.
     """
-    limit = min(until, state[w.NEXT_REFRESH])
-    for other in range(w.PPI1 + 1, w.MASTERS):
-        if not w.MDMA1_0 <= other <= w.MDMA2_1:
-            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
-    woken = serve_dma(state, memory, number, at, until)
+    quiet_until = others_quiet_until(state, until)
+    woken = serve_dma(state, memory, number, at, until, quiet_until)
     while woken == w.NONE:
-        take_hits(state, memory, min(limit, first_copy(state)))
-        number, at = first_with_cameras(state, limit)
+        take_hits(state, memory, copies_quiet_until(state, quiet_until))
+        number, at = first_with_cameras(state, quiet_until)
         if number == w.NONE:
             break
-        woken = serve_dma(state, memory, number, at, limit)
+        woken = serve_dma(state, memory, number, at, quiet_until, quiet_until)
     return woken
-
-
-@native
-def first_copy(state: State) -> int:
-    """Return when the first of the memory DMAs asks for its bus."""
-    first = w.NEVER
-    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
-        first = min(first, state[w.MASTERS_AT + number + w.READY])
-    return first
 
 
 @native
@@ -214,7 +202,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
         return serve_with_cameras(state, memory, number, at, until)
     if number >= w.STORES_A:
         return serve_core_or_stores(state, number, at, l2_left_until(state, w.NONE, until))
-    return serve_dma(state, memory, number, at, until)
+    return serve_dma(state, memory, number, at, until, at)
 
 
 @native
