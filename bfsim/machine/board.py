@@ -217,7 +217,7 @@ class Board:
             ),
             SubBanks(chip, self._memories, self._bus.words),
             self._bus.owners,
-            Ledger(partial(self._bus.logs.stalls_at_sites, number)),
+            Ledger(self._bus.logs.stalls_at_sites(number)),
             memory=self._memories.arena,
             stack=self._stack_outside_l1(name),
             own=self._buffers.only_of(name),

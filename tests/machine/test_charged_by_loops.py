@@ -8,8 +8,6 @@ import pytest
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.conflicts import AMONG, BANK, COUNTER, EACH, SITE, charge_conflicts, count_events
 from bfsim.machine.calls.ledger import (
-    CHARGE,
-    CHARGE_SITES,
     CONFLICTS,
     EVENT,
     FILLS,
@@ -106,11 +104,9 @@ def test_costs_have_their_owners(seed: int) -> None:
     np.add.at(expected, (owners[:, np.newaxis], SITE_COLUMNS), since[1][:, :FILLS])
 
     events = (each.ctypes.data for each in (now[0], before[0]))
-    CHARGE(charge_events.address())(charges.ctypes.data, COUNT, *events, costs.ctypes.data)
-    arrays = (
-        each.ctypes.data for each in (SITE_COLUMNS, on_bus, conflicts, before[1], costs, places, amounts)
-    )
-    found = CHARGE_SITES(charge_sites.address())(owners.ctypes.data, SITES, *arrays)
+    built_in(charge_events.address(), 5)(*events, charges.ctypes.data, COUNT, costs.ctypes.data)
+    arrays = (each.ctypes.data for each in (SITE_COLUMNS, on_bus, conflicts, before[1], places, amounts))
+    found = built_in(charge_sites.address(), 9)(*arrays, owners.ctypes.data, SITES, costs.ctypes.data)
     assert (costs == expected).all()
     assert places[:found].tolist() == np.flatnonzero(since[1]).tolist()
     assert amounts[:found].tolist() == since[1][since[1] != 0].tolist()

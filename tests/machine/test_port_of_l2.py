@@ -88,7 +88,7 @@ class Port:
         return {
             "calls": [(each.end, each.stalls) for each in self.calls],
             "words": digest_of(self.bench.bus.words),
-            "sites": [logs.stalls_at_sites(core, SITES).tolist() for core in range(w.CORES)],
+            "sites": [logs.stalls_at_sites(core)[:SITES].tolist() for core in range(w.CORES)],
         }
 
     def _settle(self, stops: Iterable[int]) -> Play:

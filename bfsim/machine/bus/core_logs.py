@@ -79,11 +79,11 @@ class CoreLogs:
             yield from ((first + number * w.FETCH_BYTES, site) for number in range(words))
             site = self._words[row + w.NEXT_ROUTINE]
 
-    def stalls_at_sites(self, core: int, count: int) -> NDArray[np.int64]:
-        """Return what the first `count` sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.
+    def stalls_at_sites(self, core: int) -> NDArray[np.int64]:
+        """Return the table of what the sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.
 
-        The last column counts the lines that were filled.
+        Behind these columns one counts the lines that were filled.
         """
         first = site_at(core, 0)
-        found: NDArray[np.int64] = self._state[first : first + count * w.SITE_WORDS]
-        return found.reshape(count, w.SITE_WORDS)
+        found: NDArray[np.int64] = self._state[first : site_at(core, w.MAX_SITES)]
+        return found.reshape(w.MAX_SITES, w.SITE_WORDS)

@@ -6,7 +6,6 @@ next one.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable, Sequence
 from functools import cache
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
@@ -16,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.native import NativeEntry, native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
+from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason
 
 SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
@@ -56,11 +56,11 @@ EVENT, OWNER, OF_CALLS, OF_ISSUE, OF_INTERLOCKS = range(5)
 """A charge: what an event of a counter costs an owner, in calls, issue cycles and interlocks."""
 
 
-@native_entry("void", "int64*", "int64", "int64*", "int64*", "int64*")
-def charge_events(charges_at: Any, count: int, now_at: Any, before_at: Any, costs_at: Any) -> None:
-    """Add to a table of costs, a row of COLUMNS for each owner, what `count` charges make of the events between two moments.
+@native_entry("int64", "int64*", "int64*", "int64*", "int64", "int64*")
+def charge_events(now_at: Any, before_at: Any, charges_at: Any, count: int, costs_at: Any) -> int:
+    """Add to a table of costs, a row of COLUMNS for each owner, what `count` charges make of the events between two moments; return `count`.
 
-    The arrays: columns of charges one after the other, the counts at both moments, and the table.
+    The arrays: the counts at both moments, columns of charges one after the other, and the table.
     """
     charges, now, before, costs = (
         words_at(charges_at),
@@ -74,6 +74,7 @@ def charge_events(charges_at: Any, count: int, now_at: Any, before_at: Any, cost
         costs[row + CALLS] += events * charges[OF_CALLS * count + number]
         costs[row + ISSUE] += events * charges[OF_ISSUE * count + number]
         costs[row + INTERLOCKS] += events * charges[OF_INTERLOCKS * count + number]
+    return count
 
 
 @native
@@ -87,19 +88,12 @@ def has_counted(on_bus: Any, row: int, conflicts: int, before: Any, first: int) 
 
 
 @native_entry(
-    "int64", "int64*", "int64", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*"
+    "int64", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*", "int64*", "int64", "int64*"
 )
 def charge_sites(
-    owners_at: Any,
-    count: int,
-    columns_at: Any,
-    on_bus_at: Any,
-    conflicts_at: Any,
-    before_at: Any,
-    costs_at: Any,
-    places_at: Any,
-    amounts_at: Any,
-) -> int:
+    columns_at: Any, on_bus_at: Any, conflicts_at: Any, before_at: Any, places_at: Any, amounts_at: Any,
+    owners_at: Any, count: int, costs_at: Any,
+) -> int:  # fmt: skip
     """Add to such a table what `count` sites have stalled since the last time: by the owner of each and the column of each reason.
 
     Rows of the bus, and cycles of conflicts, are compared with the counts of `before`, which are brought up to them. Where these differ
@@ -124,10 +118,6 @@ def charge_sites(
     return found
 
 
-CHARGE = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
-CHARGE_SITES = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 7)
-
-
 def _zeros(count: int) -> Rows:
     """Return `count` zeros straight from the kernel, which clears what is touched of them.
 
@@ -137,22 +127,24 @@ def _zeros(count: int) -> Rows:
 
 
 class Ledger:
-    """The counts of one core. `bus_stalls` returns those of its first so many sites, as the bus has them."""
+    """The counts of one core. `bus_stalls`: those of its sites, as the bus has them."""
 
-    def __init__(self, bus_stalls: Callable[[int], Rows]) -> None:
-        self._bus_stalls = bus_stalls
+    def __init__(self, bus_stalls: Rows) -> None:
         self._events = _zeros(MAX_EVENTS)
         self._conflicts = _zeros(w.MAX_SITES)
         self.events_at, self.conflicts_at = self._events.ctypes.data, self._conflicts.ctypes.data
         """Addresses of what each counter has counted, and of what conflicts in L1 have cost at each site, which is added to there."""
         self.event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
-        self._charges = np.zeros((5, 0), np.int64)
         self._new_charges: list[Rows] = []
         self._site_owners: list[int] = [0] * self._site_count
-        self._owners_of_sites = np.zeros(self._site_count, np.int64)  # the same at the end of the last frame
+        self._know(np.zeros((5, 0), np.int64))
         self._events_before, self._sites_before = _zeros(MAX_EVENTS), _zeros(SITE_COUNTS)
         self._places, self._amounts = _zeros(SITE_COUNTS), _zeros(SITE_COUNTS)  # room for what differs
+        self._charge_events = _charging(charge_events, self._events, self._events_before)
+        self._charge_sites = _charging(
+            charge_sites, SITE_COLUMNS, bus_stalls, self._conflicts, self._sites_before, self._places, self._amounts
+        )  # fmt: skip
         self._reported_events, self._reported_sites = _zeros(MAX_EVENTS), _zeros(SITE_COUNTS)
         self._reported_count = 0
 
@@ -186,21 +178,24 @@ class Ledger:
 
     def close(self) -> tuple[Sequence[Owner], Rows, FrameCounts]:
         """Return the kernels in each stage, what they cost since the last time, rows of an `OwnerCosts` table, and all counts of that."""
-        costs, count = np.zeros((len(self._owners), COLUMNS), np.int64), self._site_count
         if self._new_charges:
-            joined = np.concatenate([self._charges, *self._new_charges], axis=1)
-            self._charges = np.ascontiguousarray(joined)  # behind a single column numpy lays others by rows
-            self._owners_of_sites = np.array(self._site_owners, np.int64)
+            self._know(np.concatenate([self._charges, *self._new_charges], axis=1))
             self._new_charges = []
+        costs = np.zeros((len(self._owners), COLUMNS), np.int64)
+        costs_at = costs.ctypes.data
         events, before = self.events, self._events_before[: self.event_count]
-        _call(CHARGE(charge_events.address()), self._charges, self._charges.shape[1], events, before, costs)
-        found: int = _call(
-            CHARGE_SITES(charge_sites.address()), self._owners_of_sites, count, SITE_COLUMNS, self._bus_stalls(count),
-            self._conflicts, self._sites_before, costs, self._places, self._amounts,
-        )  # fmt: skip
+        self._charge_events(*self._charges_at, costs_at)
+        found = self._charge_sites(*self._owners_at, costs_at)
         counts = FrameCounts(events - before, self._places[:found].copy(), self._amounts[:found].copy())
         before[:] = events
         return tuple(self._owners), costs, counts
+
+    def _know(self, charges: Rows) -> None:
+        """Keep who is charged for what, and where that is for compiled code, as all sites are known by now."""
+        self._charges = np.ascontiguousarray(charges)  # behind a single column numpy lays others by rows
+        self._owners_of_sites = np.array(self._site_owners, np.int64)
+        self._charges_at = self._charges.ctypes.data, self._charges.shape[1]
+        self._owners_at = self._owners_of_sites.ctypes.data, len(self._owners_of_sites)
 
     def report(self, counts: FrameCounts) -> None:
         """Add the counts of the next frame to those that are reported."""
@@ -216,9 +211,9 @@ class Ledger:
         )
 
 
-def _call(entry: Callable[..., Any], *arguments: Rows | int) -> Any:
-    """Call compiled code with arrays and numbers."""
-    return entry(*(each if isinstance(each, int) else each.ctypes.data for each in arguments))
+def _charging(entry: NativeEntry, *arrays: Rows) -> Callable[[int, int, int], int]:
+    """Return compiled code that has these arrays, which live as long as it is called; an address, a count and that of the costs are left."""
+    return built_in(entry.address(), 3, *(each.ctypes.data for each in arrays))
 
 
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:
