@@ -156,10 +156,11 @@ FETCH_BYTES = 8  # of an instruction fetch that no cache serves: one 64-bit word
     CLOCK,          # the core's own clock, in its cycles
     ACTS_AT,        # tick at which it goes on, NEVER while it waits for the bus or has no stretch
     AWAITED,        # what `advance` returns when the core can go on: a transfer, or its job; NONE
-    COPIES,         # copies that it has posted in all
+    COPIES,         # copies that it has posted in all; what follows is 0 when it begins
     TOUCHED,        # of the accounts below, how many were used
     ISSUED, INTERLOCKED,  # cycles of its kernels
 ) = range(9)  # fmt: skip
+BEGUN_WORDS = TOUCHED
 ON_BUS = 9  # what its kernels stalled, in the order above
 ACCOUNTS = ON_BUS + STALLS  # cycles of others, such as rings
 TOUCH, SETTING_UP, RING_EMPTY, RING_FULL = range(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from struct import Struct
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from bfsim.machine.bus.ends import Ends
 from bfsim.machine.bus.transfer_plans import Played
 from bfsim.machine.simulation import Simulation
 
+BEGUN = Struct(f"@{w.BEGUN_WORDS}q")
+
 
 class StretchPlayer:
     """The stretches of each core, and the plans of their copies, in the `state` of the bus."""
@@ -26,23 +29,19 @@ class StretchPlayer:
         self._ends = ends
         self._plans = 0
 
-    def play(self, core: int, clock_cclk: int, end: int, first: int = 0) -> simpy.Event:
+    def play(self, core: int, clock_cclk: int, accounts: int, end: int, first: int = 0) -> simpy.Event:
         """Let a core do what is written by itself from now on, its clock being at a cycle: operations from `first` up to `end`; return the end.
 
-        What their calls access is in the core's log.
+        They use so many `accounts` at most. What their calls access is in the core's log.
         """
         play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
         copies = words[play + w.COPIES]
-        self._state[play : play + w.PLAY_WORDS] = 0
-        words[play + w.OPERATION], words[play + w.OPERATIONS_END] = first, end
-        words[play + w.CLOCK] = clock_cclk
-        words[play + w.ACTS_AT] = self._env.tick
-        words[play + w.AWAITED] = w.NONE
-        words[play + w.COPIES] = copies
+        self._state[play + w.BEGUN_WORDS : play + w.ACCOUNTS + accounts * w.ACCOUNT_WORDS] = 0
+        BEGUN.pack_into(words, 8 * play, first, end, clock_cclk, self._env.tick, w.NONE, copies)
         return self._ends.of_stretch(core)
 
     def played(self, core: int, accounts: int) -> Played:
-        """Return what the last stretch of a core took, with its first so many `accounts`.
+        """Return what the last stretch of a core took, with so many `accounts`.
 
         Raises FirmwareError if DMA had no room for all of its copies.
         """
@@ -56,8 +55,7 @@ class StretchPlayer:
         return Played(
             clock_cclk=words[w.CLOCK],
             issue_cclk=words[w.ISSUED],
-            interlocks_cclk=words[w.INTERLOCKED],
-            bus_stalls_cclk=words[w.ON_BUS : w.ACCOUNTS],
+            stalls_cclk=words[w.INTERLOCKED : w.ACCOUNTS],
             accounts={number: words[begin : begin + w.ACCOUNT_WORDS] for number, begin in begins},
         )
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
-from typing import Any
+from typing import Any, NamedTuple
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
@@ -81,17 +81,16 @@ class TransferPlan:
         )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class Played:
+class Played(NamedTuple):
     """What a stretch of a core took, in cycles. `clock_cclk`: where the core's clock is now.
 
-    `accounts`: of each that was used, in the order of their first use, the words from TOUCH on (`bus.state`).
+    `stalls_cclk`: of its kernels, interlocks and behind them those on the bus, in the order of `bus.state`. `accounts`: of each that was
+    used, in the order of their first use, the words from TOUCH on (`bus.state`).
     """
 
     clock_cclk: int
     issue_cclk: int
-    interlocks_cclk: int
-    bus_stalls_cclk: Sequence[int]
+    stalls_cclk: Sequence[int]
     accounts: Mapping[int, Sequence[int]]
 
 

@@ -52,15 +52,17 @@ class StageAccount:
 
     def cost(self, stage: str) -> StageCost:
         """Return the record of `stage`, all owners together."""
-        total: dict[StallReason, int] = {}
+        whole = Account()
         for each in self._owners.values():
+            whole.issue_cclk += each.issue_cclk
+            whole.idle_cclk += each.idle_cclk
             for reason, cclk in each.stall_cclk.items():
-                total[reason] = total.get(reason, 0) + cclk
+                whole.stall(reason, cclk)
         return StageCost(
             stage=stage,
-            issue_cclk=sum(each.issue_cclk for each in self._owners.values()),
-            stall_cclk={reason: cclk for reason, cclk in sorted(total.items()) if cclk},
-            idle_cclk=sum(each.idle_cclk for each in self._owners.values()),
+            issue_cclk=whole.issue_cclk,
+            stall_cclk={reason: cclk for reason, cclk in sorted(whole.stall_cclk.items()) if cclk},
+            idle_cclk=whole.idle_cclk,
         )
 
     def others(self) -> Iterator[tuple[str, Account]]:

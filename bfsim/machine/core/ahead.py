@@ -257,7 +257,7 @@ class Ahead:
             stretches, owners, first = self._bus.stretches, list(self._owners), 0
             for end, what in (*self._moments, (noted, self._begin)):
                 if end > first:
-                    yield stretches.play(self._number, self.clock.cclk, end, first)
+                    yield stretches.play(self._number, self.clock.cclk, len(owners), end, first)
                     self.clock.stretch(stretches.played(self._number, len(owners)), owners)
                     first = end
                 what()

@@ -18,6 +18,9 @@ from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import CoreTimeline
 from bfsim.trace import StallReason
 
+KERNEL_STALLS = (StallReason.INTERLOCK, *BUS_STALLS)
+"""What kernels stall for, in the order of `Played`."""
+
 
 class CoreClock:
     """The clock of one core, which never goes back. `owner`, everywhere here: whom the cycles belong to."""
@@ -79,8 +82,7 @@ class CoreClock:
         self.cclk = played.clock_cclk
         kernels = self.accounts.now.kernels
         kernels.issue_cclk += played.issue_cclk
-        stalls = (played.interlocks_cclk, *played.bus_stalls_cclk)
-        for reason, cclk in zip((StallReason.INTERLOCK, *BUS_STALLS), stalls, strict=True):
+        for reason, cclk in zip(KERNEL_STALLS, played.stalls_cclk, strict=True):
             if cclk:
                 kernels.stall(reason, cclk)
         for number, words in played.accounts.items():

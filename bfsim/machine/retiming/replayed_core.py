@@ -110,12 +110,13 @@ class ReplayedCore(Core):
     def _play_stretches(self, frame: StretchWriter) -> Wait:
         """Play what is done before the next call of firmware; most often that is one stretch, or nothing."""
         number, clock, stretches = self._parts.number, self._parts.clock, self._bus.stretches
+        owners, accounts = self._account_names, len(self._account_names)
         operations = w.MAX_OPERATIONS
         while operations == w.MAX_OPERATIONS:
             operations = frame.write(*self._kinds_at, *self._parts.calls.counters_at)
             if operations:
-                yield stretches.play(number, clock.cclk, operations)
-                clock.stretch(stretches.played(number, len(self._account_names)), self._account_names)
+                yield stretches.play(number, clock.cclk, accounts, operations)
+                clock.stretch(stretches.played(number, accounts), owners)
 
     def _know(self, kinds: NDArray[np.int64]) -> None:
         """Keep of each call that is prepared what running it is to the bus; numpy takes longer to find its address than most stretches do."""
