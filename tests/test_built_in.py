@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from ctypes import addressof, c_int64
+from threading import Thread
+
 import pytest
 
 from bfsim import machine_code
@@ -44,3 +47,33 @@ def test_what_is_bound_lives_as_long_as_the_function(digits: int) -> None:
     """Nobody else keeps it."""
     made = [built_in(digits, 0, 0, 0, 0, number) for number in range(1000)]
     assert [each() for each in made] == list(range(1000))
+
+
+WAIT_FOR = """
+define i64 @wait_for_a_word(i64 %at, i64 %turns) {
+entry:
+  %word = inttoptr i64 %at to ptr
+  br label %turn
+turn:
+  %number = phi i64 [ 0, %entry ], [ %next, %turn ]
+  %value = load volatile i64, ptr %word
+  %next = add i64 %number, 1
+  %is.there = icmp ne i64 %value, 0
+  %is.last = icmp eq i64 %next, %turns
+  %ends = or i1 %is.there, %is.last
+  br i1 %ends, label %end, label %turn
+end:
+  ret i64 %value
+}
+"""
+
+
+def test_other_threads_run_meanwhile() -> None:
+    """One sets the word that the function waits for."""
+    machine_code.add(machine_code.host_code(WAIT_FOR))
+    word, turns = c_int64(0), 1 << 34
+    wait_for = built_in(machine_code.address_of("wait_for_a_word"), 1, addressof(word), others_run=True)
+    other = Thread(target=lambda: setattr(word, "value", 5))
+    other.start()
+    assert wait_for(turns) == 5
+    other.join()

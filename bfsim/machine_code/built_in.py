@@ -10,13 +10,14 @@ from bfsim import machine_code
 from bfsim.machine_code.native_code import native_code
 
 
-def built_in(address: int, taken: int, *bound: int) -> Callable[..., int]:
+def built_in(address: int, taken: int, *bound: int, others_run: bool = False) -> Callable[..., int]:
     """Return a function of `taken` integers that calls the machine code at an address with those that are `bound`, and then these.
 
-    It returns what that returns. All are of 64 bits. Nothing checks that it is given as many as it takes.
+    It returns what that returns. All are of 64 bits. Nothing checks that it is given as many as it takes. `others_run`: whether other
+    threads have Python meanwhile, which takes longer.
     """
     words = pack(f"{1 + len(bound)}q", address, *bound)
-    return machine_code.python_function(_caller(len(bound), taken), words)
+    return machine_code.python_function(_caller(len(bound), taken, others_run=others_run), words)
 
 
 @cache
@@ -34,9 +35,9 @@ def idle() -> Callable[..., None]:
 
 
 @cache
-def _caller(bound: int, taken: int) -> int:
+def _caller(bound: int, taken: int, *, others_run: bool) -> int:
     """Return the address of what calls a function with so many integers for Python."""
-    name = f"bfsim_call_{bound}_{taken}"
+    name = f"bfsim_call_{bound}_{taken}{'_others_run' * others_run}"
     rows = ["  %words = call ptr @PyBytes_AsString(ptr %self)", "  %function = load ptr, ptr %words"]
     for number in range(bound):
         rows.append(f"  %at.{number} = getelementptr i64, ptr %words, i64 {1 + number}")
@@ -46,14 +47,16 @@ def _caller(bound: int, taken: int) -> int:
         rows.append(f"  %object.{number} = load ptr, ptr %place.{number}")
         rows.append(f"  %value.{bound + number} = call i64 @PyLong_AsLongLong(ptr %object.{number})")
     values = ", ".join(f"i64 %value.{number}" for number in range(bound + taken))
-    rows += [
-        f"  %result = call i64 %function({values})",
-        "  %made = call ptr @PyLong_FromLongLong(i64 %result)",
-    ]
+    called = [f"  %result = call i64 %function({values})"]
+    if others_run:
+        left, back = "%thread = call ptr @PyEval_SaveThread()", "call void @PyEval_RestoreThread(ptr %thread)"
+        called = [f"  {left}", *called, f"  {back}"]
+    rows += [*called, "  %made = call ptr @PyLong_FromLongLong(i64 %result)"]
     body = "\n".join(rows)
     machine_code.add(
         native_code(
             "declare ptr @PyBytes_AsString(ptr)\ndeclare i64 @PyLong_AsLongLong(ptr)\ndeclare ptr @PyLong_FromLongLong(i64)\n"
+            "declare ptr @PyEval_SaveThread()\ndeclare void @PyEval_RestoreThread(ptr)\n"
             f"define ptr @{name}(ptr %self, ptr %objects, i64 %handed) {{\n{body}\n  ret ptr %made\n}}"
         )
     )

@@ -6,7 +6,6 @@ one with the best rank. Runs of words that nobody can interrupt are done at once
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -29,6 +28,7 @@ from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.store_buffer import serve_stores
 from bfsim.machine.bus.stretches import act, resume, who_acts
 from bfsim.machine.bus.transfers import accept
+from bfsim.machine_code.built_in import built_in
 
 # What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
 # direction of the traffic behind all of its kind. A request that needs nothing cannot keep anybody waiting. At the port of
@@ -256,14 +256,10 @@ def advance(state_at: State, memory_at: Memory, until: int) -> int:
 Weave = Callable[[NDArray[Any], NDArray[Any]], Callable[[int], int]]
 """Binds `advance` to a state and a memory: what is left to be told is the tick to advance to."""
 
-CALL = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
-
 
 def compiled_weave(state: NDArray[Any], memory: NDArray[Any]) -> Callable[[int], int]:
     """Bind the compiled `advance`. Both arrays must live as long as it is called."""
-    return partial(
-        CALL(advance.address()), ctypes.c_void_p(state.ctypes.data), ctypes.c_void_p(memory.ctypes.data)
-    )
+    return built_in(advance.address(), 1, state.ctypes.data, memory.ctypes.data, others_run=True)
 
 
 def plain_weave(state: NDArray[Any], memory: NDArray[Any]) -> Callable[[int], int]:
