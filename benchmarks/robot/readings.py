@@ -62,8 +62,12 @@ OF_THE_THESIS = (
     read_as("no rectification", rectification=rectification),
     read_as("rectification: the table comes by DMA", rectification=steps.rectification_by_dma_tables),
     read_as("rectification: byte by byte", rectification=steps.rectification_by_bytes),
+    read_as(
+        "edges: every pixel has a direction, weak ones go last", edge_detection=steps.edges_of_all_pixels
+    ),
     read_as("opening: loops of T Eq. 2.14 and 2.15 over lines in L1", open_closing=steps.looped_opening),
     read_as("blobs: lines of picture and labels by DMA", blob_detection=steps.blobs_on_dma_lines),
+    read_as("blobs: counted while they are renamed", blob_detection=steps.blobs_in_two_passes),
     read_as("blobs: all colours at once", blob_detection=steps.blobs_of_all_colours_at_once),
     read_as("lines: by the labels of the row above", line_scan=scan_by_labels),
     read_as("filter 1: eroded at edges only", circle_detection=circle_detection),

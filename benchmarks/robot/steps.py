@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, Row, i32, kernel, u8, u16, u32
@@ -12,14 +13,27 @@ from tinyphoon.scan_lines import window
 from tinyphoon.stages.blob_detection import BlobThresholds
 from tinyphoon.stages.circle_detection import CircleThresholds, circle_detection
 from tinyphoon.stages.circle_erosion import select_outer_edges
+from tinyphoon.stages.edge_detection import OF_ALL_PIXELS
 from tinyphoon.stages.fast_opening import erode_columns
 from tinyphoon.stages.hysteresis import clear_labels
 from tinyphoon.stages.looped_erosion import erode_pixels, looped_erosion, looped_row
 from tinyphoon.stages.open_closing import LAG_LINES, NoiseRemoval
-from tinyphoon.stages.rosenfeld_blobs import LABELS, count_row, label_row, rename_row, rosenfeld_blobs
+from tinyphoon.stages.rosenfeld_blobs import (
+    LABELS,
+    count_pixel,
+    count_row,
+    label_row,
+    rename_row,
+    rosenfeld_blobs,
+)
+from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_rectification import move_row
 
 BLACK_CHROMA = 128
+
+
+edges_of_all_pixels = partial(rosenfeld_edges, gradients=OF_ALL_PIXELS)
+"""Every pixel has a direction, and weak ones are removed last."""
 
 
 @kernel
@@ -93,6 +107,42 @@ def blobs_of_all_colours_at_once(
     found: int = yield from rosenfeld_blobs(
         core, frame, replace(thresholds, colour_groups=(thresholds.colours,))
     )
+    return found
+
+
+@kernel
+def rename_and_count_row(
+    labels: u16[:], table: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32
+) -> i32:
+    """Give the pixels of row `y` the labels that theirs have become, and add them to their segments, as `count_row` does."""
+    for x in range(len(labels)):
+        if labels[x] != 0:
+            label = table[labels[x]]
+            labels[x] = label
+            used = count_pixel(label, numbers, blob_data, colours, x, y, used)
+    return used
+
+
+def segment_in_two_passes(
+    core: Core, frame: Frame, colours: int, segments: int
+) -> Generator[Any, Any, tuple[int, int]]:
+    """Segment as `segment_colours` does, but count pixels while they are renamed."""
+    words, labels = core.rows("opened_image"), core.rows("label_image")
+    table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
+    for blank in (table, numbers, *labels):
+        yield core.run(clear_labels, blank)
+    used = 0
+    for y in range(frame.height):
+        used = yield core.run(label_row, words[y], labels[max(y - 1, 0)], labels[y], table, colours, used)
+    for y in range(frame.height):
+        counted = table, numbers, blobs, colours, y, segments
+        segments = yield core.run(rename_and_count_row, labels[y], *counted)
+    return segments, max(0, used - LABELS + 1)
+
+
+def blobs_in_two_passes(core: Core, frame: Frame, thresholds: BlobThresholds) -> Generator[Any, Any, int]:
+    """Run the algorithm of Rosenfeld, its last step together with the sums of the blobs."""
+    found: int = yield from rosenfeld_blobs(core, frame, thresholds, segment_in_two_passes)
     return found
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
-from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i16, i32, kernel, u8, u16, u32
+from bfsim.api import Buffer, Core, Frame, FrameSize, Kernel, Row, i16, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
@@ -192,8 +192,37 @@ class FoundEdges(Protocol):
         """Keep the edges of row `y`, its pixels with a gradient."""
 
 
+def slopes_row(
+    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, _: int
+) -> Generator[Any, Any, None]:
+    """Make length and direction of a row's gradients from its smoothed lines, whatever the threshold."""
+    gx, gy = core.array("gx"), core.array("gy")
+    yield core.run(sobel_row, *smooth, gx, gy)
+    yield core.run(magnitude_row, gx, gy, magnitude)
+    yield core.run(direction_row, gx, gy, core.array("atan"), direction)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gradients:
+    """How a scan makes a row of gradients, and suppresses what is no edge: these ways, or others that leave the same edges.
+
+    `slopes` takes the smoothed lines, the rows of lengths and directions to be made, and the threshold.
+    """
+
+    slopes: Callable[[Core, Sequence[Row], Row, Row, int], Generator[Any, Any, None]] = slopes_row
+    suppress: Kernel = suppress_row
+
+
+OF_ALL_PIXELS = Gradients()
+
+
 def scan(
-    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area, found: FoundEdges
+    core: Core,
+    frame: Frame,
+    thresholds: EdgeThresholds,
+    area: Area,
+    found: FoundEdges,
+    gradients: Gradients = OF_ALL_PIXELS,
 ) -> Generator[Any, Any, None]:
     """Read the picture once: its colours go to `colour_image`, its edges, one pixel wide, are `found`."""
     camera = core.input_ring(frame.rows, "camera_ring")
@@ -204,8 +233,7 @@ def scan(
     smooth, magnitude, direction = (
         line_ring(core.rows(name), height) for name in ("smooth_ring", "magnitude_ring", "direction_ring")
     )
-    gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
-    joined = core.array("joined_colours")
+    atan, joined = core.array("atan"), core.array("joined_colours")
     gauss_row = gauss3_row if reach == 1 else gauss5_row
     gains = () if thresholds.is_balanced else thresholds.gains
     limits, least = thresholds.colour_limits, thresholds.edge_threshold
@@ -227,14 +255,13 @@ def scan(
             yield core.run(gauss_row, *window(grey, smoothed, height, reach), smooth[smoothed])
         if 0 <= sloped < height:
             core.at(sloped)
-            yield core.run(sobel_row, *window(smooth, sloped, height), gx, gy)
-            yield core.run(magnitude_row, gx, gy, magnitude[sloped])
-            yield core.run(direction_row, gx, gy, atan, direction[sloped])
+            rows = window(smooth, sloped, height), magnitude[sloped], direction[sloped]
+            yield from gradients.slopes(core, *rows, least)
         if done >= 0:
             core.at(done)
             near = window(magnitude, done, height)
             edges = yield from found.row()
-            yield core.run(suppress_row, *near, direction[done], edges, least)
+            yield core.run(gradients.suppress, *near, direction[done], edges, least)
             if rim:
                 yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
             yield from found.add(done, edges, direction[done])

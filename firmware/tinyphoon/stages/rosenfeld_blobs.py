@@ -1,8 +1,8 @@
 """Blob detection as T §2.3.3 describes the algorithm of Rosenfeld: pixel by pixel, with a picture of labels.
 
 [said] The target picture is blank at first; a pixel takes the label of a neighbour, or a new one; where two labels meet, all pixels of the
-one in this line and the line before take the other, and so do its entries in the look-up table; in the end all labels are renamed by
-the table (T §2.3.3). [said] All of that is executed for one colour after the other, of those that the models name (T §2.3.4,
+one in this line and the line before take the other, from the pixel above to the one on the left (T Figure 2.7.b), and so do its entries in
+the look-up table, which begins empty; in the end all labels are renamed by the table (T §2.3.3). [said] All of that is executed for one colour after the other, of those that the models name (T §2.3.4,
 §5.2.3). [implied] The accesses to SDRAM take the time of the stage (T §6.6), so picture and labels are read and written there by the core.
 [assumed] The colours of a model are one; of two labels the smaller one stays; pixels are counted in another pass.
 """
@@ -40,16 +40,19 @@ def rosenfeld_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
 
 
 @kernel
-def rename_line(labels: u16[:], old: i32, new: i32) -> None:
-    """Change all occurrences of a label in a line, or in the table."""
-    for x in range(len(labels)):
-        if labels[x] == old:
-            labels[x] = new
+def rename_labels(labels: u16[:], first: i32, end: i32, old: i32, new: i32) -> None:
+    """Change all occurrences of a label from place `first` to before `end` of a line, or of the table."""
+    for place in range(first, end):
+        if labels[place] == old:
+            labels[place] = new
 
 
 @kernel
-def met(label: i32, neighbour: i32, above: u16[:], here: u16[:], table: u16[:]) -> i32:
-    """Return the label of a pixel, so far `label` or 0, beside one of the label `neighbour` or none."""
+def met(label: i32, neighbour: i32, above: u16[:], here: u16[:], x: i32, table: u16[:], entries: i32) -> i32:
+    """Return the label of pixel `x`, so far `label` or 0, beside one of the label `neighbour` or none.
+
+    `entries` of `table` are in use. No pixel to come has a neighbour further back than the one above this one.
+    """
     if neighbour == 0:
         return label
     if label == 0:
@@ -58,9 +61,9 @@ def met(label: i32, neighbour: i32, above: u16[:], here: u16[:], table: u16[:]) 
         return label
     low = min(label, neighbour)
     high = max(label, neighbour)
-    rename_line(above, high, low)
-    rename_line(here, high, low)
-    rename_line(table, high, low)
+    rename_labels(above, x, len(above), high, low)
+    rename_labels(here, 0, x, high, low)
+    rename_labels(table, 1, entries, high, low)
     return low
 
 
@@ -73,10 +76,11 @@ def label_row(words: u32[:], above: u16[:], here: u16[:], table: u16[:], colours
     """
     for x in range(1, len(words) - 1):
         if words[x] & colours != 0:
-            label = met(0, here[x - 1], above, here, table)
-            label = met(label, above[x - 1], above, here, table)
-            label = met(label, above[x], above, here, table)
-            label = met(label, above[x + 1], above, here, table)
+            entries = min(used + 1, len(table))
+            label = met(0, here[x - 1], above, here, x, table, entries)
+            label = met(label, above[x - 1], above, here, x, table, entries)
+            label = met(label, above[x], above, here, x, table, entries)
+            label = met(label, above[x + 1], above, here, x, table, entries)
             if label == 0:
                 used = used + 1
                 if used < len(table):
@@ -95,23 +99,31 @@ def rename_row(labels: u16[:], table: u16[:]) -> None:
 
 
 @kernel
-def count_row(labels: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32) -> i32:
-    """Add the pixels of row `y` to the records of their segments, of which `used` were met before it; return how many are now.
+def count_pixel(
+    label: i32, numbers: u16[:], blob_data: u32[:], colours: u32, x: i32, y: i32, used: i32
+) -> i32:
+    """Add a pixel with a label to the record of its segment, and return how many segments there are; `used` were before it.
 
     Segments are numbered as they are met, from 1 on; those that find no record are counted only. A record's position is
     that of its first pixel so far.
     """
+    if numbers[label] == 0:
+        used = used + 1
+        numbers[label] = used
+        if used * BLOB_WORDS < len(blob_data):
+            open_segment(blob_data, used, colours, x, y)
+            blob_data[used * BLOB_WORDS + POSITION] = pair(x, y)
+    if numbers[label] * BLOB_WORDS < len(blob_data):
+        add_run(blob_data, numbers[label], x, x, y)
+    return used
+
+
+@kernel
+def count_row(labels: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32) -> i32:
+    """Add the pixels of row `y` to the records of their segments, of which `used` were met before it; return how many are now."""
     for x in range(len(labels)):
-        label = i32(labels[x])
-        if label != 0:
-            if numbers[label] == 0:
-                used = used + 1
-                numbers[label] = used
-                if used * BLOB_WORDS < len(blob_data):
-                    open_segment(blob_data, used, colours, x, y)
-                    blob_data[used * BLOB_WORDS + POSITION] = pair(x, y)
-            if numbers[label] * BLOB_WORDS < len(blob_data):
-                add_run(blob_data, numbers[label], x, x, y)
+        if labels[x] != 0:
+            used = count_pixel(labels[x], numbers, blob_data, colours, x, y, used)
     return used
 
 
