@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from statistics import median
@@ -21,7 +22,9 @@ from bfsim.run import simulate
 from tinyphoon import fast, thesis, tinyphoon
 from tinyphoon.buffers import calibration_buffers
 from tinyphoon.features import PLAIN
+from tinyphoon.stages.edge_detection import edge_detection, scan
 from tinyphoon.stages.sdram_rectification import untouched
+from tinyphoon.stages.strong_gradients import STRONG_FIRST
 from tinyphoon.variants import FAST, THESIS, mains
 
 DOCS = Path(__file__).parent.parent
@@ -30,6 +33,7 @@ PAGE = DOCS / "tinyphoon.md"
 BLOCK = re.compile(r"(<!-- made by docs/made/waterfall.py -->\n\n)(?:\|.*\n)*")
 ROBOT_MS = 219.0  # T §6.6: the mean of Table 6.4
 CCLK_PER_MS = 600e3
+WEAK_REMOVED_FIRST = partial(edge_detection, scanned=partial(scan, gradients=STRONG_FIRST))
 
 
 def frame_ms(firmware: Firmware) -> float:
@@ -58,7 +62,8 @@ def stages() -> Iterator[tuple[str, float]]:
         ("rectification through a window that DMA moves", {"rectification": PLAIN.rectification}),
         ("colours eroded at edges only", {"circle_detection": PLAIN.circle_detection}),
         ("lines by the labels of the row above", {"line_scan": PLAIN.line_scan}),
-        ("hysteresis over the edge store", {"edge_detection": PLAIN.edge_detection}),
+        ("hysteresis over the edge store", {"edge_detection": WEAK_REMOVED_FIRST}),
+        ("a direction for every pixel, weak or not", {"edge_detection": PLAIN.edge_detection}),
     ):
         steps = replace(steps, **change)
         if "rectification" in change:

@@ -34,13 +34,15 @@ from tinyphoon.stages.line_segments import (
     START_Y,
     TURN,
 )
-from tinyphoon.stages.rosenfeld_blobs import label_row, rename_row
+from tinyphoon.stages.rosenfeld_blobs import label_row, met, rename_row
 from tinyphoon.stages.sdram_rectification import move_row, untouched
+from tinyphoon.stages.strong_gradients import direct_strong_row
 from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, pair
 from tinyphoon.stores.circles import CIRCLE_BLOB, CIRCLE_WORDS
 from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.strategy.models import BLUE, MODELS, YELLOW, model_words
 from tinyphoon.strategy.modes import THESIS_FIELD
+from tinyphoon.tables import arctangent_table
 from tinyphoon.variants import THESIS
 
 SAME = ("edges", "edges_lost", "edge_groups_shared", "blobs", "blobs_lost", "labels_lost", "circles")
@@ -185,6 +187,24 @@ def test_labels_that_meet_become_the_smaller_one() -> None:
         [0, 0, 0, 0, 0, 1, 0],
         [0, 0, 0, 0, 0, 0, 0],
     ]
+
+
+def test_labels_are_renamed_from_the_pixel_above_to_the_one_on_the_left() -> None:
+    """T Figure 2.7.b: no pixel to come has a neighbour outside of that; and as far as the table is in use."""
+    above, here = np.full(5, 2, np.uint16), np.array([2, 2, 0, 0, 0], np.uint16)
+    table = np.array([0, 1, 2, 3, 2], np.uint16)
+    assert met(2, 1, above, here, 2, table, 4) == 1
+    assert above.tolist() == [2, 2, 1, 1, 1]
+    assert here.tolist() == [1, 1, 0, 0, 0]
+    assert table.tolist() == [0, 1, 1, 3, 2]
+
+
+def test_weak_gradients_have_no_direction() -> None:
+    """T §2.1.4: step 3 has removed them before step 4 asks for one."""
+    gx, gy = np.zeros(3, np.int16), np.full(3, 40, np.int16)
+    directions = np.full(3, 7, np.uint8)
+    direct_strong_row(gx, gy, np.array([9, 10, 11], np.uint8), arctangent_table(), directions, 10)
+    assert directions.tolist() == [7, 64, 64]
 
 
 def segment(direction: int, start: tuple[int, int], end: tuple[int, int]) -> np.ndarray:
