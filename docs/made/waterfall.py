@@ -33,6 +33,8 @@ PAGE = DOCS / "tinyphoon.md"
 BLOCK = re.compile(r"(<!-- made by docs/made/waterfall.py -->\n\n)(?:\|.*\n)*")
 ROBOT_MS = 219.0  # T §6.6: the mean of Table 6.4
 CCLK_PER_MS = 600e3
+COLOURS = {"robot": "#8a8f98", "thesis": "#d9952b", "gain": "#1f5fa8", "cost": "#b3372f"}
+"""Of each kind of bar."""
 WEAK_REMOVED_FIRST = partial(edge_detection, scanned=partial(scan, gradients=STRONG_FIRST))
 
 
@@ -90,7 +92,7 @@ def draw(found: list[tuple[str, float]]) -> None:
             "from": before,
             "to": ms,
             "label": f"{ms - before:+.1f}, {ms:.0f} ms",
-            "kind": "gain",
+            "kind": "gain" if ms < before else "cost",
         }
         for (_, before), (what, ms) in gains
     ]
@@ -99,7 +101,7 @@ def draw(found: list[tuple[str, float]]) -> None:
         x=alt.X("from:Q", title="ms a frame", scale=alt.Scale(domain=[0, ROBOT_MS + 30])),
         x2="to:Q",
     )
-    colours = alt.Scale(domain=["robot", "thesis", "gain"], range=["#8a8f98", "#d9952b", "#1f5fa8"])
+    colours = alt.Scale(domain=list(COLOURS), range=list(COLOURS.values()))
     bars = base.mark_bar(height=18).encode(color=alt.Color("kind:N", scale=colours, legend=None))
     labels = (
         base.mark_text(align="left", dx=6)
