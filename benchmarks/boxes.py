@@ -51,6 +51,12 @@ class Placed:
             return "direction"
         return "edges" if self.found.measures & BY_DISPARITY else "floor"
 
+    @property
+    def cell(self) -> str:
+        """How far off its place is, if it has one, and how it was placed."""
+        has_place = self.found is not None and self.found.has_place
+        return f"{self.off_mm:.0f} {self.way}" if has_place else self.way
+
 
 def placed(recording: Path) -> list[Placed]:
     """Return what the firmware reports of the box in each frame, the most accurate object of its model."""
@@ -88,7 +94,7 @@ def comparison(frames: Sequence[Placed]) -> Table:
         table.add_column(f"{angle} deg", justify="right")
     rows = iter(frames)
     for distance in DISTANCES_MM:
-        cells = [f"{each.off_mm:.0f} {each.way}" for each in islice(rows, len(ANGLES_DEG))]
+        cells = [each.cell for each in islice(rows, len(ANGLES_DEG))]
         table.add_row(f"{distance}", *cells)
     for way in ("edges", "floor"):
         parts = [each.off_mm / each.far_mm for each in frames if each.way == way]
