@@ -77,6 +77,11 @@ OF_THE_THESIS = (
         "ball-beside-robot",
         circle_detection=steps.circles_by_an_erosion_each,
     ),
+    read_as(
+        "circles: centres within 8 px (scene of Figure 6.10)",
+        "ball-beside-robot",
+        circle_detection=steps.circles_in_a_small_patch,
+    ),
 )
 
 

@@ -12,7 +12,7 @@ from tinyphoon.areas import WHOLE_PICTURE, Area, area_in
 from tinyphoon.scan_lines import window
 from tinyphoon.stages.blob_detection import BlobThresholds
 from tinyphoon.stages.circle_detection import CircleThresholds, circle_detection
-from tinyphoon.stages.circle_erosion import select_outer_edges
+from tinyphoon.stages.circle_erosion import eroded_circles, select_outer_edges
 from tinyphoon.stages.edge_detection import OF_ALL_PIXELS
 from tinyphoon.stages.fast_opening import erode_columns
 from tinyphoon.stages.hysteresis import clear_labels
@@ -30,6 +30,7 @@ from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_rectification import move_row
 
 BLACK_CHROMA = 128
+SMALL_REACH = 8  # to each side; the thesis says "small" (T §5.2.4)
 
 
 edges_of_all_pixels = partial(rosenfeld_edges, gradients=OF_ALL_PIXELS)
@@ -80,6 +81,15 @@ def circles_by_sdram_erosion(
         shapes.send()
     yield from shapes.flush()
     found: int = yield from circle_detection(core, frame, blobs, colours, thresholds, select_outer_edges)
+    return found
+
+
+def circles_in_a_small_patch(
+    core: Core, frame: Frame, blobs: int, colours: int, thresholds: CircleThresholds
+) -> Generator[Any, Any, int]:
+    """Look for the centre of a circle near the centre of mass of its blob only."""
+    near = replace(thresholds, patch_reach=SMALL_REACH)
+    found: int = yield from eroded_circles(core, frame, blobs, colours, near)
     return found
 
 
