@@ -51,3 +51,24 @@ CASES = {
 }
 
 test_an_estimate_is_near, test_what_is_costed_computes_what_python_does = beside_gcc(CASES, counts=(0, 1, 60))
+
+PEAK = """
+def f(a: u8[:], n: i32, t: i32) -> i32:
+    best = -1
+    top = 0
+    for i in range({limits}):
+        if a[i] > top:
+            top = a[i]
+            best = {wanted}
+    return best * 256 + top
+"""
+PEAKS: dict[str, Case] = {
+    "in all": (PEAK.format(limits="n", wanted="i"), 1646, 0.005),
+    "from a variable on": (PEAK.format(limits="t, n", wanted="i"), 854, 0.005),
+    "in a window": (PEAK.format(limits="t, t + 50", wanted="i"), 451, 0.02),
+    "the last one first": (PEAK.format(limits="n - 1, t, -1", wanted="i"), 860, 0.005),
+    "where the next one is, which is the step": (PEAK.format(limits="n", wanted="i + 1"), 3837, 0.005),
+    "how far from the start": (PEAK.format(limits="t, n", wanted="i - t"), 1879, 0.02),
+}
+
+test_a_peak_is_near, test_a_peak_is_what_python_finds = beside_gcc(PEAKS, counts=(1, 60, 200))
