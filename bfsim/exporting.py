@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bfsim.errors import ConfigError, FirmwareError
+from bfsim.errors import ConfigError, FirmwareError, listed
+from bfsim.kernel import Kernel
 from bfsim.kernel.c import CProgram, c_program, in_python
 from bfsim.loading import kernels_of, load_firmware, written_in_python
 from bfsim.report.save import write_text, writing
@@ -46,16 +48,15 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
     """Write the kernels of `firmware` as C99 to `folder`, with a header and a makefile.
 
     Raises ConfigError if a file of that name is there and `force` is not set: somebody may have changed it; and if `folder` is
-    a file. Raises FirmwareError if the firmware has no kernels.
+    a file. Raises FirmwareError if the firmware has no kernels in Python.
     """
     if folder.exists() and not folder.is_dir():
         raise ConfigError(f"{folder} must be a folder to write the files of C to, not a file")
     own = kernels_of(load_firmware(firmware).own)
     kernels = written_in_python(own)
     if not kernels:
-        raise FirmwareError(
-            f"{firmware} must have kernels in Python to be exported, but has none; see `bfsim explain --help`"
-        )
+        has = f"only {listed(_names(own), 6)}, in another language" if own else "none"
+        raise FirmwareError(f"{firmware} must have kernels in Python to be exported as C, and has {has}")
     program = c_program((each.function for each in kernels), place=in_python if line_directives else None)
     files = {**program.files, "Makefile": _makefile(program)}
     if not force and (there := [each for each in files if (folder / each).exists()]):
@@ -67,8 +68,11 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
     for name, text in files.items():
         write_text(folder / name, text)
     lines = sum(text.count("\n") for name, text in program.files.items() if name.endswith(".c"))
-    left = sorted(f"{each.name} ({Path(each.function.file).name})" for each in own - kernels)
-    return Export(folder, tuple(files), len(program.names), lines, tuple(left))
+    return Export(folder, tuple(files), len(program.names), lines, tuple(_names(own - kernels)))
+
+
+def _names(kernels: Iterable[Kernel]) -> list[str]:
+    return sorted(f"{each.name} ({Path(each.function.file).name})" for each in kernels)
 
 
 def _makefile(program: CProgram) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from bfsim import building
+from bfsim.api import kernel as kernel_of_firmware
 from bfsim.blackfin.image import Use
 from bfsim.blackfin.objects import read_object
 from bfsim.building import build_for
@@ -251,7 +252,7 @@ def test_explain_shows_the_own_code() -> None:
 @pytest.mark.usefixtures("_nothing_at_hand")
 def test_a_cost_without_a_compiler_is_an_estimate() -> None:
     """And is said to be."""
-    kernel, rows = cost_kernels.copy_words, np.zeros((2, 8), np.uint32)
+    kernel, rows = kernel_of_firmware(cost_kernels.copy_words.definition), np.zeros((2, 8), np.uint32)
     with pytest.warns(BfsimWarning, match="the cost of copy_words in gcc is an estimate: no code of GCC"):
         assert kernel.cost(*rows, profile="gcc") == kernel.cost(*rows, profile="gcc-O2")
 

@@ -272,9 +272,13 @@ class Kernel:
             return None
         code = self.own_code(self, profile) if self.own_code else None
         if code is None:
+            why = (
+                "no code of GCC is kept for it, and GCC is not on the PATH"
+                if self.own_code
+                else "only what `kernel` of bfsim.api makes of it has code of GCC, not `kernel` of bfsim.kernel"
+            )
             warnings.warn(
-                f"the cost of {self.name} in {profile.name} is an estimate: no code of GCC is kept for it, and GCC is not on the PATH "
-                f"({self.place})",
+                f"the cost of {self.name} in {profile.name} is an estimate: {why} ({self.place})",
                 BfsimWarning,
                 stacklevel=3,
             )

@@ -7,7 +7,8 @@ from typing import TypeVar
 from lark import Token, v_args
 from lark.visitors import Transformer_NonRecursive
 
-from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionError
+from bfsim.errors import cut
+from bfsim.linker.expressions import NO_SCOPE, WIDEST_BITS, Expression, ExpressionError
 
 Start = TypeVar("Start")  # what the start rule becomes
 
@@ -39,14 +40,14 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Start]):
     """One method per rule for expressions in ldf.lark."""
 
     def number(self, text: Token) -> Expression:
-        digits = text.rstrip("uUlL")
-        if digits[:2] in ("0x", "0X"):
-            value = int(digits, 16)
-        elif "#" in digits:
-            value = int(digits.partition("#")[2], 2)
-        else:
-            value = int(digits.rstrip("kKmM")) * _SUFFIXES.get(digits[-1].upper(), 1)
-        return Expression(text.start_pos or 0, "number", number=value)
+        offset = text.start_pos or 0
+        try:
+            value = _value_of(text.rstrip("uUlL"))
+        except ValueError:  # Python reads no decimal number of more than 4,300 digits
+            value = None
+        if value is None or value.bit_length() > WIDEST_BITS:
+            raise ExpressionError(offset, f"number must fit in {WIDEST_BITS} bits, not {cut(text)}")
+        return Expression(offset, "number", number=value)
 
     def name(self, name: Token) -> Expression:
         return Expression(name.start_pos or 0, "name", text=str(name))
@@ -76,6 +77,14 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Start]):
 
     def condition(self, expression: Expression) -> Expression:
         return expression
+
+
+def _value_of(digits: str) -> int:
+    if digits[:2] in ("0x", "0X"):
+        return int(digits, 16)
+    if "#" in digits:
+        return int(digits.partition("#")[2], 2)
+    return int(digits.rstrip("kKmM")) * _SUFFIXES.get(digits[-1].upper(), 1)
 
 
 def _reduce(operands: list[Expression], signs: list[Token]) -> None:

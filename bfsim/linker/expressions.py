@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-_WIDEST_BITS = 64  # of a value in between; an address has 32
+WIDEST_BITS = 64  # of a value in between; an address has 32
 
 
 class ExpressionError(Exception):
@@ -77,11 +77,11 @@ class Expression:
         compute = _UNARY[self.operator] if len(values) == 1 else _BINARY[self.operator]
         if self.operator in ("/", "%") and values[1] == 0:
             raise ExpressionError(self.offset, "divisor must not be 0")
-        if self.operator in ("<<", ">>") and not 0 <= values[1] < _WIDEST_BITS:
-            raise ExpressionError(self.offset, f"shift must be by 0 to {_WIDEST_BITS - 1}, not {values[1]}")
+        if self.operator in ("<<", ">>") and not 0 <= values[1] < WIDEST_BITS:
+            raise ExpressionError(self.offset, f"shift must be by 0 to {WIDEST_BITS - 1}, not {values[1]}")
         value = compute(*values)
-        if value.bit_length() > _WIDEST_BITS:
-            raise ExpressionError(self.offset, f"value must fit in {_WIDEST_BITS} bits")
+        if value.bit_length() > WIDEST_BITS:
+            raise ExpressionError(self.offset, f"value must fit in {WIDEST_BITS} bits")
         return value
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -12,6 +13,19 @@ from bfsim.cli.main import main
 from tests.eyes import FIRMWARE
 from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
 from tests.sums import SUMS
+
+NO_KERNEL = """
+from bfsim.api import *
+
+def main(core):
+    yield from core.next_frame()
+
+def buffers(size):
+    return {each: [Buffer("camera", u8, 2 * size.width_px, "sdram_bank0", rows=size.height_px)] for each in "AB"}
+
+firmware = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=())
+"""
+"""Firmware that runs no kernel."""
 
 
 def ran(*arguments: object) -> tuple[int, str]:
@@ -66,6 +80,22 @@ def test_kernels_of_other_languages_are_left_out(tmp_path: Path) -> None:
     )
     assert "threshold" in (tmp_path / "c" / "kernels.h").read_text()
     assert "sums" not in (tmp_path / "c" / "kernels.h").read_text()
+
+
+@pytest.mark.parametrize(
+    ("kernels", "has"),
+    [(SUMS, r"only sums \(sums\.c\), in another language"), ("", "none")],
+    ids=["in C", "none"],
+)
+def test_firmware_without_kernels_in_python_is_told_what_it_has(
+    tmp_path: Path, kernels: str, has: str
+) -> None:
+    """It pointed to `bfsim explain`, which has nothing to say of it."""
+    (tmp_path / "fw_c.py").write_text(f"{NO_KERNEL}\n{kernels}")
+    code, output = ran(f"{tmp_path}/fw_c.py", tmp_path / "c")
+    assert code == 2
+    assert re.search(f"must have kernels in Python to be exported as C, and has {has}", output)
+    assert not (tmp_path / "c").exists()
 
 
 def test_a_file_is_no_folder(eyes: str, tmp_path: Path) -> None:

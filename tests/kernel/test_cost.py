@@ -46,7 +46,9 @@ def test_cost_is_that_of_one_call() -> None:
         cost = cost_kernels.copy_words.cost(source, target, profile=profile.name)
         assert cost == work.issue_cclk + work.stall_cclk > 0
     work = run(cost_kernels.copy_words, source, words(8), profile=DEFAULT)
-    with pytest.warns(BfsimWarning, match="the cost of copy_words in gcc-adi is an estimate"):
+    with pytest.warns(
+        BfsimWarning, match="copy_words in gcc-adi is an estimate: only what `kernel` of bfsim.api"
+    ):
         assert cost_kernels.copy_words.cost(source, target) == work.issue_cclk + work.stall_cclk
     assert target.tolist() == [7] * 8
     with pytest.raises(KernelError, match="must get"):
