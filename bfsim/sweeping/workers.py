@@ -48,8 +48,8 @@ class Pool(Executor):
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Call a function in a process that has nothing to do, or in a new one."""
         while True:
-            process = self._free.pop() if self._free else self._new()
             with _deaf(), suppress(BrokenProcessPool):  # it died of boredom
+                process = self._free.pop() if self._free else self._new()
                 future = process.submit(fn, *args, **kwargs)
                 future.add_done_callback(partial(self._done, process))
                 return future
@@ -79,8 +79,8 @@ class Pool(Executor):
 
 @contextmanager
 def _deaf() -> Iterator[None]:
-    """Let processes that are started in the `with` block hear no Ctrl-C: their parent hears it, and ends them."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    """Let processes that are started in the `with` block hear no Ctrl-C, nor that the terminal is closed: their parent hears it, and ends them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
         yield
     finally:

@@ -165,8 +165,9 @@ def test_all_processes_warn_together(tmp_path: Path) -> None:
 
 
 @pytest.mark.exhaustive
-def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
-    """What is done is reported and kept, no process is left, and the same command goes on."""
+@pytest.mark.parametrize(("number", "exit_code"), [(signal.SIGINT, 130), (signal.SIGHUP, 129)])
+def test_ctrl_c_ends_it_cleanly(tmp_path: Path, number: int, exit_code: int) -> None:
+    """What is done is reported and kept, no process is left, and the same command goes on; so it is as its terminal is closed."""
     file = home_in(tmp_path, FILE.replace("[2, 4]", "[2, 3, 4, 5, 6, 7]"))
     (tmp_path / "fw_eyes.py").write_text(HELD)
     (tmp_path / "hold").touch()
@@ -177,9 +178,9 @@ def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
         while len(list(tmp_path.glob("what-if.sweep/points/*/*.json"))) < 2:
             time.sleep(0.02)
             assert process.poll() is None
-        os.killpg(process.pid, signal.SIGINT)
+        os.killpg(process.pid, number)
         output, errors = process.communicate()
-    assert process.returncode == 130, errors
+    assert process.returncode == exit_code, errors
     assert errors == "bfsim: interrupted; the same command goes on from here\n"
     assert " not yet.\n" in output
     with pytest.raises(ProcessLookupError):
