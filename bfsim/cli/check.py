@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from bfsim.report.check.judge import Outcome
     from bfsim.report.result_file import Result
 
+LOOSENED_LISTED = 6
+"""So many limits of a run that loosen are listed where a reason is asked for."""
+
 OUTPUTS = {
     "junit": "JUnit XML, a test case for each run",
     "markdown": "Markdown, for a pull request",
@@ -145,9 +148,9 @@ def _update(
     """Return the runs with what was measured as their limits, and write those into the file."""
     from bfsim.report.check.update import loosened, updated, write_cases
 
-    loose = [f"run {case.name!r}: {each}" for case, result in runs for each in loosened(case, result, path)]
-    if loose and not reason:
-        listed = "".join(f"\n  {each}" for each in loose)
+    loose = {case.name: loosened(case, result, path, in_short=True) for case, result in runs}
+    if any(loose.values()) and not reason:
+        listed = "".join(f"\n  run {name!r}: {_in_short(each)}" for name, each in loose.items() if each)
         if not sys.stdin.isatty():
             raise ConfigError(f"--update must come with --reason TEXT where limits loosen:{listed}")
         reason = click.prompt(f"These limits loosen:{listed}\nWhy", err=True)
@@ -160,6 +163,11 @@ def _update(
             err=on_stderr,
         )
     return done
+
+
+def _in_short(limits: Sequence[str]) -> str:
+    more = len(limits) - LOOSENED_LISTED
+    return "; ".join([*limits[:LOOSENED_LISTED], *([f"and {more} more"] if more > 0 else [])])
 
 
 def _judged(runs: Sequence[tuple[Case, Result]], path: Path) -> list[Outcome]:

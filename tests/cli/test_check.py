@@ -123,9 +123,10 @@ def test_faster_firmware_passes_and_update_tightens(repository: Path) -> None:
     Path("fw_eyes.py").write_text(SLOWER)
     before = Path("limits.toml").read_text()
     assert call("--baseline", "limits.toml").exit_code == 1
-    assert "--update must come with --reason TEXT where limits loosen:" in refused(
-        "--baseline", "limits.toml", "--update"
-    )
+    told = refused("--baseline", "limits.toml", "--update")
+    assert "--update must come with --reason TEXT where limits loosen:\n  run 'drive" in told
+    runs = told.split("\n  run 'drive")[1:]
+    assert [each.count("latency.m") for each in runs] == [1, 1], "a line a run, and a limit a figure"
     assert Path("limits.toml").read_text() == before
 
 

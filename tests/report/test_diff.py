@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from bfsim.report.diff.compare import difference_of
 from bfsim.report.diff.difference import Kind
 from bfsim.report.diff.markdown import diff_markdown
+from bfsim.report.diff.rows import shown
 from bfsim.report.diff.sentences import reason, verdict, work
-from bfsim.report.diff.tables import diff_report, shown
+from bfsim.report.diff.tables import diff_report
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import (
     REST,
@@ -68,6 +69,31 @@ def test_what_is_told_in_words_is_in_the_table_first() -> None:
     assert "in it other (mine.py:10) +400; in it line 12 +400" in reason(found)
     assert [each.name for _, each in shown(found, 1)][1] == "other"
     assert "other (mine.py:10)" in diff_markdown(found, top=1)
+
+
+def test_what_is_not_shown_is_told_together() -> None:
+    """What is shown sums to what it is part of: there were stages, kernels and lines in no row."""
+    stages = [kernel(line(12, 1, 10), name=name, stage=name) for name in ("far", "near")]
+    beside = kernel(line(12, 1, 10), name="beside")
+    before = run(kernel(line(12, 1, 10), line(13, 1, 10), line(14, 1, 10)), beside, *stages)
+    others = (
+        kernel(line(12, 1, 11), name="beside"),
+        *(kernel(line(12, 1, 12), name=n, stage=n) for n in ("far", "near")),
+    )
+    after = run(kernel(line(12, 1, 90), line(13, 1, 13), line(14, 1, 14)), *others)
+    found = difference_of(before, after)
+    assert [(depth, each.name, each.cclk) for depth, each in shown(found, 1)] == [
+        (0, "Blur", 80 + 7 + 1),
+        (1, "blur", 80 + 7),
+        (2, "left = row[0]", 80),
+        (3, "operations: 10 → 90 cycles x 1", 80),
+        (2, "(2 others)", 7),
+        (1, "beside", 1),
+        (0, "(2 others)", 4),
+    ]
+    told = diff_markdown(found, top=1)
+    assert "| (2 others) | 20 | 24 | +4 |" in told
+    assert "| All | 60 | 152 | +92 |" in told
 
 
 def test_waits_for_others_only_follow() -> None:

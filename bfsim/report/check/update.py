@@ -18,7 +18,7 @@ from bfsim.report.check.baseline import (
     validated,
 )
 from bfsim.report.check.figures import COUNTS, MISSED, SEEN, STATISTICS, Name, Unit, figures_of, statistic
-from bfsim.report.check.judge import Outcome, Verdict, judge
+from bfsim.report.check.judge import Outcome, Verdict, judge, worst_of_each
 from bfsim.report.check.kept import kept_costs, whole_side
 from bfsim.report.check.requirement import Requirement, counts_text, limit_text
 from bfsim.report.check.toml_items import toml_item
@@ -40,15 +40,14 @@ MOST_COUNTS = 22
 """Results are kept frame by frame where their sentence has no more words, 20 of them counts such as 1*200; else their total, least and most."""
 
 
-def loosened(case: Case, result: Result, path: Path) -> list[str]:
-    """Return in words which limits of a run `--update` would loosen, or take away."""
+def loosened(case: Case, result: Result, path: Path, *, in_short: bool = False) -> list[str]:
+    """Return in words which limits of a run `--update` would loosen, or take away; `in_short`, one of those on each figure, what was found first."""
     _, gone = _limits_of(case, result, path)
+    broken = [each for each in _held(case, result, path).verdicts if each.broken and not each.is_persons]
+    if in_short:
+        broken = sorted(worst_of_each(broken), key=lambda each: each.requirement.name[0] not in COUNTS)
     return [
-        *(
-            f"{each.requirement.text}, measured {_number(each, result.run)}"
-            for each in _held(case, result, path).verdicts
-            if each.broken and not each.is_persons
-        ),
+        *(f"{each.requirement.text}, measured {_number(each, result.run)}" for each in broken),
         *(f"{each.text}, which the run has no more" for each in gone),
     ]
 

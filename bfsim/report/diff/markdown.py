@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from bfsim.report.diff.difference import Change, Difference
+from bfsim.report.diff.rows import shown
 from bfsim.report.diff.sentences import verdict, why
 from bfsim.report.diff.tables import (
     RESULTS_LISTED,
+    all_row,
     cells,
     frame_heads,
     frame_rows,
@@ -16,7 +18,6 @@ from bfsim.report.diff.tables import (
     listed,
     scope,
     seen_lines,
-    shown,
 )
 from bfsim.report.markdown import escaped
 from bfsim.report.units import others_row
@@ -51,7 +52,7 @@ def contribution_rows(difference: Difference, top: int) -> Iterator[str]:
     if contributions:
         heads = f"Cycles of both cores in {frames_compared(difference)}", "before", "after", "difference"
         rows = ((INDENT * depth + labelled(each), *cells(each)) for depth, each in contributions)
-        yield from _table(heads, NUMBER, rows)
+        yield from _table(heads, NUMBER, (*rows, all_row(difference)))
 
 
 def _changes(title: str, changes: Sequence[Change], most: int | None = None) -> Iterator[str]:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
-from bfsim.report.diff.sentences import largest, verdict, why
+from bfsim.report.diff.rows import shown
+from bfsim.report.diff.sentences import verdict, why
 from bfsim.report.diff.side import SEPARATOR
 from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import counted, others_row
@@ -85,11 +85,16 @@ def contribution_table(difference: Difference, top: int) -> Iterator[Table]:
         bold = "bold" if each.kind is Kind.STAGE else "dim" if each.kind is Kind.FOLLOWS else None
         table.add_row("  " * depth + labelled(each), *cells(each), style=bold)
     table.add_section()
-    sums = difference.before_cclk, difference.after_cclk
-    table.add_row("All", *(counted(each) for each in sums), counted(difference.cclk, sign=True), style="bold")
+    table.add_row(*all_row(difference), style="bold")
     # where room is short the source text gives way, never a number
     table.expand, table.columns[0].ratio = True, 1
     yield table
+
+
+def all_row(difference: Difference) -> tuple[str, str, str, str]:
+    """Return what all contributions sum to."""
+    before, after = counted(difference.before_cclk), counted(difference.after_cclk)
+    return "All", before, after, counted(difference.cclk, sign=True)
 
 
 def frames_compared(difference: Difference) -> str:
@@ -111,25 +116,6 @@ def cells(contribution: Contribution) -> tuple[str, str, str]:
         "" if each is None else counted(each) for each in (contribution.before_cclk, contribution.after_cclk)
     )
     return before, after, counted(contribution.cclk, sign=True)
-
-
-def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
-    """Return the `top` largest contributions that have no parts, and what they are parts of, with their depths.
-
-    Before all others comes the one that is told in words, for it is the largest part of the largest. Waits that follow from
-    the rest are the last row.
-    """
-    rows = list(walk(each for each in difference.stages if each.kind is not Kind.FOLLOWS))
-    leaves = [each for _, each in rows if not each.parts and each.cclk]
-    told = [id(each) for each in largest(difference.stages)]
-    leaves.sort(key=lambda each: (id(each) not in told, -abs(each.cclk)))
-    wanted = {id(each) for each in leaves[:top]}
-    found = [(depth, each) for depth, each in rows if wanted & set(_ids(each))]
-    return [*found, *((0, each) for each in difference.stages if each.kind is Kind.FOLLOWS)]
-
-
-def _ids(contribution: Contribution) -> Iterable[int]:
-    return (id(each) for _, each in walk([contribution]))
 
 
 def _frame_table(difference: Difference) -> Iterator[Table]:
