@@ -49,6 +49,8 @@ def _verdict(placed: Placed) -> Iterator[str]:
             f"{before:.2f} → {after:.2f} ms a frame ({1000 / before:.2f} → {1000 / after:.2f} Hz): "
             f"gain {gain} % simulated, {predicted} % predicted."
         )
+    if placed.frames == 1:
+        yield "Of one frame, with the wait for its picture: the rate is higher with more."
     if after <= NEAR_CAMERA * placed.camera_ms:
         busy_ms = placed.before_busy_ms if placed.best is None else placed.trials[placed.best].busy_ms
         yield (

@@ -88,7 +88,8 @@ def configured(options: Options, folder: Path, scripts: Path) -> Configuration:
         return Configuration.model_validate(plain)
     except ValidationError as error:
         first = error.errors()[0]
-        raise ConfigError(f"{key_of(first['loc'])} {wrong_value(first)}") from error
+        hint = "; several values are a list in [axes]" if isinstance(first["input"], list) else ""
+        raise ConfigError(f"{key_of(first['loc'])} {wrong_value(first)}{hint}") from error
 
 
 def _text(value: object, path: str) -> str:

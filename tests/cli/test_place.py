@@ -132,6 +132,14 @@ def test_what_is_predicted_comes_true(home: Path) -> None:
     assert found("--firmware", "mine.py:firmware", "--ldf", "sdram") == plain
 
 
+def test_a_rate_of_one_frame_is_told_as_that(home: Path) -> None:
+    """It has the wait for the picture in it: `bfsim run` says more frames a second of more of them."""
+    told = [
+        bfsim("place", "drive.mcap", "--firmware", firmware("mine"), "--frames", each).output for each in "12"
+    ]
+    assert ["Of one frame, with the wait for its picture" in each for each in told] == [True, False]
+
+
 def test_where_the_cameras_bound_the_frame_less_work_is_better(home: Path) -> None:
     """Of frames that wait for their pictures the least work is taken, though its frames may end a cycle later; it was left where it was."""
     plain = found("--firmware", firmware("mine", ponder=1, turns=10), "--ldf", "sdram")

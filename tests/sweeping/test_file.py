@@ -131,6 +131,7 @@ def test_a_path_into_a_script_that_is_a_file(tmp_path: Path) -> None:
         ("axes.recording = [3]", "recording must be a valid string, not 3"),
         ("axes.configuration = 3", "axes.configuration must be a list of tables"),
         ("axes.ldf = ['l2']\naxes.configuration = [{ldf = 'l2'}]", "ldf must be in one axis, not in both"),
+        ("base.ldf = ['l2', 'sdram']\naxes.frames = [1]", "ldf must be a valid string, not ['l2', 'sdram']; several values are a list in [axes]"),
         ("axes.script = [3]", "script must be a valid string, not 3"),
         ("base.script = 'no.toml'\naxes.script.send = [[]]", "no.toml must be a readable file"),
         ("axes.script.day = [1979-05-27]", "script must be numbers, text, lists and tables"),
