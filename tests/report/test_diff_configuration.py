@@ -9,6 +9,7 @@ import pytest
 from bfsim.errors import ConfigError
 from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.compare import difference_of
+from bfsim.report.diff.difference import Change
 from bfsim.report.diff.markdown import diff_markdown
 from bfsim.report.diff.sentences import clock, code
 from bfsim.report.diff.tables import diff_report
@@ -46,6 +47,18 @@ def test_the_configuration_comes_first() -> None:
         ("ldf", "thesis", "l2"),
         ("ldf: content", "4" * 12, "9" * 12),
     ]
+
+
+def test_many_buffers_that_went_one_way_are_one_row() -> None:
+    """Of another placement there were fifty rows before the cycles; JSON and the page have them all."""
+    one = run(kernel(line(12, 1, 10)))
+    ways = [(f"buffer ring{n}", "L1", "L2") for n in range(9)] + [("buffer table", "L2", "SDRAM")]
+    changes = tuple(Change(what=what, before=before, after=after) for what, before, after in ways)
+    found = replace(difference_of(one, run(kernel(line(12, 1, 30)))), configuration=changes)
+    rows = ["| buffer ring0 and 8 others | L1 | L2 |", "| buffer table | L2 | SDRAM |"]
+    assert [each for each in diff_markdown(found, 5).splitlines() if "buffer" in each] == rows
+    assert any("buffer ring0 and 8 others" in each for each in printed(diff_report(found, 5)))
+    assert "buffer ring8" in diff_json(found)
 
 
 def test_code_of_another_gcc_is_named() -> None:

@@ -14,6 +14,7 @@ from bfsim.report.diff.tables import (
     frame_heads,
     frame_rows,
     frames_compared,
+    in_short,
     labelled,
     listed,
     scope,
@@ -36,7 +37,7 @@ def _lines(difference: Difference, top: int) -> Iterator[str]:
     yield f"**{verdict(difference)}**"
     for each in (*why(difference), *scope(difference)):
         yield f"\n{escaped(each)}"
-    yield from _changes("Configuration", difference.configuration)
+    yield from _changes("Configuration", [*in_short(difference.configuration)])
     yield from contribution_rows(difference, top)
     if difference.changed_frames:
         title, _, *heads = frame_heads(difference)

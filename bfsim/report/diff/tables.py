@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from rich.console import RenderableType
 from rich.table import Table
@@ -21,6 +22,9 @@ CHANGED_LISTED = 5
 RESULTS_LISTED = 10
 """Published numbers that changed which are listed."""
 
+CHANGED_ALIKE = 3
+"""So many things that went from the same to the same have a row each."""
+
 FILES_LISTED = 6
 """So many files, or numbers of a board, are listed of each side."""
 
@@ -29,7 +33,7 @@ def diff_report(difference: Difference, top: int) -> RenderableType:
     """Return the difference: what it is, what was compared, the `top` contributions, frames, results and what was seen."""
     return stacked(
         Text("\n".join([verdict(difference), *why(difference), *scope(difference)])),
-        *_change_table("What differs in the configuration", "What", difference.configuration),
+        *_change_table("What differs in the configuration", "What", [*in_short(difference.configuration)]),
         *contribution_table(difference, top),
         *_frame_table(difference),
         *_change_table(
@@ -65,6 +69,18 @@ def _change_table(
         if most and len(changes) > most:
             table.add_row(others_row(len(changes) - most))
         yield table
+
+
+def in_short(changes: Sequence[Change]) -> Iterator[Change]:
+    """Yield the changes; more than a few from the same to the same, as of buffers that lie elsewhere, as one."""
+    alike: dict[tuple[str, str], list[Change]] = {}
+    for each in changes:
+        alike.setdefault((each.before, each.after), []).append(each)
+    for same in alike.values():
+        if len(same) <= CHANGED_ALIKE:
+            yield from same
+        else:
+            yield replace(same[0], what=f"{same[0].what} and {len(same) - 1} others")
 
 
 def listed(text: str) -> str:
