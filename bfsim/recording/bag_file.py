@@ -18,6 +18,9 @@ from bfsim.errors import RecordingError, cut
 from bfsim.recording.container import McapContainer
 from bfsim.recording.layout import IMAGE_SCHEMA
 
+METADATA = "metadata.yaml"
+"""What the folder of a bag of ROS 2 has beside its files."""
+
 
 @dataclass(frozen=True, slots=True)
 class Topic:
@@ -102,7 +105,12 @@ class BagFile:
         """Say what the file is, or how it is mended."""
         if self.is_ros1:
             return "; `rosbag reindex` may mend it"
-        return "; it is a recording already, which `bfsim run` plays" if is_recording(self.path) else ""
+        if self.path.is_dir() and not (self.path / METADATA).exists():
+            return f"; {METADATA} is written at the end of a recording: `ros2 bag reindex` does it later"
+        if is_recording(self.path):
+            return "; it is a recording already, which `bfsim run` plays"
+        has_mcap = self.path.suffix == ".mcap" or any(self.path.glob("*.mcap"))
+        return "; `mcap recover` may mend it" if has_mcap else ""
 
 
 def is_recording(path: Path) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -40,6 +41,9 @@ _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ), "video"),
 }  # fmt: skip
 
+_OF_BAG = re.compile(r"\.db3$|_\d+\.mcap$")
+"""How the files in a bag of ROS 2 are called."""
+
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
@@ -72,12 +76,20 @@ class PictureSource:
 def guess_format(source: str) -> SourceFormat | None:
     """Format of a source by its name; None if the name does not tell. A GIF by itself is an animation."""
     path = Path(source)
-    if (path / "metadata.yaml").is_file():
+    if (path / "metadata.yaml").is_file() or _is_cut_bag(path):
         return "rosbag"
     if path.is_dir() or is_pattern(source):
         return "images"
     suffix = path.suffix.lower()
     return _FILE_SUFFIXES.get(suffix, "images" if suffix in IMAGE_SUFFIXES else None)
+
+
+def _is_cut_bag(path: Path) -> bool:
+    """Whether a folder holds the files of a bag of ROS 2 whose recorder died before it wrote the metadata, and no pictures."""
+    names = [
+        each.name.lower() for each in path.glob("*")
+    ]  # none where the folder cannot be read, which its reader tells
+    return any(map(_OF_BAG.search, names)) and not any(each.endswith(tuple(IMAGE_SUFFIXES)) for each in names)
 
 
 def is_pattern(source: str) -> bool:

@@ -9,6 +9,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RecordingWriter
@@ -103,6 +104,26 @@ def test_other_files_are_no_bags(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="bag must be whole and of ROS"):
         import_recording([tmp_path], tmp_path.parent / "out.mcap")
     assert not Path("pwned").exists()
+
+
+def test_a_recording_that_was_cut_short_is_told_how_it_is_mended(tmp_path: Path) -> None:
+    """A bag of ROS 2 whose recorder died has a part of a file and no metadata: it was no bag, and no advice was given."""
+    ros = Ros("mcap")
+    path = ros.write(tmp_path, grey_pair(ros, range(2)))
+    (file,) = path.glob("*.mcap")
+    whole = file.read_bytes()
+    file.write_bytes(whole[: len(whole) // 2])
+    for source in (file, path):
+        with pytest.raises(RecordingError, match=r"must be whole and of ROS: .*; `mcap recover` may mend it"):
+            import_recording([source], tmp_path / "out.mcap")
+    (path / "metadata.yaml").unlink()
+    file.rename(path / "drive_0.mcap")
+    with pytest.raises(RecordingError, match=r"metadata.yaml is written at the end .* `ros2 bag reindex`"):
+        import_recording([path], tmp_path / "out.mcap")
+    Image.new("L", (8, 4)).save(path / "seen.png")
+    assert import_recording([path], tmp_path / "out.mcap", mono=True).frame_count == 1, (
+        "pictures beside recordings"
+    )
 
 
 def test_nothing_is_made_of_the_definitions_in_a_bag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
