@@ -19,7 +19,7 @@ from bfsim.blackfin.image import Use
 from bfsim.blackfin.objects import read_object
 from bfsim.building import build_for
 from bfsim.compiling.loaded_code import LoadedCode
-from bfsim.compiling.object_code import object_code
+from bfsim.compiling.object_code import _shipped_programs, object_code
 from bfsim.errors import BfsimWarning
 from bfsim.explain import explain_named
 from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
@@ -226,7 +226,9 @@ def _nothing_at_hand(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterato
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr("bfsim.store.shipped", lambda _package, _name: None)
+    _shipped_programs.cache_clear()
     yield
+    _shipped_programs.cache_clear()
 
 
 @pytest.mark.usefixtures("_nothing_at_hand")
