@@ -72,3 +72,17 @@ PEAKS: dict[str, Case] = {
 }
 
 test_a_peak_is_near, test_a_peak_is_what_python_finds = beside_gcc(PEAKS, counts=(1, 60, 200))
+
+DOWNWARDS = """
+def f(a: u8[:], o: u8[:], n: i32, t: i32) -> i32:
+    s = 0
+    for i in range(n - 1, -1, -1):
+        {}
+    return s
+"""
+WALKS: dict[str, Case] = {
+    "the one above": (DOWNWARDS.format("o[i] = a[i + 1]"), 441, 0.06),
+    "up while the other goes down": (DOWNWARDS.format("o[i] = a[250 - i]"), 420, 0.02),
+}
+
+test_a_walk_down_is_near, test_a_walk_down_is_what_python_does = beside_gcc(WALKS, counts=(1, 60, 200))

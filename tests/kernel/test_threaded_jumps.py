@@ -18,6 +18,15 @@ def near(v: i32, w: i32) -> i32:
 @kernel
 def is_digit(c: i32) -> i32:
     return 1 if 48 <= c <= 57 else 0
+
+
+@kernel
+def hex_value(c: i32) -> i32:
+    if 48 <= c <= 57:
+        return c - 48
+    if 65 <= c <= 70:
+        return c - 55
+    return -1
 """
 AROUND = """
 def f(a: u8[:], n: i32) -> i32:
@@ -50,6 +59,25 @@ def f(a: {}[:], o: u16[:], n: i32) -> i32:
         s ^= a[i]
     return s
 """
+# `i + 4` is done at once before several tests, and `i + 3` behind all of them
+DIGITS = """
+def f(a: u8[:], n: i32, t: i32) -> i32:
+    k = 0
+    i = 0
+    while i < n:
+        i += 1
+        if i + 2 >= n or a[i] > t:
+            k += 1
+            continue
+        high = hex_value(a[i + 1])
+        low = hex_value(a[i + 2])
+        i += 3
+        if high < 0 or low < 0 or (high << 4 | low) != t:
+            k += 256
+        else:
+            k += 65536
+    return k
+"""
 COUNTS = "if a[(i + dy) * 10 + 5 + dx] > 100:\n                    s += 1"
 
 # Without these rules estimates are off by up to 61 %.
@@ -71,6 +99,7 @@ CASES = {
     "the middle of a line": (SKIPPING.format("-2, 3", "j == 0", "continue"), 3388, 0.05),
     "a helper says which": (HINTED.format("i16", "near(a[i], 60)"), 1902, 0.05),
     "a helper says which not": (HINTED.format("i16", "not near(a[i], 60)"), 4782, 0.06),
+    "two helpers with numbers": (DIGITS, 3385, 0.02),
     "a helper with two tests": (HINTED.format("u8", "not is_digit(a[i])"), 4473, 0.06),
 }
 OTHERS = {

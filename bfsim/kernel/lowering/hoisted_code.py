@@ -98,6 +98,8 @@ def _text(flow: ControlFlow, operation: _Operation) -> str:
 def _moved(flow: ControlFlow, label: str, operation: _Operation) -> Routine:
     """Do an operation at the end of a block, and nowhere that comes behind it."""
     name = f"{operation.first.result}{BEFORE_TESTS}"
+    while name in flow.defined:  # the same is done before other tests, too
+        name += BEFORE_TESTS
     behind = {
         each.result or "": name
         for home in operation.homes

@@ -34,16 +34,26 @@ def _computed(flow: ControlFlow, loop: Loop, phi: Instruction) -> Instruction | 
     following = arms_of(counter)
     stepped = flow.instruction(following.get(loop.latch, ""))
     entering = flow.entering(loop)
-    numbers = [arms.get(entering, ""), following.get(entering, ""), stepped.operands[-1] if stepped else ""]
     if stepped is None or stepped.opcode != "add" or stepped.operands[0] != counter.result:
         return None
-    if len(arms) != 2 or not all(map(is_number, numbers)):
+    if len(arms) != 2 or not is_number(stepped.operands[-1]):
         return None
-    first, start, step = map(int, numbers)
-    if first != start - step:
+    step = int(stepped.operands[-1])
+    (base, first), (other, start) = (_sum(flow, each[entering]) for each in (arms, following))
+    if base != other or first != start - step:
         return None
     text = f"add nsw i32 {counter.result}, {-step}"
     return Instruction(phi.result, "add", text, (counter.result or "", str(-step)), stepped.line)
+
+
+def _sum(flow: ControlFlow, value: str) -> tuple[str, int]:
+    """Return a value as the sum of another one, or of nothing, and a number."""
+    each = flow.instruction(value)
+    if is_number(value):
+        return "", int(value)
+    if each is not None and each.opcode == "add" and is_number(each.operands[-1]):
+        return each.operands[0], int(each.operands[-1])
+    return value, 0
 
 
 def _with(block: BasicBlock, found: dict[str | None, Instruction]) -> BasicBlock:
