@@ -72,10 +72,13 @@ def with_kept_bounds(text: str) -> str:
 
 
 def _each_kept(flow: ControlFlow) -> Iterator[_Kept]:
-    seen = set[str]()
+    """Such tests, of which none is on a way to the chain of another."""
+    seen, ends = set[str](), set[str]()
     for loop in flow.loops:
         for label in flow.inside(loop):
-            if label not in seen and label != loop.header and (kept := _kept(flow, loop, label)) is not None:
+            kept = _kept(flow, loop, label) if label != loop.header and label not in seen else None
+            if kept is not None and ends.isdisjoint(kept.before):
+                ends.add(kept.chain[-1])
                 yield kept
             seen.add(label)
 
@@ -189,7 +192,7 @@ def _copy(block: BasicBlock, copies: Mapping[str, str], goal: str) -> BasicBlock
     if goal:
         end = block.terminator
         rows[-1] = Instruction(None, "br", f"br label %{goal}", (), end.line, location=end.location)
-    copy = BasicBlock(label, tuple(rows))
+    copy = replace(block, label=label, instructions=tuple(rows))
     for each in block.successors:
         copy = going_to(copy, each, copies.get(each, each))
     return copy
@@ -198,14 +201,15 @@ def _copy(block: BasicBlock, copies: Mapping[str, str], goal: str) -> BasicBlock
 def _without_empty_blocks(routine: Routine, kept: Iterable[BasicBlock]) -> Routine:
     """Return `routine` without empty blocks, but those that are `kept`, where no phi tells them from another way."""
     blocks = {each.label: each for each in routine.blocks}
-    for label in [*blocks.keys() - {each.label for each in kept}]:
-        (goal, *others) = blocks[label].successors
-        before = [each.label for each in blocks.values() if label in each.successors]
+    stays = {each.label for each in kept}
+    for block in routine.blocks:
+        before = [each.label for each in blocks.values() if block.label in each.successors]
+        goals = block.successors
+        is_empty = len(block.instructions) == len(goals) == 1 and not block.enters
         if (
-            others
-            or len(blocks[label].instructions) > 1
-            or any(goal in blocks[each].successors for each in before)
+            is_empty
+            and block.label not in stays
+            and not any({*goals} & {*blocks[each].successors} for each in before)
         ):
-            continue
-        bypass(blocks, before, label, goal)
+            bypass(blocks, before, block.label, goals[0])
     return replace(routine, blocks=tuple(blocks.values()))
