@@ -53,6 +53,7 @@ class ScalarEvolution:
     ) -> None:
         self.flow, self.code_motion, self.evaluates = flow, code_motion, evaluates
         self.headers = {loop.header for loop in flow.loops}
+        self.merged: dict[tuple[str, int], Affine | None] = {}
 
     def affine(self, value: str, depth: int = DEEPEST) -> Affine:
         """Return `value` as a sum; an address in bytes."""
@@ -84,8 +85,11 @@ class ScalarEvolution:
 
     def _merged(self, phi: Instruction, depth: int) -> Affine | None:
         """The sum that comes to a phi on every way, as where the end of a loop was copied."""
-        first, *others = {self.affine(arm, depth - 1) for arm in arms_of(phi).values()}
-        return None if others else first
+        key = phi.result or "", depth
+        if key not in self.merged:
+            first, *others = {self.affine(arm, depth - 1) for arm in arms_of(phi).values()}
+            self.merged[key] = None if others else first
+        return self.merged[key]
 
     def increment(self, value: str, loop: Loop) -> Increment | None:
         """Return what `value` gains per iteration of `loop`; None if that changes from iteration to iteration."""
