@@ -276,6 +276,12 @@ class Expressions(Names):
                     "let the caller pass the one that is meant, or write an `if` with a line for each array",
                 )
         yes, no = self.expression(node.body), self.expression(node.orelse)
+        if yes.type is no.type is BOOL:
+            self.source.refuse(
+                node,
+                "a choice is between numbers, and these are truth values",
+                "write it with `and`, `or` and `not`: `a if b else False` is `b and a`",
+            )
         yes, no, kind = self._pair(node.body, yes, node.orelse, no)
         return tree.Choose(test, yes, no, kind, node.lineno)
 

@@ -174,6 +174,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x = other(x, row[2:])", "row[2:]", "row must be an array u8[:]; pass the whole array on, and where its part begins as an i32"),
         ("y = row if x else col", "row if", "a choice is between numbers, and row is an array; let the caller pass the one that is meant"),
         ("y = 1 if x else col", "col", "a choice is between numbers, and col is an array"),
+        ("y = x < 2 if x > 3 else False", "x < 2 if", "a choice is between numbers, and these are truth values; write it with `and`, `or`"),
         ("y = x < 1\n    y = 2", "2", "y holds bool, not i32; use another name"),
         ("y: u8 = 1", "y: u8", "a local is an i32, a u32 or an f32 with a value; write x: u32 = 0"),
         ("x: u32 = 1", "x: u32", "x is i32 already, not u32; use another name"),
