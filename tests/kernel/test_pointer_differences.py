@@ -62,7 +62,20 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
             best = {wanted}
     return best * 256 + top
 """
+IN_A_PICTURE = """
+def f(a: u8[:], n: i32, t: i32) -> i32:
+    best = -1
+    top = 0
+    for y in range(16):
+        for x in range(n >> 4):
+            p = y * (n >> 4) + x
+            if a[p] > top:
+                top = a[p]
+                best = p
+    return best * 256 + top
+"""
 PEAKS: dict[str, Case] = {
+    "in a picture": (IN_A_PICTURE, 1769, 0.09),
     "in all": (PEAK.format(limits="n", wanted="i"), 1646, 0.005),
     "from a variable on": (PEAK.format(limits="t, n", wanted="i"), 854, 0.005),
     "in a window": (PEAK.format(limits="t, t + 50", wanted="i"), 451, 0.02),

@@ -161,8 +161,14 @@ class Choice:
         return self.evolution.affine(lowest.operands[-1]).plus(Affine(constant=self._step(wanted)))
 
     def _step(self, wanted: Wanted) -> int:
-        """By how much it has been stepped then: the counter itself is one of the loop's first values."""
-        is_stepped = self.variable.steps_free and wanted.name != self.wishes.counter
+        """By how much it has been stepped then: the counter, and a sum that the address is computed from, are there before."""
+        label, access, _ = self.variable.accesses[0]
+        home, made = self.flow.defined[wanted.name]
+        rows = self.flow.blocks[label].instructions
+        is_before = (
+            rows.index(made) < rows.index(access) if home == label else home in self.flow.dominators[label]
+        )
+        is_stepped = self.variable.steps_free and not is_before
         return self.variable.increment.constant if is_stepped else 0
 
     def is_simple(self, wanted: Wanted) -> bool:
