@@ -22,6 +22,7 @@ from tinyphoon.stages.rosenfeld_blobs import (
     LABELS,
     count_pixel,
     count_row,
+    label_picture,
     label_row,
     rename_row,
     rosenfeld_blobs,
@@ -137,16 +138,14 @@ def segment_in_two_passes(
     core: Core, frame: Frame, colours: int, segments: int
 ) -> Generator[Any, Any, tuple[int, int]]:
     """Segment as `segment_colours` does, but count pixels while they are renamed."""
-    words, labels = core.rows("opened_image"), core.rows("label_image")
+    labels = core.rows("label_image")
     table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
-    for blank in (table, numbers, *labels):
-        yield core.run(clear_labels, blank)
-    used = 0
+    used = yield from label_picture(core, frame, colours)
     for y in range(frame.height):
-        used = yield core.run(label_row, words[y], labels[max(y - 1, 0)], labels[y], table, colours, used)
-    for y in range(frame.height):
+        core.at(y)
         counted = table, numbers, blobs, colours, y, segments
         segments = yield core.run(rename_and_count_row, labels[y], *counted)
+    core.at()
     return segments, max(0, used - LABELS + 1)
 
 

@@ -1,6 +1,6 @@
 """Loops with two bounds, of a counter and of what only some iterations count: the others do not test the second one again.
 
-Without this, and without what a loop that is counted behind its start begins with, an estimate is off by up to 110 %.
+Without this, and without what a loop that is counted behind its start begins with, an estimate is off by up to 114 %.
 """
 
 from __future__ import annotations

@@ -160,20 +160,21 @@ class CopiedWays:
 
     def _add(self, label: str, of: Ways) -> None:
         """Add the copy of a block; where the number is known its test is left out."""
-        ending = label.rsplit(".", 1)[1]
-        names = {each.result: f"{each.result}.{ending}" for each in of.block.instructions if each.result}
-        rows = [
-            renamed(replace(each, result=names.get(each.result or "")), names)
-            for each in of.block.instructions
-        ]
-        end = of.block.terminator
-        if len(of.ways) == 1:
-            text = f"br label %{of.ways[0]}"
-            rows[-1] = Instruction(None, "br", text, (), end.line, location=end.location)
-        block = replace(of.block, label=label, instructions=tuple(rows))
+        block = copied_block(of.block, label, of.ways[0] if len(of.ways) == 1 else "")
         for way in set(of.ways):
             block = going_to(block, way, self.copies.get((way, of.known), way))
         self.blocks[label] = block
+
+
+def copied_block(block: BasicBlock, label: str, goal: str = "") -> BasicBlock:
+    """Return a block with names of its own, which end as its `label` does; it leads to `goal`, if there is one, and makes no test."""
+    ending = label.rsplit(".", 1)[1]
+    names = {each.result: f"{each.result}.{ending}" for each in block.instructions if each.result}
+    rows = [renamed(replace(each, result=names.get(each.result or "")), names) for each in block.instructions]
+    if goal:
+        end = block.terminator
+        rows[-1] = Instruction(None, "br", f"br label %{goal}", (), end.line, location=end.location)
+    return replace(block, label=label, instructions=tuple(rows))
 
 
 def _leading_past(nodes: Mapping[Node, Ways]) -> set[Node]:

@@ -45,7 +45,10 @@ class HardwareLoops:
         return bool(self.code.of[end]) or len(before) == 1
 
     def _begins_behind_end(self, loop: Loop) -> bool:
-        """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it."""
+        """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it.
+
+        Where the first block was copied to where it is entered [copy_bb_p in bb-reorder.cc], nothing is moved.
+        """
         is_next = loop.latch in self.flow.blocks[self.flow.ending(loop)].successors
         is_all = not loop.header.endswith(SECOND)  # of a test with several parts each would have to be moved
         return is_next and is_all and loop.header not in self.copied and not self._is_one_block(loop)

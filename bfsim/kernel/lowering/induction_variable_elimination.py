@@ -51,7 +51,7 @@ def eliminated_counters(
 
     `frequency`: how often each block runs; empty where that is not asked. `prepares`: whether differences to what is computed before the
     loop count. `weighs`: whether GCC's costs are added up (`pointer_differences`), for sums
-    of a counter, and for the counter itself beside an access of an array from its start.
+    of a counter, and for the counter itself where it alone indexes the array.
     """
     found: dict[str, EliminatedCounter] = {}
     for variable in variables.all:

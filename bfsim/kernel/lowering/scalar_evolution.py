@@ -52,8 +52,8 @@ class ScalarEvolution:
         self, flow: ControlFlow, code_motion: InvariantCodeMotion, *, evaluates: bool = True
     ) -> None:
         self.flow, self.code_motion, self.evaluates = flow, code_motion, evaluates
-        self.headers = {loop.header for loop in flow.loops}
-        self.merged: dict[tuple[str, int], Affine | None] = {}
+        self._headers = {loop.header for loop in flow.loops}
+        self._sums_of_phis: dict[tuple[str, int], Affine | None] = {}
 
     def affine(self, value: str, depth: int = DEEPEST) -> Affine:
         """Return `value` as a sum; an address in bytes."""
@@ -79,17 +79,17 @@ class ScalarEvolution:
                 return Affine().plus(self.affine(each.operands[0], depth - 1), 1 << number)
             case "mul" if number is not None:
                 return Affine().plus(self.affine(each.operands[0], depth - 1), number)
-            case "phi" if self.flow.defined[value][0] not in self.headers:
+            case "phi" if self.flow.defined[value][0] not in self._headers:
                 return self._merged(each, depth) or alone
         return alone
 
     def _merged(self, phi: Instruction, depth: int) -> Affine | None:
         """The sum that comes to a phi on every way, as where the end of a loop was copied."""
         key = phi.result or "", depth
-        if key not in self.merged:
+        if key not in self._sums_of_phis:
             first, *others = {self.affine(arm, depth - 1) for arm in arms_of(phi).values()}
-            self.merged[key] = None if others else first
-        return self.merged[key]
+            self._sums_of_phis[key] = None if others else first
+        return self._sums_of_phis[key]
 
     def increment(self, value: str, loop: Loop) -> Increment | None:
         """Return what `value` gains per iteration of `loop`; None if that changes from iteration to iteration."""

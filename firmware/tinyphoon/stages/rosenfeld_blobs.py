@@ -167,18 +167,25 @@ def close_blobs(blob_data: u32[:], blobs: i32) -> None:
         close_blob(blob_data, blob)
 
 
-def segment_colours(
-    core: Core, frame: Frame, colours: int, segments: int
-) -> Generator[Any, Any, tuple[int, int]]:
-    """Add the segments of these colours to the `segments` records before; returns how many there are then, and how many labels too few."""
-    words, labels = core.rows("opened_image"), core.rows("label_image")
-    table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
-    for blank in (table, numbers, *labels):
+def label_picture(core: Core, frame: Frame, colours: int) -> Generator[Any, Any, int]:
+    """Label the pixels of these colours, with a look-up table of what they are to become; returns how many labels were wanted."""
+    words, labels, table = core.rows("opened_image"), core.rows("label_image"), core.array("label_table")
+    for blank in (table, core.array("segment_numbers"), *labels):
         yield core.run(clear_labels, blank)
     used = 0
     for y in range(frame.height):
         core.at(y)
         used = yield core.run(label_row, words[y], labels[max(y - 1, 0)], labels[y], table, colours, used)
+    return used
+
+
+def segment_colours(
+    core: Core, frame: Frame, colours: int, segments: int
+) -> Generator[Any, Any, tuple[int, int]]:
+    """Add the segments of these colours to the `segments` records before; returns how many there are then, and how many labels too few."""
+    labels = core.rows("label_image")
+    table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
+    used = yield from label_picture(core, frame, colours)
     for y in range(frame.height):
         core.at(y)
         yield core.run(rename_row, labels[y], table)
