@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.firmware.object_rig import HEIGHT, THESIS, WIDTH
-from tests.firmware.test_object_sight import see
+from tests.firmware.sight_rig import see
 from tinyphoon.stages.rectangle_ends import LEFT_HIDDEN, RIGHT_HIDDEN
 from tinyphoon.stores.objects import BY_FLOOR
 from tinyphoon.strategy.models import BLUE, MODELS

@@ -1,34 +1,26 @@
-"""What a camera sees of objects by itself: each test with a record that passes and one that fails, and the reference."""
+"""What a camera sees of objects by itself: each test with a record that passes and one that fails."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from bfsim.recording import StereoGeometry
-from tests.firmware import object_references as references
-from tests.firmware.object_rig import (
-    HEIGHT,
-    THESIS,
-    THRESHOLDS,
-    WIDTH,
-    as_dicts,
-    blob_words,
-    circle_words,
-    geometry_words,
-    line_words,
-    models_of,
-    object_words,
-    rectangle_words,
+from tests.firmware.object_rig import THRESHOLDS, object_words
+from tests.firmware.sight_rig import (
+    BALL,
+    BLUE_GOAL,
+    BORDERS,
+    CIRCLE,
+    MARKER,
+    MOUTH,
+    ROUND,
+    SEEN_WELL,
+    YELLOW_GOAL,
+    see,
 )
-from tinyphoon.stages.object_detection import ObjectThresholds
-from tinyphoon.stages.object_sight import place_for, see_objects
+from tinyphoon.stages.object_sight import place_for
 from tinyphoon.stores.objects import (
     AREA_TEST,
     BY_FLOOR,
@@ -36,89 +28,11 @@ from tinyphoon.stores.objects import (
     CENTRE_TEST,
     COLOUR_TEST,
     DIMENSION_TEST,
-    OBJECT_WORDS,
-    SEEN_LEFT,
     SIZE_TEST,
 )
-from tinyphoon.strategy.models import BLUE, MODELS, RED, YELLOW
+from tinyphoon.strategy.models import MODELS, RED, YELLOW
 
-BALL, BLUE_GOAL, YELLOW_GOAL, MARKER = MODELS
 OFTEN = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
-
-# A ball 450 mm away: 52 px, on the floor. Its circle, with both tests passed.
-ROUND = {"colours": YELLOW, "pixels": 2123, "left": 134, "right": 185, "top": 103, "bottom": 154}
-CIRCLE = {"x": 2552, "y": 2056, "radius": 412, "blob": 0, "tests": 3, "arc": 0}
-# A goal from the front, its bottom line one px below the blob.
-MOUTH = {"colours": BLUE, "pixels": 9000, "left": 60, "right": 260, "top": 60, "bottom": 106}
-BORDERS = {"left": 1, "right": 2, "top": -1, "bottom": 0, "blob": 0}
-LINES = [(952, 1720, 4168, 1720), (952, 952, 952, 1700), (4168, 1700, 4168, 952)]
-
-
-def plain_ends(boxes: Sequence[dict[str, int]], rectangle: dict[str, Any]) -> dict[str, Any]:
-    """What a rectangle has where both ends are as its blob is, and nothing hides them."""
-    box = boxes[rectangle["blob"]] if rectangle["blob"] < len(boxes) else MOUTH
-    rows, foot = (box["top"], box["bottom"]), 16 * box["bottom"] + 8
-    return {"hidden": 0, "left_rows": rows, "right_rows": rows, "left_foot": foot, "right_foot": foot}
-
-
-def record_of(rectangle: dict[str, Any]) -> list[int]:
-    """The words of a t_Rectangle."""
-    lines = [rectangle[name] for name in ("left", "right", "top", "bottom", "blob", "hidden")]
-    return [
-        *(*lines, *rectangle["left_rows"], *rectangle["right_rows"]),
-        *(rectangle["left_foot"], rectangle["right_foot"]),
-    ]
-
-
-def see(
-    boxes: list[dict[str, int]],
-    circles: list[dict[str, int]] = [],  # noqa: B006
-    rectangles: list[dict[str, int]] = [],  # noqa: B006
-    *,
-    parents: Sequence[int] | None = None,
-    lines: Any = LINES,
-    models: Any = MODELS,
-    thresholds: ObjectThresholds = THRESHOLDS,
-    geometry: StereoGeometry = THESIS,
-    room: int = 16,
-    size: tuple[int, int] = (WIDTH, HEIGHT),
-) -> list[dict[str, int]]:
-    """What the kernel sees, which must be what the reference sees."""
-    words = geometry_words(geometry)
-    table = np.full(room * OBJECT_WORDS, 77, np.int16)
-    parents = range(len(boxes)) if parents is None else parents
-    rounds = [(c["x"], c["y"], c["radius"], c["blob"], 0, 0, 0, c["tests"], c["arc"]) for c in circles]
-    rectangles = [plain_ends(boxes, each) | each for each in rectangles]
-    found = see_objects(
-        *(blob_words(*boxes), np.array(parents, np.uint8), len(boxes), models_of(*models)),
-        *(
-            circle_words(*rounds),
-            len(rounds),
-            rectangle_words(*map(record_of, rectangles)),
-            len(rectangles),
-            line_words(lines),
-        ),
-        *(words, np.array(thresholds.limits, np.int32), table, SEEN_LEFT, *size),
-    )
-    scene = (
-        boxes,
-        parents,
-        models,
-        circles,
-        rectangles,
-        lines,
-        words.tolist(),
-        thresholds,
-        SEEN_LEFT,
-        size,
-        room,
-    )
-    wanted, count = references.sight(*scene)
-    seen = as_dicts(table)
-    assert found == count
-    assert seen[: len(wanted)] == wanted
-    assert not any(each["model"] for each in seen[len(wanted) :])
-    return wanted
 
 
 def test_a_ball_that_passes_all_tests() -> None:
@@ -193,7 +107,6 @@ def test_the_area_of_the_circle_as_the_thesis_has_it(
 
 # The left third of it: a robot hides the others, but for a bit of outline at the top.
 SLICE = ROUND | {"right": 150, "pixels": 600}
-SEEN_WELL = CIRCLE | {"arc": THRESHOLDS.hidden_arc}
 
 
 def test_a_hidden_ball_whose_outline_tells_its_size() -> None:
@@ -253,74 +166,6 @@ def test_a_goal_that_fails(box: dict[str, int], borders: dict[str, int], passed:
         assert (each["measures"] == BY_FLOOR) == bool(each["tests"] & DIMENSION_TEST)
 
 
-@pytest.mark.parametrize(
-    ("box", "passed"),
-    [
-        (MOUTH | {"left": 1, "right": 31}, True),  # half a goal at the picture's left border may go on
-        (MOUTH | {"left": 2, "right": 32}, False),
-        (MOUTH | {"left": 288, "right": 318}, True),
-        (MOUTH | {"left": 287, "right": 317}, False),
-    ],
-)
-def test_what_leaves_the_picture_may_be_larger(box: dict[str, int], passed: bool) -> None:
-    """The dimension test takes what it sees as the least."""
-    (found,) = see([box], models=(BLUE_GOAL,))
-    assert bool(found["tests"] & DIMENSION_TEST) == passed
-
-
-# The end of a goal, seen from the side of it: its top is 230 mm away, so 151 px are 90 mm.
-GOAL_CUT_BELOW = MOUTH | {"left": 100, "right": 250, "top": 86, "bottom": 238}
-
-
-@pytest.mark.parametrize(
-    ("change", "passed"),
-    [
-        ({}, True),
-        ({"left": 5, "right": 310}, True),
-        ({"left": 180}, False),  # 42 mm: less than two thirds of the least width, 75 mm
-        ({"top": 52}, False),  # 20 mm below the camera, but over the horizon
-        ({"top": 70}, False),  # 434 mm away 169 px would be 190 mm high
-        ({"top": 190}, False),  # 57 mm away 151 px would be 22 mm wide
-        ({"left": 1}, False),  # in a corner of the picture nobody knows
-        ({"top": 1}, False),
-    ],
-)
-def test_a_goal_that_the_picture_cuts_below(change: dict[str, int], passed: bool) -> None:
-    """Its top tells how far away it is, and so how large what is seen of it may look."""
-    (found,) = see([GOAL_CUT_BELOW | change], models=(BLUE_GOAL,))
-    assert bool(found["tests"] & DIMENSION_TEST) == passed
-
-
-@pytest.mark.parametrize(
-    ("box", "passed"),
-    [
-        ({"left": 90, "right": 230, "top": 160, "bottom": 238}, True),  # 218 mm away it looks 106 px large
-        ({"left": 40, "right": 280, "top": 160, "bottom": 238}, False),
-        ({"left": 140, "right": 178, "top": 160, "bottom": 238}, False),
-    ],
-)
-def test_a_ball_that_the_picture_cuts_below(box: dict[str, int], passed: bool) -> None:
-    """A floor of its colour is no ball, and a spot of it neither."""
-    (found,) = see([ROUND | box], models=(BALL,))
-    assert bool(found["tests"] & DIMENSION_TEST) == passed
-
-
-@pytest.mark.parametrize(("right", "passed"), [(305, True), (318, False), (180, False)])
-def test_a_mark_that_the_picture_cuts_above(right: int, passed: bool) -> None:
-    """By cameras that look down 30 degrees: its lower border is 88 mm away, so 206 px are 47 mm, and 81 px 18 mm."""
-    steep = replace(THESIS, tilt_deg=30.0)
-    box = {"colours": RED, "pixels": 5000, "left": 100, "right": right, "top": 1, "bottom": 150}
-    (found,) = see([box], models=(MARKER,), geometry=steep)
-    assert bool(found["tests"] & DIMENSION_TEST) == passed
-
-
-def test_a_bottom_out_of_the_picture_tells_no_distance() -> None:
-    """The floor below is not seen."""
-    (found,) = see([GOAL_CUT_BELOW], models=(BLUE_GOAL,))
-    assert found["tests"] & DIMENSION_TEST
-    assert found["measures"] == 0
-
-
 def test_a_mark_hangs_over_the_floor() -> None:
     """Its lower border is at 70 mm: 50 mm below the camera."""
     box = {"colours": RED, "pixels": 5000, "left": 110, "right": 209, "top": 50, "bottom": 116}
@@ -350,67 +195,6 @@ def test_place_for_one_more() -> None:
     """A free record, else the first of the least accurate ones, else none."""
     table = object_words({"accuracy": 5}, {"accuracy": 3}, {"accuracy": 3})
     assert [place_for(table, 2, 9), place_for(table, 3, 9), place_for(table, 3, 3)] == [2, 1, 3]
-
-
-@st.composite
-def boxes(draw: st.DrawFn) -> dict[str, int]:
-    """Any blob of a picture; balls and goals among them."""
-    if draw(st.booleans()):
-        nudge = {name: draw(st.integers(-6, 6)) for name in ("left", "right", "top", "bottom")}
-        box = {**draw(st.sampled_from([ROUND, MOUTH]))}
-        return {name: value + nudge.get(name, 0) for name, value in box.items()}
-    left, right = sorted(draw(st.tuples(*[st.integers(1, WIDTH - 2)] * 2)))
-    top, bottom = sorted(draw(st.tuples(*[st.integers(1, HEIGHT - 2)] * 2)))
-    most = (right - left + 1) * (bottom - top + 1)
-    pixels = draw(st.integers(1, most) | st.just(max(most * 201 // 256, 1)))
-    colours = draw(st.sampled_from([BLUE, YELLOW, RED, 2]))
-    return {"colours": colours, "pixels": pixels, "left": left, "right": right, "top": top, "bottom": bottom}
-
-
-circles = st.fixed_dictionaries(
-    {
-        "x": st.integers(0, 16 * WIDTH),
-        "y": st.integers(0, 16 * HEIGHT),
-        "radius": st.integers(0, 4000),
-        "blob": st.integers(0, 4),
-        "tests": st.sampled_from([0, 1, 3, 3]),
-        "arc": st.sampled_from([0, 84, 85, 256]),
-    }
-) | st.builds(
-    lambda blob, nudge: SEEN_WELL | {"blob": blob, "x": 2552 + nudge}, st.integers(0, 4), st.integers(-99, 99)
-)
-borders = st.fixed_dictionaries(
-    {"left": st.sampled_from([-1, 1]), "right": st.sampled_from([-1, 1]), "top": st.just(-1)}
-    | {"bottom": st.integers(-1, 0), "blob": st.integers(0, 4), "hidden": st.integers(0, 3)}
-    | {f"{side}_rows": st.tuples(st.integers(0, 120), st.integers(0, 239)) for side in ("left", "right")}
-    | {f"{side}_foot": st.integers(0, 16 * HEIGHT) for side in ("left", "right")}
-)
-level_lines = st.tuples(
-    st.integers(0, 2000), st.integers(0, 3800), st.integers(2500, 5000), st.integers(0, 3800)
-)
-upright_lines = st.tuples(
-    st.integers(0, 5000), st.integers(0, 1900), st.integers(0, 5000), st.integers(1900, 3800)
-)
-
-
-@given(
-    st.lists(boxes(), max_size=6).flatmap(
-        lambda some: st.tuples(
-            st.just(some), st.tuples(*[st.integers(at, max(len(some) - 1, 0)) for at in range(len(some))])
-        )
-    ),
-    st.lists(circles, max_size=4),
-    st.lists(borders, max_size=4),
-    st.tuples(level_lines, upright_lines),
-    st.fixed_dictionaries({"refined": st.booleans(), "circle_area": st.booleans()}),
-    st.sampled_from([THESIS, StereoGeometry(311, 30, 60, 0), StereoGeometry(772, 60, 300, 45)]),
-)
-def test_as_the_reference(blobs, circles, rectangles, lines, ways, geometry) -> None:
-    """Bit for bit, with any records."""
-    thresholds = replace(THRESHOLDS, **ways)
-    boxes, parents = blobs
-    limits = {"thresholds": thresholds, "geometry": geometry, "room": 4}
-    see(boxes, circles, rectangles, parents=parents, lines=lines, **limits)
 
 
 @pytest.mark.parametrize(
