@@ -21,7 +21,7 @@ from bfsim.run_inputs import read_placement
 def placed(width_px: int, height_px: int) -> LinkMap:
     """Place the built-in firmware for pictures of a size by the default LDF."""
     loaded = load_firmware("tinyphoon")
-    build = build_for(loaded, find_profile("gcc-O2").value)
+    build = build_for(loaded, find_profile("gcc-adi").value)
     size = FrameSize(width_px, height_px)
     return place(
         loaded.firmware, Calibration(), size, read_placement(None, CM_BF561, {}, ()), CM_BF561, build
