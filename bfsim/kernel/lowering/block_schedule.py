@@ -8,7 +8,9 @@ bfin.md]. All other instructions are issued alone. For this, a move between data
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections import Counter as Tally
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
 
 from bfsim.kernel.isa import COSTS, LOAD_TO_POINTER_STALL, MOVE_TO_POINTER_STALL, Op
 from bfsim.kernel.lowering.local_registers import LocalRegisters, copies_for, used
@@ -18,6 +20,12 @@ from bfsim.kernel.lowering.schedule import BARRIERS, LOADS, STORES, TESTS
 WIDE = {Op.DSP_ALU, Op.MUL16, Op.MAC}
 SHORT_BYTES = 2
 CHANGES_CC = {Op.COMPARE, Op.BIT_TEST}
+KINDS = {"barrier": BARRIERS, "store": STORES, "access": LOADS | STORES, "test": TESTS}
+WAITING = {"barrier": {*Op}, "store": LOADS, "access": STORES, "test": TESTS}
+"""Which instructions wait for those of a kind."""
+
+_Reason = tuple[str, str]
+"""What one instruction has to do with another: a kind, or a value or register and its name."""
 
 
 class BlockSchedule:
@@ -29,13 +37,19 @@ class BlockSchedule:
     def __init__(self, registers: LocalRegisters, renews: Mapping[str, str]) -> None:
         self.registers, self.renews = registers, renews
         self.instructions, self.bank_of = registers.instructions, registers.bank_of
+        self.registers_are_enough = registers.are_enough
         self.behind: list[dict[int, int]] = [{} for _ in self.instructions]
         """Of each instruction: those that wait for it, and for how many cycles."""
-        for then in range(len(self.instructions)):
-            for first in range(then):
+        met = defaultdict[_Reason, list[int]](list)
+        for then, each in enumerate(self.instructions):
+            # of a long block these are few; to look at every pair would take most of the time
+            related = {*range(then)[-1:]}.union(*(met.get(reason, ()) for reason in self._asks(then)))
+            for first in range(then) if each.op in BARRIERS else related:
                 gap = self._gap(first, then)
                 if gap is not None:
                     self.behind[first][then] = gap
+            for reason in self._offers(then):
+                met[reason].append(then)
         self.priority = [0] * len(self.instructions)
         for number in reversed(range(len(self.instructions))):
             paths = (gap + self.priority[then] for then, gap in self.behind[number].items())
@@ -43,21 +57,24 @@ class BlockSchedule:
 
     def paired(self) -> frozenset[tuple[int, int]]:
         """Return the places of 32-bit instructions and of the accesses that are issued with them."""
-        before = [sum(number in each for each in self.behind) for number in range(len(self.instructions))]
+        before = Tally(then for each in self.behind for then in each)
         earliest = [0] * len(self.instructions)
-        waiting, found, now = {*range(len(self.instructions))}, set[tuple[int, int]](), 0
+        ready = {number for number in range(len(self.instructions)) if not before[number]}
+        found, now = set[tuple[int, int]](), 0
 
         def issue(among: Callable[[int], bool]) -> int | None:
-            ready = [each for each in waiting if not before[each] and earliest[each] <= now and among(each)]
-            number = min(ready, key=self._rank, default=None)
+            able = (each for each in ready if earliest[each] <= now and among(each))
+            number = min(able, key=self._rank, default=None)
             if number is not None:
-                waiting.remove(number)
+                ready.remove(number)
                 for then, gap in self.behind[number].items():
                     before[then] -= 1
                     earliest[then] = max(earliest[then], now + gap)
+                    if not before[then]:
+                        ready.add(then)
             return number
 
-        while waiting:
+        while ready:
             first = issue(lambda _: True)
             second = issue(self._is_short_access) if first is not None and self._is_wide(first) else None
             if first is not None and second is not None:
@@ -72,7 +89,7 @@ class BlockSchedule:
         each = self.instructions[number]
         if each.op in WIDE:
             return True
-        if not self.registers.are_enough:
+        if not self.registers_are_enough:
             return False
         data = each.result is not None and self.bank_of(each.result) is RegisterBank.DATA
         if each.op is Op.IMM:
@@ -92,6 +109,26 @@ class BlockSchedule:
         each = self.instructions[number]
         is_reload = each.op in LOADS and each.result is None
         return each.op in LOADS | STORES and each.code_bytes == SHORT_BYTES and not is_reload
+
+    def _offers(self, first: int) -> Iterator[_Reason]:
+        """Why a later instruction may wait for this one: its kind, what it computes, reads, writes and keeps."""
+        each, registers = self.instructions[first], self.registers
+        yield from ((kind, "") for kind, ops in KINDS.items() if each.op in ops)
+        yield from (("register", name) for name in {*registers.read[first], registers.written[first]} if name)
+        if result := registers.results[first]:
+            yield "value", result
+        if is_kept(each):
+            yield "kept", each.uses[0][0]
+
+    def _asks(self, then: int) -> Iterator[_Reason]:
+        """Why this instruction may wait for an earlier one that is not right before it, unless it is a barrier."""
+        each, registers = self.instructions[then], self.registers
+        yield from ((kind, "") for kind, ops in WAITING.items() if each.op in ops)
+        yield from (("value", name) for name in registers.uses[then])
+        if written := registers.written[then]:
+            yield "register", written
+        if renewed := self.renews.get(each.result or ""):
+            yield "kept", renewed
 
     def _gap(self, first: int, then: int) -> int | None:
         """Cycles from the issue of `first` to that of `then` at the earliest; None if they are independent."""

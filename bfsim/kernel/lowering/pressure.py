@@ -10,6 +10,7 @@ in an I register: what is added moves to an M register, I0 += M0 [addsi3 in bfin
 from __future__ import annotations
 
 from collections import Counter as Tally
+from collections import defaultdict
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
@@ -84,7 +85,8 @@ class Pressure:
         if not self.webs.context.profile.applies(Rule.SPILLED_RANGES):
             busiest = max(crowded, key=len)
             places = Tally(dict.fromkeys([*busiest, *(constants if extra else ())], 1))
-        weights = {name: constants.get(name, 0) or self._weight(name, loop) for name in places}
+        used = self._weights(loop)
+        weights = {name: constants.get(name, 0) or used[name] for name in places}
         victim = min(weights, key=lambda name: (weights[name] / (places[name] + 1), name), default=None)
         if victim is not None and (
             weights[victim] or not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS)
@@ -117,15 +119,15 @@ class Pressure:
                 found.append(set(alive))
         return found
 
-    def _weight(self, web: str, loop: Loop) -> float:
-        total = 0.0
+    def _weights(self, loop: Loop) -> defaultdict[str, float]:
+        """How often a loop computes or uses each web."""
+        found = defaultdict[str, float](float)
         for label in self.flow.inside(loop):
             for instruction in self.code.of[label]:
-                names = {self.find(name) for name, _ in instruction.uses} | {
-                    self.find(instruction.result or "")
-                }
-                total += self.frequency[label] * (web in names)
-        return total
+                names = {self.find(name) for name, _ in instruction.uses}
+                for name in names | {self.find(instruction.result or "")}:
+                    found[name] += self.frequency[label]
+        return found
 
     def _reload(self, web: str, loop: Loop) -> None:
         for label in self.flow.inside(loop):

@@ -63,11 +63,11 @@ class TakenRegisters:
         """How many of a bank are taken at once."""
         return min(max(map(len, self._points(bank)), default=0), AVAILABLE[bank])
 
-    def _points(self, bank: RegisterBank) -> Iterator[set[str]]:
-        for label in self.flow.blocks:
-            for taken in self._taken(label):
-                everything = (taken | self.in_loops[label]) - self.staying
-                yield {name for name in everything if self._bank(name) is bank}
+    def _points(self, bank: RegisterBank) -> list[set[str]]:
+        """What takes registers of a bank, at each point of the routine."""
+        points = [taken | self.in_loops[label] for label in self.flow.blocks for taken in self._taken(label)]
+        of_bank = {name for name in set[str]().union(*points) if self._bank(name) is bank} - self.staying
+        return [taken & of_bank for taken in points]
 
     def _bank(self, name: str) -> RegisterBank | None:
         return DATA if name.startswith("#") else self.bank.get(self.webs.find(name))
@@ -113,7 +113,7 @@ class TakenRegisters:
         """Leave those on the stack that are used least of what is taken while a register would be saved for one of them."""
         frequency = self._frequencies()
         while True:
-            points = list(self._points(bank))
+            points = self._points(bank)
             most = max(map(len, points), default=0)
             if most <= SCRATCH[bank]:
                 return
