@@ -14,6 +14,8 @@ from fractions import Fraction
 from random import Random
 from typing import Any
 
+import numpy as np
+
 from bfsim.chip.boards import board_named
 from bfsim.kernel.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
 from bfsim.machine.bus import core_requests, dma_requests, runs, store_buffer
@@ -36,10 +38,9 @@ OF_THE_LAST_ACCESS = (w.BEGAN, w.PAGE_CLASS, w.REFRESH_WAIT)
 
 def digest_of(words: Any) -> str:
     """Return a digest of what the words of a bus say when everything is over."""
-    counted = bytearray(words[: w.SUBBANKS_AT])  # which place a transfer had means nothing
-    for word in OF_THE_LAST_ACCESS:
-        counted[8 * word : 8 * (word + 1)] = bytes(8)
-    return hashlib.sha256(counted).hexdigest()
+    counted = np.asarray(words[: w.SUBBANKS_AT])  # which place a transfer had means nothing
+    told = np.setdiff1d(np.flatnonzero(counted), OF_THE_LAST_ACCESS, assume_unique=True)
+    return hashlib.sha256(told.tobytes() + counted[told].tobytes()).hexdigest()
 
 
 class Scene:

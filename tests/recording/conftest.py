@@ -14,7 +14,7 @@ from bfsim.recording.scenes.chessboard import write_chessboards
 from tests.recording.chessboards import GEOMETRY, MISFIT
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def searched_once() -> Iterator[None]:
     """Let each picture be searched for corners once: OpenCV takes its time, and the same pictures are in many sets."""
     search, known = boards._corners_in, dict[tuple[bytes, tuple[int, int]], boards.Corners]()
@@ -30,7 +30,7 @@ def searched_once() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def chessboards(tmp_path_factory: pytest.TempPathFactory, searched_once: None) -> Path:
     """Pairs of pictures of a chessboard through the lenses."""
     folder = tmp_path_factory.mktemp("chessboards")

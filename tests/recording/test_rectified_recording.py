@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import cv2
@@ -11,21 +12,17 @@ from click.testing import CliRunner
 from PIL import Image
 
 from bfsim.cli.main import main
-from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
+from bfsim.recording import RecordingReader, RecordingWriter
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.scenes.chessboard import write_chessboards
-from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.run import simulate
 from bfsim.run_inputs import calibration_of
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.whole_pictures import buffer, check_core, run
+from tests.recording.chessboards import CORNERS, GEOMETRY
 from tinyphoon import tinyphoon
 
 pytestmark = pytest.mark.exhaustive
 
-GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
-MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
-CORNERS = (9, 6)
 HELD_OUT = 0, 13, 26
 """Pairs of chessboard pictures that calibration does not get."""
 
@@ -40,12 +37,10 @@ def corners_of(uyvy: np.ndarray) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def recording(chessboards: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A recording of a chessboard by two bent cameras, calibrated by the command with other pictures of it."""
     folder = tmp_path_factory.mktemp("bent")
-    boards, path = folder / "boards", folder / "bent.mcap"
-    boards.mkdir()
-    write_chessboards(boards, GEOMETRY, MISFIT, seed=2)
+    boards, path = Path(shutil.copytree(chessboards, folder / "boards")), folder / "bent.mcap"
     with RecordingWriter(path, width=320, height=240, geometry=GEOMETRY, description="boards") as writer:
         for number in HELD_OUT:
             pair = []
