@@ -12,8 +12,9 @@ import pytest
 from bfsim.chip.boards import board_named
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.detailed.arbiter import Grant, MdmaTurns, Request, SdramArbiter
+from bfsim.machine.detailed.arbiter import Grant, Request
 from bfsim.machine.detailed.sdram import Page, SdramBanks
+from bfsim.machine.detailed.sdram_arbiter import MdmaTurns, SdramArbiter
 from tests.machine.bus_rig import WORD, Bench, each_board, with_l2
 
 # ---- the SDRAM: each gate from both sides

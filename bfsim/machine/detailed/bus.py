@@ -19,10 +19,11 @@ from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.new_state import new_state
 from bfsim.machine.bus.planner import Planner
 from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan
-from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
 from bfsim.machine.detailed.calls import DetailedCalls
 from bfsim.machine.detailed.core import CorePort
 from bfsim.machine.detailed.dma import DetailedTransfer, DmaMaster
+from bfsim.machine.detailed.l2_port import L2Port
+from bfsim.machine.detailed.sdram_arbiter import SdramArbiter
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 

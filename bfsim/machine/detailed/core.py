@@ -18,7 +18,9 @@ from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.memory_owners import owner_for
-from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, wait_until
+from bfsim.machine.detailed.arbiter import Grant, wait_until
+from bfsim.machine.detailed.l2_port import L2Port
+from bfsim.machine.detailed.sdram_arbiter import SdramArbiter
 from bfsim.machine.simulation import Simulation
 
 

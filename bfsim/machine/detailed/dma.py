@@ -17,8 +17,10 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, TransferPlan, Walk
-from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, count_bytes, wait_until
+from bfsim.machine.detailed.arbiter import Grant, count_bytes, wait_until
 from bfsim.machine.detailed.fifo import Element, Fifo
+from bfsim.machine.detailed.l2_port import L2Port
+from bfsim.machine.detailed.sdram_arbiter import SdramArbiter
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
