@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -63,12 +65,25 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
         raise ConfigError(
             f"{folder} must be without {there[0]}, which would be overwritten; take another folder, or --force"
         )
-    with writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-    for name, text in files.items():
-        write_text(folder / name, text)
+    with _whole(folder):
+        for name, text in files.items():
+            write_text(folder / name, text)
     lines = sum(text.count("\n") for name, text in program.files.items() if name.endswith(".c"))
     return Export(folder, tuple(files), len(program.names), lines, tuple(_names(own - kernels)))
+
+
+@contextmanager
+def _whole(folder: Path) -> Iterator[None]:
+    """Make a folder for what is written in the `with` block; after an error nothing is left of one that was not there before."""
+    is_new = not folder.exists()
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        if is_new:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def _names(kernels: Iterable[Kernel]) -> list[str]:

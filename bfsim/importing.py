@@ -198,7 +198,7 @@ class _FromSource(SourceFileLoader):
     def _compiled(self, written: bytes) -> CodeType:
         python = f"{importlib.util.MAGIC_NUMBER.hex()} {sys.flags.optimize}"
         key = hashlib.sha256(
-            f"Python {python} {self.path}\0".encode(errors="surrogateescape") + written
+            f"Python {python} {self.path}\0".encode(errors="surrogatepass") + written
         ).hexdigest()
         kept = store.load(key)
         if kept is not None:

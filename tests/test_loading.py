@@ -15,6 +15,8 @@ import pytest
 from bfsim import loading, shipped
 from bfsim.errors import FirmwareError, KernelError
 from bfsim.loading import load_firmware, load_kernel
+from tests.commands import started
+from tests.eyes import FIRMWARE
 
 GOOD = """\
 from bfsim.api import *
@@ -169,6 +171,15 @@ def test_what_was_not_edited_is_not_compiled_again(write: Write, monkeypatch: py
         write("fw_again.py", named(text))
         assert load_firmware("fw_again:fw").firmware.camera == text
     assert compiled == [named(text).encode() for text in ("one", "two")]
+
+
+def test_what_was_compiled_is_found_by_a_name_in_any_locale(write: Write, tmp_path: Path) -> None:
+    """Python spells a name that is not ASCII in another way where the locale is: kernels read their source by it."""
+    write("ruder_\xfc/eyes.py", FIRMWARE)
+    without_utf8 = {"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    for environment in ({"LC_ALL": "C.UTF-8"}, without_utf8):
+        done = started("explain", "ruder_\xfc/eyes.py:threshold", cwd=tmp_path, **environment)
+        assert done.returncode == 0, done.stderr
 
 
 def test_an_edited_kernel_is_the_one_that_is_compiled(write: Write, tmp_path: Path) -> None:

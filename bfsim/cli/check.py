@@ -84,7 +84,7 @@ def check(
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
     from bfsim.checking import arguments_of, require_comparable, require_held
-    from bfsim.report.check.history import append_history, read_history
+    from bfsim.report.check.history import read_history, trend_table
     from bfsim.report.check.outputs import check_json
     from bfsim.run_inputs import files_of_run
 
@@ -107,10 +107,14 @@ def check(
         if update:
             runs = _update(runs, path, reason, on_stderr=json_path == STDOUT)
         outcomes = _judged(runs, path)
-        _write(outcomes, path, outputs)
-        if history:
-            append_history(history, outcomes, _commit())
-        tell(json_path, lambda: [check_json(outcomes)], lambda: _print(outcomes, path, history))
+        tell(
+            json_path,
+            lambda: [check_json(outcomes)],
+            lambda: _print(outcomes, path),
+            lambda: _write(outcomes, path, outputs, history),
+        )
+        if history and json_path != STDOUT:
+            print_report(trend_table(read_history(history), [each.case.name for each in outcomes]))
     if not all(each.passed for each in outcomes):
         raise SystemExit(LIMIT_BROKEN)
 
@@ -177,9 +181,8 @@ def _judged(runs: Sequence[tuple[Case, Result]], path: Path) -> list[Outcome]:
     return [judge(case, result, path) for case, result in runs]
 
 
-def _print(outcomes: Sequence[Outcome], path: Path, history: Path | None) -> None:
-    """Print what came out, and the trend in the history."""
-    from bfsim.report.check.history import read_history, trend_table
+def _print(outcomes: Sequence[Outcome], path: Path) -> None:
+    """Print what came out."""
     from bfsim.report.check.tables import check_report
 
     for each in outcomes:
@@ -187,8 +190,6 @@ def _print(outcomes: Sequence[Outcome], path: Path, history: Path | None) -> Non
     failed = sum(not each.passed for each in outcomes)
     if len(outcomes) > 1:
         click.echo(f"{len(outcomes) - failed} of {len(outcomes)} runs passed, {failed} FAILED.")
-    if history:
-        print_report(trend_table(read_history(history), [each.case.name for each in outcomes]))
 
 
 def _require_places(written: Sequence[Path | None], read: Sequence[Path | None]) -> None:
@@ -201,8 +202,12 @@ def _require_places(written: Sequence[Path | None], read: Sequence[Path | None])
             require_apart(each, (*written[:index], *read))
 
 
-def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path | None]) -> None:
+def _write(
+    outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path | None], history: Path | None
+) -> None:
+    """Write the files that were asked for, and a line for each run into the history."""
     from bfsim.report.check import outputs as forms
+    from bfsim.report.check.history import append_history
     from bfsim.report.save import write_text
 
     texts: dict[str, Callable[[], str]] = {
@@ -213,6 +218,8 @@ def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path |
     for name, file in outputs.items():
         if file:
             write_text(file, texts[name]())
+    if history:
+        append_history(history, outcomes, _commit())
 
 
 def _commit() -> str:

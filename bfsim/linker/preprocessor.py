@@ -21,6 +21,8 @@ _DEFINE = re.compile(
 )
 _NAME = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*")
 _INCLUDED = re.compile(r'\s*(?:"(?P<beside>[^"\n]+)"|<(?P<listed>[^>\n]+)>)\s*')
+_GOES_ON = re.compile(r"//[^\n]*\\[ \t\r]*\n(?!\s*?(?://|$))", re.MULTILINE)
+"""A comment that takes the next line into it, as C has it, where that line says something."""
 _INCLUDE_COMMAND = re.compile(r'INCLUDE\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
 Text = tuple[str, File, int, bool]
 """A piece of expanded text, the file and the offset where it was written, whether it was written just so."""
@@ -60,8 +62,7 @@ class _Preprocessor:
         copied = 0  # up to where the text is yielded, or left out
         while (match := TOKEN.search(written, position)) is not None:
             start, position, kind = match.start(), match.end(), match.lastgroup
-            if kind == "unclosed":
-                raise file.error_at(start, "comment must end with */ before the file does")
+            _require_end(file, match)
             is_taken = not conditions or conditions[-1].is_taken
             word = match.group() if is_taken and kind == "word" else ""
             is_macro = word in self.macros
@@ -219,6 +220,17 @@ def _read(path: Path) -> str:
     content = read_bounded(path)
     is_utf_16 = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
     return content.decode("utf-16" if is_utf_16 else "utf-8-sig", errors="replace")
+
+
+def _require_end(file: File, token: re.Match[str]) -> None:
+    """Raise LinkError for a comment that does not end where a person sees it end."""
+    start = token.start()
+    if token.lastgroup == "unclosed":
+        raise file.error_at(start, "comment must end with */ before the file does")
+    if token.lastgroup == "comment" and _GOES_ON.match(file.written, start):
+        raise file.error_at(
+            start, "comment must not end in \\, which makes the next line a part of it; write a . behind it"
+        )
 
 
 def _macro(define: re.Match[str]) -> Macro:

@@ -105,7 +105,7 @@ def _check(focal_px: float, baseline_mm: float, height_mm: float) -> None:
         if focal_px * mm >= limit:
             raise FirmwareError(
                 f"focal length times {name} of the cameras must be below {limit:.0f} px mm, "
-                f"not {focal_px:g} px times {mm:g} mm"
+                f"not {focal_px:g} px times {mm:g} mm; give baseline and height in cm, say, and all lengths are in cm"
             )
 
 

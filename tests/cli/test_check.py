@@ -15,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 from bfsim.cli.main import main
+from bfsim.errors import ConfigError
 from tests.cli.check_rig import SLOWER, WHAT, call, refused
 from tests.eyes import FIRMWARE
 
@@ -125,6 +126,24 @@ def test_a_person_requires_more(repository: Path) -> None:
     assert result.exit_code == 1
     assert ">= 1000000.00 Hz" in result.output
     assert sentence in Path("limits.toml").read_text()
+
+
+@pytest.mark.parametrize("option", ["--junit", "--json", "--history"])
+def test_the_verdict_is_told_although_a_file_cannot_be_written(
+    repository: Path, monkeypatch: pytest.MonkeyPatch, option: str
+) -> None:
+    """A disk may fill up while it runs."""
+
+    def full(path: Path, content: object) -> None:
+        raise ConfigError(f"{path} must be writable: No space left on device")
+
+    monkeypatch.setattr("bfsim.report.save.write_bytes", full)
+    monkeypatch.setattr("bfsim.report.check.history.write_bytes", full, raising=False)
+    (repository / "fw_eyes.py").write_text(SLOWER)
+    result = call("--baseline", "limits.toml", option, "out.json")
+    assert result.exit_code == 2
+    assert result.stdout.startswith("FAILED: ")
+    assert result.stderr == "bfsim: error: out.json must be writable: No space left on device\n"
 
 
 def test_who_stops_reading_gets_the_files_all_the_same(repository: Path) -> None:

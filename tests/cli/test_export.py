@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from bfsim.cli.main import main
+from bfsim.errors import ConfigError
 from tests.eyes import FIRMWARE
 from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
 from tests.sums import SUMS
@@ -53,6 +54,25 @@ def eyes(tmp_path: Path) -> str:
     file = tmp_path / "fw_eyes.py"
     file.write_text(FIRMWARE)
     return f"{file}:eyes"
+
+
+def test_nothing_is_left_where_there_is_no_room(
+    eyes: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Half of the files would look like all of them; a folder that was there before stays."""
+
+    def full(path: Path, text: str) -> None:
+        if path.name == "Makefile":
+            raise ConfigError(f"{path} must be writable: No space left on device")
+        path.write_text(text)
+
+    monkeypatch.setattr("bfsim.exporting.write_text", full)
+    (tmp_path / "old").mkdir()
+    for folder, is_left in (("c", False), ("old", True)):
+        code, output = ran(eyes, tmp_path / folder)
+        assert code == 2
+        assert "Makefile must be writable: No space left on device" in output
+        assert (tmp_path / folder).exists() == is_left
 
 
 def test_nothing_is_overwritten_unless_asked(eyes: str, tmp_path: Path) -> None:

@@ -101,7 +101,9 @@ def test_a_run_says_its_geometry_and_what_it_assumed(
 def test_cameras_that_32_bits_cannot_compute_with_are_refused() -> None:
     """Focal length times baseline is the largest number of all."""
     geometry_buffer(StereoGeometry(1000.0, 134.0, 0, 0))
-    with pytest.raises(FirmwareError, match="must be below 134218 px mm, not 1000 px times 135 mm"):
+    with pytest.raises(
+        FirmwareError, match="must be below 134218 px mm, not 1000 px times 135 mm; give .* in cm"
+    ):
         geometry_buffer(StereoGeometry(1000.0, 135.0, 0, 0))
 
 

@@ -238,6 +238,10 @@ def test_warnings_are_kept_and_pragmas_ignored(parse: Parse) -> None:
         ("#define F(a", r"1:1: #define must be followed by a macro, not 'F\(a'"),
         ("#include file.h", r'1:1: #include must be followed by a file in "" or <>, not \'file\.h\''),
         ("#imclude", r"1:1: preprocessor line must be one of #if, .* #pragma, not '#imclude'"),
+        (
+            "// of the scratchpad \\\nx = 1;",
+            r"1:1: comment must not end in \\, which makes the next line a part of it",
+        ),
         ("#define F(a) a\nx = F((1);", r"2:5: arguments of macro F must end with '\)'"),
     ],
 )
@@ -245,3 +249,11 @@ def test_mistakes_are_named_with_their_place(parse: Parse, text: str, message: s
     """A line that the preprocessor cannot obey is an error with its place."""
     with pytest.raises(LinkError, match=message):
         parse(text)
+
+
+def test_a_backslash_at_the_end_of_a_comment_is_nothing_where_the_next_line_is(parse: Parse) -> None:
+    r"""A tree, a cat or a path C:\project\ says the same whether a comment goes on or not."""
+    script = parse(
+        "// C:\\project\\\n\n//  /\\_/\\\n// ( o )  /* \\ */\n/* \\\n*/\n#define SIZE 3\n" + SEGMENT
+    )
+    assert size(script) == 3

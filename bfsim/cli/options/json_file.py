@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -81,14 +82,25 @@ def require_json_place(path: Path | None, others: Iterable[Path | None] = ()) ->
         require_apart(path, others)
 
 
-def tell(path: Path | None, chunks: Callable[[], Iterable[str]], show: Callable[[], None]) -> None:
-    """Print the `chunks` of the JSON, if `path` is `STDOUT`; or write them to `path`, if there is one, and `show` the report."""
+def tell(
+    path: Path | None,
+    chunks: Callable[[], Iterable[str]],
+    show: Callable[[], None],
+    write: Callable[[], None] = lambda: None,
+) -> None:
+    """Print the `chunks` of the JSON, if `path` is `STDOUT`; or write them to `path`, if there is one, and `show` the report.
+
+    Other files are written by `write`. What cannot be written is an error behind the report, which took longer to find.
+    """
     from bfsim.report.save import write_text
 
-    if path == STDOUT:
-        for chunk in chunks():
-            click.echo(chunk, nl=False)
-        return
-    if path:
-        write_text(path, chunks())
-    show()  # last: who reads may go away
+    with ExitStack() as last:  # who reads may go away
+        last.callback(show if path != STDOUT else lambda: _print(chunks()))
+        write()
+        if path and path != STDOUT:
+            write_text(path, chunks())
+
+
+def _print(chunks: Iterable[str]) -> None:
+    for chunk in chunks:
+        click.echo(chunk, nl=False)
