@@ -132,12 +132,14 @@ def sweep(
     with ExitStack() as stack:
         cluster = stack.enter_context(Cluster(address, code_digest())) if address else None
         here = stack.enter_context(Pool(processes or len(os.sched_getaffinity(0))))
+        began = time.monotonic()
         with progress_bar("Checking points") as bar:
             points.plan(here, bar)
+        checked_s = time.monotonic() - began
         _tell_impossible(points, strict=strict)
         before = set(points.outcomes)
         if dry_run:
-            _list(points, cluster or here)
+            _list(points, cluster or here, checked_s)
             _require_no_error(points)
             return
         is_interrupted = not _run(points, cluster or here)
@@ -176,8 +178,8 @@ def _pace(sweep: Sweep) -> Pace:
     return pace
 
 
-def _list(sweep: Sweep, workers: Workers) -> None:
-    """Print all points, and how long those take that are to be run."""
+def _list(sweep: Sweep, workers: Workers, checked_s: float) -> None:
+    """Print all points, and how long those take that are to be run: first processes start, and check them once more."""
     from bfsim.report.sweep.screen import point_list
     from bfsim.sweeping.pace import in_words
 
@@ -188,7 +190,8 @@ def _list(sweep: Sweep, workers: Workers) -> None:
     print_report(point_list([(each.point.name, each.frames, state(each)) for each in sweep.planned]))
     if todo and pace.seconds_left(todo, 1) is None:
         pace.add(todo[0], sweep.try_out(todo[0], TRIED_FRAMES, workers))
-    time_left = in_words(pace.seconds_left(todo, workers.room()))
+    seconds = pace.seconds_left(todo, workers.room())
+    time_left = in_words(seconds and seconds + checked_s)
     frames = sum(each.frames for each in todo)
     words = f"{frames:,} {'frame' if frames == 1 else 'frames'}"
     click.echo(f"{len(todo):,} of {len(sweep.planned):,} points to run, {words}: {time_left}.")
