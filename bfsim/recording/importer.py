@@ -20,6 +20,7 @@ from bfsim.recording.opening import open_sources
 from bfsim.recording.picture_pairs import PicturePairs
 from bfsim.recording.planes import fit_matrix
 from bfsim.recording.rosbag import BagPictures, open_bag
+from bfsim.recording.row_count import row_count_warnings
 from bfsim.recording.row_length import row_length_warnings
 from bfsim.recording.sources import Skipped, SourceFormat, guess_format
 from bfsim.recording.stamps import Stamps, frame_rate
@@ -111,7 +112,10 @@ def import_recording(
     rig = Rig(geometry, rectification, ())
     if bag and (geometry is None or rectification is None):
         rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
-    row_doubts = () if size is None or side_by_side else tuple(row_length_warnings(opened))
+    size_doubts: tuple[str, ...] = ()
+    if size is not None:
+        lengths = () if side_by_side else tuple(row_length_warnings(opened))
+        size_doubts = lengths or tuple(row_count_warnings(opened))
     stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
     check = StereoCheck(rig.tables)
     pairs = PicturePairs(opened, side_by_side, resize, crop)
@@ -148,7 +152,7 @@ def import_recording(
             *(bag.notes if bag else ()),
             *(note for source in opened for note in source.notes if fps is None),
             *rig.notes,
-            *row_doubts,
+            *size_doubts,
             *(f"Warning: {each}" for each in check.warnings),
             *((SAME_PICTURES,) if is_one_camera else ()),
         ),

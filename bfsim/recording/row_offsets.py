@@ -1,11 +1,12 @@
 """Whether things stand in other rows of the right picture than of the left one, where the cameras are not parallel or lenses bend.
 
 Patches with contrast across and along are sought in the other picture, some rows and many columns around. They count where they
-agree well, and nowhere else nearly as well.
+agree well, and nowhere else nearly as well; and where they agree with nothing, as if a camera were turned far, or saw something else.
 """
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,12 @@ OTHER_ROWS = (
     "the pictures seem not to be rectified: at {percent} % of the places compared, things stand in other rows of the right "
     "picture, where no partner is sought, and so have no depth or a wrong one; `bfsim record calibrate` rectifies them by pictures "
     "of a chessboard, `bfsim record import --rectification` by tables"
+)
+
+NOWHERE = (
+    "the right pictures seem not to show what the left ones do: {percent} % of the places compared are nowhere near in them, and so "
+    "have no depth or a wrong one; are they of one moment, is a camera turned or upside down? `bfsim record calibrate` rectifies what "
+    "is turned"
 )
 
 Cells = NDArray[np.float32]
@@ -39,22 +46,31 @@ SAME_PEAK = 2  # rows and columns to each side of the best place that are one wi
 
 def places_in_other_rows(left: Plane, right: Plane) -> NDArray[np.bool_]:
     """Return of each patch whose place in the right picture is certain whether it stands in another row there."""
+    offsets = _row_offsets(left, right)
+    return np.asarray(offsets[np.isfinite(offsets)] != 0)
+
+
+def places_nowhere(left: Plane, right: Plane) -> NDArray[np.bool_]:
+    """Return of each patch whether nothing around its place in the right picture is like it."""
+    return np.isinf(_row_offsets(left, right))
+
+
+def _row_offsets(left: Plane, right: Plane) -> NDArray[np.float64]:
+    """Return of each patch how many rows further down it is in the right picture: not a number where that is uncertain, infinite if it is nowhere."""
     lefts, rights = _cells(left), _cells(right)
     height, width = lefts.shape
     leftwards, rightwards = (int(part * width) for part in (REACH_LEFT, REACH_RIGHT))
     if height < PATCH + 2 * REACH_ROWS or width < PATCH + leftwards + rightwards:
-        return np.zeros(0, np.bool_)
+        return np.zeros(0)
     windows = sliding_window_view(rights, (PATCH, PATCH))
     energies = _sums(np.square(rights)) - np.square(_sums(rights)) / PATCH**2
-    found = []
+    offsets = []
     for top, start in _corners(lefts, leftwards, rightwards):
         rows = slice(top - REACH_ROWS, top + REACH_ROWS + 1)
         columns = slice(start - leftwards, start + rightwards + 1)
         patch = lefts[top : top + PATCH, start : start + PATCH]
-        offset = _row_offset(patch - patch.mean(), windows[rows, columns], energies[rows, columns])
-        if offset is not None:
-            found.append(offset != 0)
-    return np.array(found, np.bool_)
+        offsets.append(_row_offset(patch - patch.mean(), windows[rows, columns], energies[rows, columns]))
+    return np.array(offsets, np.float64)
 
 
 def _cells(luma: Plane) -> Cells:
@@ -88,8 +104,8 @@ def _sums(cells: Cells) -> NDArray[np.float64]:
     )
 
 
-def _row_offset(patch: Cells, windows: Cells, energies: NDArray[np.float64]) -> int | None:
-    """Return how many rows further down a patch without its mean is best found, or None where that is not certain.
+def _row_offset(patch: Cells, windows: Cells, energies: NDArray[np.float64]) -> float:
+    """Return how many rows further down a patch without its mean is best found, as `_row_offsets` does.
 
     `windows`: where it may be; `energies`: the sums of their squares, without their means.
     """
@@ -97,11 +113,11 @@ def _row_offset(patch: Cells, windows: Cells, energies: NDArray[np.float64]) -> 
     costs = energies + energy - 2 * np.tensordot(windows, patch, axes=2)  # squares of the differences, summed
     row, column = np.unravel_index(costs.argmin(), costs.shape)
     least = float(costs[row, column])
+    if 4 * least >= energy:
+        return math.inf
     peak = (
         slice(max(row - SAME_PEAK, 0), row + SAME_PEAK + 1),
         slice(max(column - SAME_PEAK, 0), column + SAME_PEAK + 1),
     )
     costs[peak] = np.inf
-    other = float(costs.min())
-    is_certain = 4 * least < energy and other > 1.5 * least
-    return int(row) - REACH_ROWS if is_certain else None
+    return int(row) - REACH_ROWS if float(costs.min()) > 1.5 * least else math.nan

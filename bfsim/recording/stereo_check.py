@@ -1,4 +1,4 @@
-"""Whether stereo frames are what the matching of edges needs: left and right in this order, and things in the same row of both.
+"""Whether stereo frames are what the matching of edges needs: left and right in this order, and the same things, in the same row of both.
 
 Places that both pictures surely show are compared, and those where they disagree with that are counted. That is no stereo matching:
 it says nothing of depths.
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from bfsim.recording.exchange import EXCHANGED, exchanged_places
 from bfsim.recording.frames import RectificationTables, StereoFrame, UyvyImage
-from bfsim.recording.row_offsets import OTHER_ROWS, places_in_other_rows
+from bfsim.recording.row_offsets import NOWHERE, OTHER_ROWS, places_in_other_rows, places_nowhere
 
 if TYPE_CHECKING:
     from bfsim.recording.planes import Plane
@@ -24,7 +24,8 @@ ENOUGH_PLACES, MOST_FRAMES = 40, 8
 """As many frames are looked at as it takes."""
 
 FEWEST_PLACES, DOUBTED_SHARE = 16, 0.75
-"""Of fewer places nothing is said. Of right pairs up to 24 % of the places of a frame disagree, of chessboards, that look alike, 68 %."""
+"""Of fewer places nothing is said. Of right pairs up to 24 % of the places of a frame disagree, of chessboards, that look alike, 68 %.
+Nowhere are up to 25 % of a right pair's places, 54 of a plant's; 91 to 100 where a camera is turned by 30 degrees, 69 to 100 of other things."""
 
 
 @dataclass(slots=True)
@@ -53,7 +54,11 @@ class StereoCheck:
     def __init__(self, tables: RectificationTables | None = None) -> None:
         self._tables = tables
         self._frames = 0
-        self._doubts = (_Doubt(exchanged_places, EXCHANGED), _Doubt(places_in_other_rows, OTHER_ROWS))
+        self._doubts = (
+            _Doubt(exchanged_places, EXCHANGED),
+            _Doubt(places_in_other_rows, OTHER_ROWS),
+            _Doubt(places_nowhere, NOWHERE),
+        )
 
     def watch(self, frames: Iterable[StereoFrame]) -> Iterator[StereoFrame]:
         """Pass frames on."""

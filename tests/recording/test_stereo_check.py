@@ -63,6 +63,17 @@ def test_pictures_that_are_not_rectified_are_told(lower: int) -> None:
     assert warnings_of(left, moved, RectificationTables(np.stack([rows, columns]), undone)) == []
 
 
+@pytest.mark.parametrize("turned_deg", [30, 90, 180])
+def test_a_camera_that_is_turned_far_is_told(turned_deg: int) -> None:
+    """Or one that sees something else: no place of the left picture is found, so that none stands in another row."""
+    left, right = pair(7)
+    for other in (np.asarray(Image.fromarray(right).rotate(turned_deg)), np.flipud(right)):
+        (said,) = warnings_of(left, other)
+        assert re.match(
+            r"the right pictures seem not to show what the left ones do: \d+ % of the places", said
+        )
+
+
 def test_what_is_nearly_rectified_is_left_alone() -> None:
     """Half a degree, or half a pixel: the vote of the rows around an edge takes that."""
     left, right = pair(7)
@@ -83,15 +94,16 @@ def test_pictures_of_one_camera_are_not_compared() -> None:
 
 
 def test_nothing_is_said_of_pictures_that_tell_nothing() -> None:
-    """Of one camera twice, without contrast, of a pattern that fits anywhere, of other things, or tiny."""
-    wall, other = pair(0)[0], np.flipud(pair(0)[0])
+    """Of one camera twice, without contrast, of patterns that fit anywhere, or tiny."""
+    wall = pair(0)[0]
     flat = np.full_like(wall, 90)
     stripes = np.tile(np.arange(SIZE[0]) // 8 % 2 * 200, (SIZE[1], 1)).astype(np.uint8)
+    squares = stripes ^ (np.arange(SIZE[1]) // 8 % 2 * 200)[:, None].astype(np.uint8)
     for left, right in (
         (wall, wall),
         (flat, flat),
         (stripes, np.roll(stripes, 5, axis=1)),
-        (wall, other),
+        (squares, np.roll(squares, 5, axis=1)),
         (wall[:2, :2], wall[:2, :2]),
     ):
         assert warnings_of(left, right) == []
