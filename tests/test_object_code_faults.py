@@ -117,6 +117,16 @@ int clears(int *words, int n)
         words[k] = 0;
     return n;
 }
+__attribute__((noinline)) static void drop(int *words, int n)
+{
+    words[2 * n] = n;
+}
+void (*volatile way)(int *, int) = drop;
+int sends(int *words, int n)
+{
+    way(words, n);
+    return words[0];
+}
 """
 
 
@@ -133,6 +143,11 @@ def test_the_line_of_a_wild_access_is_told(tmp_path: Path, option: str) -> None:
         ("stores", 1 << 28, r"\(wild.c:12\) of put, which stores calls at wild.c:15, it accesses 0x60"),
         ("copies", 1 << 28, rf"{at} of memcpy, which copies calls at wild.c:18, it accesses 0x60"),
         ("clears", 1 << 29, r"at .*\bwild.c:29\b.* it accesses 0x24000000"),
+        (
+            "sends",
+            1 << 28,
+            r"\(wild.c:34\) of drop, which sends may call by its address at wild.c:39, it accesses 0xA0",
+        ),
         ("jumps", 0, r"\(wild.c:24\) it goes to 0x00000007, an address that"),
     ):
         kernel = kernel_from(tmp_path / "wild.o", name, words=i32[:], n=i32, result=i32)
