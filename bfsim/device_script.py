@@ -35,7 +35,7 @@ def read_script(path: Path) -> tuple[Mapping[str, Any], str]:
         raise ConfigError(f"{path} must end in .json or .toml")
     try:
         octets = read_bounded(path)
-        script = parse(octets.decode())
+        script = parse(octets.decode("utf-8-sig"))  # editors may put their mark first
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
     except RecursionError as error:

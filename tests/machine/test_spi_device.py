@@ -256,11 +256,13 @@ def written(folder: Path, name: str, text: str) -> Path:
 
 
 def test_scripts_are_json_or_toml(tmp_path: Path) -> None:
-    """The same from both; the digest is that of the file."""
+    """The same from both, also where an editor has put its mark before the text; the digest is that of the file."""
     one, first = read_script(written(tmp_path, "script.json", '{"send": [{"after": 3}]}'))
     other, second = read_script(written(tmp_path, "script.toml", "[[send]]\nafter = 3\n"))
     assert one == other == {"send": [{"after": 3}]}
     assert first != second == read_script(written(tmp_path, "copy.toml", "[[send]]\nafter = 3\n"))[1]
+    for name, text in (("marked.json", '{"send": [{"after": 3}]}'), ("marked.toml", "[[send]]\nafter = 3\n")):
+        assert read_script(written(tmp_path, name, f"\N{BYTE ORDER MARK}{text}"))[0] == one
 
 
 @pytest.mark.parametrize(
