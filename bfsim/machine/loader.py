@@ -70,9 +70,10 @@ class LoadedBuffers:
         wrong_row = any(each[0].nbytes != line_nbytes for each in rows.values() if each)
         if not count or lengths != {count * height} or wrong_row:
             without = ", ".join(core for core, each in rows.items() if not each)
+            found = {f"{len(each)} rows of {each[0].nbytes} bytes": None for each in rows.values() if each}
+            had = f"; there is none of that name for {without}" if without else f", not {' and '.join(found)}"
             raise FirmwareError(
-                f"the camera buffer {name!r} of each core must have a multiple of {height} rows "
-                f"of {line_nbytes} bytes{f'; there is none of that name for {without}' if without else ''}"
+                f"the camera buffer {name!r} of each core must have a multiple of {height} rows of {line_nbytes} bytes{had}"
             )
         for each in rows.values():
             if "SCRATCH" in each[0].memory:

@@ -232,9 +232,12 @@ def camera_of(*camera: Buffer) -> Any:
         ),
         (
             firmware(buffers=camera_of(Buffer("camera", u8, 32, "L1_data_a", rows=7))),
-            "must have a multiple of 8 rows",
+            "must have a multiple of 8 rows of 32 bytes, not 7 rows of 32 bytes$",
         ),
-        (firmware(buffers=camera_of(Buffer("camera", u8, 30, "L1_data_a", rows=8))), "rows of 32 bytes"),
+        (
+            firmware(buffers=camera_of(Buffer("camera", u8, 30, "L1_data_a", rows=8))),
+            "of 32 bytes, not 8 rows of 30 bytes$",
+        ),
         (firmware(buffers=lambda size: {"C": ()}), "buffers must belong to A, B, shared, not 'C'"),
     ],
 )
