@@ -91,21 +91,25 @@ def diff(
         pictures = [_pictures(stack) if html and isinstance(each, dict) else None for each in sides]
         results = [_result(stack, *each) for each in zip(sides, pictures, strict=True)]
         difference = _difference(*results)
-        if html:
+
+        def write() -> None:
             from bfsim.report.html.diff_page import DiffPage, PagedSide
             from bfsim.report.save import write_text
 
-            named = (PagedSide(*each) for each in zip((before, after), pictures, strict=True))
-            write_text(html, DiffPage(difference, *named).chunks())
-    tell(
-        json_path,
-        lambda: [diff_json(difference)],
-        lambda: (
-            click.echo(diff_markdown(difference, top), nl=False)
-            if markdown
-            else print_report(diff_report(difference, top))
-        ),
-    )
+            if html:
+                named = (PagedSide(*each) for each in zip((before, after), pictures, strict=True))
+                write_text(html, DiffPage(difference, *named).chunks())
+
+        tell(
+            json_path,
+            lambda: [diff_json(difference)],
+            lambda: (
+                click.echo(diff_markdown(difference, top), nl=False)
+                if markdown
+                else print_report(diff_report(difference, top))
+            ),
+            write,
+        )
 
 
 def _difference(before: Result | Case, after: Result | Case) -> Difference:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli.options.json_file import json_option, require_json_place, tell
+from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
@@ -64,18 +64,19 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
             raise ConfigError(f"{output} must not exist yet; --force overwrites it")
     require_json_place(json_path, (*files_of_run(what), output))
     placed = found_by(simulate=_whole_run, **what)
-    if output and placed.ldf:
-        write_text(output, placed.ldf)
 
-    def show() -> None:
-        print_report(placed_report(placed, top))
+    def write() -> None:
         if output and placed.ldf:
-            file = shlex.quote(str(output))
-            click.echo(f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it.")
-        elif output:
-            click.echo(f"{output} was not written: {placed.start} is as good.")
+            write_text(output, placed.ldf)
 
-    tell(json_path, lambda: [placed_json(placed)], show)
+    tell(json_path, lambda: [placed_json(placed)], lambda: print_report(placed_report(placed, top)), write)
+    if output and json_path != STDOUT:
+        file = shlex.quote(str(output))
+        click.echo(
+            f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it."
+            if placed.ldf
+            else f"{output} was not written: {placed.start} is as good."
+        )
 
 
 def _whole_run(**what: Any) -> RunRecord:

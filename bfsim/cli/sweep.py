@@ -245,13 +245,14 @@ def _report(sweep: Sweep, before: AbstractSet[str], axes: Axes | None, top: int)
     csv, parquet, plot = (
         sweep.store.folder / f"{sweep.file.stem}{end}" for end in (".csv", ".parquet", ".svg")
     )
-    files = [csv]
-    write_text(csv, csv_of(rows))
-    with suppress(ImportError):  # it is an extra
-        write_parquet(parquet, rows)
-        files.append(parquet)
-    kept = sum(each.key in before for each in sweep.planned)
-    print_report(sweep_report(shown, files, kept, top))
+    kept, files = sum(each.key in before for each in sweep.planned), list[Path]()
+    with ExitStack() as last:  # what cannot be written is an error behind the report
+        last.callback(lambda: print_report(sweep_report(shown, files, kept, top)))
+        write_text(csv, csv_of(rows))
+        files.append(csv)
+        with suppress(ImportError):  # it is an extra
+            write_parquet(parquet, rows)
+            files.append(parquet)
     done = [(each.setting, each.row) for each in shown if FRAME_RATE in each.row]
     with suppress(ImportError):
         if done:

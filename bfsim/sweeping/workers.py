@@ -88,10 +88,14 @@ def _deaf() -> Iterator[None]:
 
 
 def _begin(leash: Connection) -> None:
-    """Make this process a worker: what firmware prints goes nowhere, its parent warns, and it ends when that one lets go."""
+    """Make this process a worker: what it prints goes nowhere, its parent warns, and it ends when that one lets go.
+
+    Python would print that the parent is gone, if it noticed before.
+    """
     warnings.simplefilter("ignore", BfsimWarning)
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
+    for each in (1, 2):
+        os.dup2(nowhere, each)
     Thread(target=_end_with, args=(leash,), daemon=True).start()
 
 

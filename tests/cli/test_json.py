@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
+from bfsim.errors import ConfigError
 from tests.eyes import FIRMWARE, record
 
 RUNS = ["drive.mcap", "--firmware", "fw_eyes.py", "--frames", "1"]
@@ -85,6 +86,22 @@ def test_with_a_file_it_writes_it_beside_the_report(home: Path, name: str) -> No
     assert with_file.exit_code == 0, with_file.output
     assert with_file.stdout == call(*COMMANDS[name]).stdout
     assert file.read_text() == call(*COMMANDS[name], "--json").stdout
+
+
+@pytest.mark.parametrize("name", ["run", "explain", "diff", "record info"])
+def test_the_report_is_printed_although_the_file_has_no_room(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was found may have taken hours; then the error."""
+
+    def full(path: Path, _content: object) -> None:
+        raise ConfigError(f"{path} must be writable: No space left on device")
+
+    report = call(*COMMANDS[name]).stdout
+    monkeypatch.setattr("bfsim.report.save.write_bytes", full)
+    done = call(*COMMANDS[name], "--json", "out.json")
+    assert (done.exit_code, done.stdout) == (2, report)
+    assert done.stderr.endswith("out.json must be writable: No space left on device\n")
 
 
 @pytest.mark.parametrize("name", dict(with_json(main)))

@@ -73,6 +73,23 @@ def test_one_frame_is_one_frame_and_one_point_one_point() -> None:
     assert call(Path("one.toml")).output.startswith("1 point: 1 done.\n")
 
 
+def test_what_came_out_is_told_although_the_table_has_no_room(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A disk may fill up while points run, which takes longer than to write a table."""
+
+    def full(path: Path, *_content: object) -> None:
+        raise ConfigError(f"{path} must be writable: No space left on device")
+
+    assert call(file).exit_code == 0
+    monkeypatch.setattr("bfsim.report.save.write_bytes", full)
+    done = call(file)
+    assert done.exit_code == 2
+    assert done.stdout.startswith("4 points: 4 done (4 of them before).\n")
+    assert "All figures" not in done.stdout
+    assert done.stderr.endswith("what-if.csv must be writable: No space left on device\n")
+
+
 def test_the_walk_of_a_student(file: Path) -> None:
     """What there is to do, what came out, and nothing of it twice."""
     listed = call(file, "--dry-run").output

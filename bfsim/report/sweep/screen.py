@@ -66,7 +66,8 @@ def sweep_report(points: Sequence[Shown], files: Sequence[Path], kept: int, top:
     parts += [Text(failures(errors))] if errors else []
     told = [ONE_FRAME] if any(each.row["frames"] == 1 for each in done) else []
     told += [f"{warned:,} of the points come with warnings: see the column of that name."] if warned else []
-    told.append(f"All figures of all points: {', '.join(map(str, files))}")
+    if files:
+        told.append(f"All figures of all points: {', '.join(map(str, files))}")
     return stacked(*parts, Text("\n".join(told)))
 
 
