@@ -106,27 +106,25 @@ def _checksum(name: str, body: bytes) -> bytes:
 
 @cache
 def _trusted(place: Path) -> Path | None:
-    """Return the cache's folder, which is made if it is not there; None, after a warning, if others can write in it.
+    """Return the cache's folder, which is made if it is not there; None, after a warning, if there is none, or others can write in it.
 
     The folders above it are not asked: who can put another folder in its place cannot make the user its owner.
     """
-    with suppress(OSError):
-        place.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
     try:
-        found = place.stat()
-    except OSError:
-        return None
-    stranger = _stranger(found)
-    if stranger:
+        place.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
+        stranger = _stranger(place.stat())
+        must = f"private, for what is in it is run, but {stranger}" if stranger else ""
+    except OSError as error:
+        must = f"a folder, and there is none and none can be made: {error.strerror}"
+    if must:
         warnings.warn(
-            f"the kernel cache {shown(str(place))} must be private, for what is in it is run, but {stranger}: it is "
-            "not used, and every start compiles all kernels; `chmod 700` makes a folder of your own private, and "
-            "BFSIM_CACHE_DIR names another one",
+            f"the kernel cache {shown(str(place))} must be {must}: it is not used, and every start compiles all "
+            "kernels; `chmod 700` makes a folder of your own private, and BFSIM_CACHE_DIR names another one",
             BfsimWarning,
             stacklevel=2,
         )
         return None
-    return place if stat.S_ISDIR(found.st_mode) else None
+    return place
 
 
 def _stranger(found: os.stat_result) -> str:

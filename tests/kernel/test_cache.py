@@ -179,9 +179,12 @@ def test_a_damaged_entry_is_made_again(
 def test_a_folder_that_cannot_be_written_is_no_obstacle(
     folder: Path, compiles: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Without a cache every start compiles, and nothing is left half-written."""
+    """Without a cache every start compiles, which is told where there can be none, and nothing is left half-written."""
     folder.write_text("a file, not a folder")
-    assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
+    with pytest.warns(
+        BfsimWarning, match="must be a folder, and there is none and none can be made: File exists"
+    ):
+        assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
     folder.unlink()
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
     assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
