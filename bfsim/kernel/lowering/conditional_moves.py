@@ -7,12 +7,16 @@ choice is in the register of the choice already: it is not copied, and if it is 
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import Instruction, arms_of
+from collections.abc import Sequence
+
+from bfsim.kernel.ir_text import Instruction, arms_of, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.narrow_choices import is_computed_narrow, stored_bits
 from bfsim.kernel.lowering.widths import WORD
 
 CASTS = ("trunc", "zext", "sext", "freeze")
+MOST_ON_ONE_SIDE = 2
+"""Registers that only one side of a test sets [MAX_CONDITIONAL_EXECUTE in ifcvt.cc, where a branch costs 1]."""
 
 
 def is_conditional_move(
@@ -21,12 +25,40 @@ def is_conditional_move(
     """Whether the choice `phi` between two `values` is one, behind a comparison of those in `tested`."""
     if _is_narrow(flow, phi) and not (tested.issuperset(values) and _stays_a_branch(flow, phi, values)):
         tested = frozenset()  # wide, in a register of its own
+    own, copied = _registers(flow, phi, values, tested)
+    return len(copied) < 2 and tested.isdisjoint(own)
+
+
+def are_conditional_moves(
+    flow: ControlFlow, choices: Sequence[tuple[Instruction, str, str]], tested: frozenset[str]
+) -> bool:
+    """Whether choices by one comparison, each a phi and what it is on either side, are such: of values that none of the others overwrites.
+
+    Of two between numbers that are as far apart, LLVM has computed one from the other, which is no choice of its own in C.
+    """
+    if not all(is_conditional_move(flow, phi, (yes, no), tested) for phi, yes, no in choices):
+        return False
+    registers = [_registers(flow, phi, (yes, no), tested) for phi, yes, no in choices]
+    apart = [int(yes) - int(no) for _, yes, no in choices if is_number(yes) and is_number(no)]
+    if len({*apart}) < len(apart) or len(choices) - len(apart) > MOST_ON_ONE_SIDE:
+        return False
+    return all(
+        own.isdisjoint(copied)
+        for number, (own, _) in enumerate(registers)
+        for other, (_, copied) in enumerate(registers)
+        if number != other
+    )
+
+
+def _registers(
+    flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
+) -> tuple[set[str], set[str]]:
+    """Values whose register a choice has, and those that are copied to it."""
     carried = {each for each in _carried(flow, phi) if not _is_wanted_behind(flow, each, phi)}
-    registers = {each for each in values if each.startswith("%")}
-    free = {each for each in registers if not _is_wanted_behind(flow, each, phi)}
+    registers = [each for each in values if each.startswith("%")]
+    free = [each for each in registers if not _is_wanted_behind(flow, each, phi)]
     sharing = sorted(free, key=lambda each: (each not in carried, each in tested))[:1]
-    copied = registers - {*sharing}
-    return len(copied) < 2 and tested.isdisjoint({*sharing} | carried)
+    return {*sharing} | carried, {*registers} - {*sharing}
 
 
 def _stays_a_branch(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:

@@ -101,8 +101,9 @@ class Context:
     @cached_property
     def _conversions_by_phi(self) -> dict[str, list[ConvertedIf]]:
         found: dict[str, list[ConvertedIf]] = {}
-        for conversion in self.if_conversion.by_label.values():
-            found.setdefault(conversion.phi.result or "", []).append(conversion)
+        for first in self.if_conversion.by_label.values():
+            for conversion in first.all:
+                found.setdefault(conversion.phi.result or "", []).append(conversion)
         return found
 
     def conversions_of(self, phi: Instruction) -> list[ConvertedIf]:

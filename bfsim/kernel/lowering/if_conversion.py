@@ -6,12 +6,13 @@ between two values that are there already (or to negate one that was tested for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from bfsim.kernel.ir_text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.conditional_moves import is_conditional_move
+from bfsim.kernel.lowering.conditional_moves import are_conditional_moves, is_conditional_move
 from bfsim.kernel.lowering.narrow_choices import is_narrowed, stored_bits
 from bfsim.kernel.lowering.widths import BYTE, WORD, widest
 from bfsim.kernel.profile import CompilerProfile
@@ -50,6 +51,14 @@ class ConvertedIf:
     operands: tuple[str, ...]
     arms: frozenset[str]
     """Blocks that vanish."""
+    besides: tuple[ConvertedIf, ...] = ()
+    """Further conditional moves by the same test, before each of which it is made again."""
+
+    @property
+    def all(self) -> Iterator[ConvertedIf]:
+        """Itself and those besides."""
+        yield self
+        yield from self.besides
 
 
 class IfConversion:
@@ -90,8 +99,25 @@ class IfConversion:
             if chosen != other:
                 choices.append((each, chosen, other))
         if len(choices) != 1:
-            return None
+            return self._of_choices(label, frozenset(arms), choices)
         return self._of_choice(label, frozenset(arms), *choices[0])
+
+    def _of_choices(
+        self, label: str, arms: frozenset[str], choices: Sequence[tuple[Instruction, str, str]]
+    ) -> ConvertedIf | None:
+        """Conditional moves to several registers [cond_move_process_if_block in ifcvt.cc]."""
+        test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
+        if test is None or test.opcode != "icmp" or not self.profile.applies(Rule.CONDITIONAL_MOVES):
+            return None
+        if any(self._work(arm) or self._converts(arm, phi) for arm in arms for phi, *_ in choices):
+            return None
+        bounds = frozenset(self._plain(each) for each in self._bounds(test))
+        if not choices or not are_conditional_moves(self.flow, choices, bounds):
+            return None
+        first, *besides = (
+            ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms) for phi, yes, no in choices
+        )
+        return replace(first, besides=tuple(besides))
 
     def _clamp(self, label: str) -> ConvertedIf | None:
         """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""

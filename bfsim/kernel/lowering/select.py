@@ -296,9 +296,17 @@ class _Selector(Accesses):
             op = Op.ALU if "-1" in conversion.operands else Op.SHIFT
             self.append(op, each, result, DATA, (f"{result}.flag", DATA))
         else:
+            if conversion is not self.context.if_conversion.by_label[conversion.label]:
+                self._test_again()
             uses = tuple((value, ANY) for value in conversion.operands)
             over = self._either(*conversion.operands)
             self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=over)
+
+    def _test_again(self) -> None:
+        """Each of several conditional moves has a comparison of its own [noce_emit_cmove in ifcvt.cc]."""
+        tests = [each for each in self.code.of.get(self.label, ()) if each.op in (Op.COMPARE, Op.BIT_TEST)]
+        for each in tests[-1:]:
+            self.code.add(self.label, replace(each))
 
     def _either(self, yes: str, no: str) -> tuple[str, ...]:
         """What a conditional move may overwrite: to GCC, either operand."""

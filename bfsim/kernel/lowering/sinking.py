@@ -18,7 +18,7 @@ MOVABLE = (
     "load", "getelementptr", "add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "zext", "sext", "trunc",
 )  # fmt: skip
 CHOOSING = ("@llvm.smin", "@llvm.smax", "@llvm.umin", "@llvm.umax", "@llvm.abs")
-CASTS = ("zext", "sext", "trunc")  # in C, what is tested is extended already
+CASTS = ("zext", "sext", "trunc")
 RARER, RARER_LOAD = (
     0.75,
     0.82,
@@ -87,9 +87,14 @@ def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
         value = arms_of(choice).get(label, "") if choice.opcode == "phi" else ""
         home, each = flow.defined.get(value, ("", choice))
         is_alone = len(flow.users.get(value, ())) == 1 and choice.operands.count(value) == 1
-        if home == label and is_alone and _is_movable(each) and each.opcode not in CASTS:
+        if home == label and is_alone and _is_movable(each) and not _is_tested(flow, each):
             return True
     return False
+
+
+def _is_tested(flow: ControlFlow, each: Instruction) -> bool:
+    """Whether a conversion is of what is wanted for something else, too: in C, that is extended already."""
+    return each.opcode in CASTS and flow.users.get(each.operands[0]) != [each]
 
 
 def _is_movable(each: Instruction) -> bool:
