@@ -99,10 +99,8 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
 def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
     """Rotate loops once more; those that end with their test already stay as they are."""
     holding = held(str(module)) if profile.applies(Rule.ROTATED_ONCE) else None
-    if holding is None:
-        generic.run(("loop_rotate",), module)
-        return module
-    module = llvm.parse_assembly(holding)
+    if holding is not None:
+        module = llvm.parse_assembly(holding)
     generic.run(("loop_rotate",), module)
     return llvm.parse_assembly(released(str(module)))
 

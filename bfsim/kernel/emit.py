@@ -26,8 +26,8 @@ from bfsim.kernel.emit_values import (
 )
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
-from bfsim.kernel.ir_text import OF_VARIABLE
-from bfsim.kernel.subloops import makes_subloop
+from bfsim.kernel.ir_text import LEAVES, OF_VARIABLE
+from bfsim.kernel.subloops import end_of_subloop, makes_subloop
 from bfsim.kernel.types import ArrayType
 
 Sites = tuple[Site, ...]
@@ -176,6 +176,8 @@ class _Statements:
     one_way_back: bool
     loops: list[tuple[ir.BasicBlock, ir.BasicBlock]] = field(init=False, default_factory=list)
     """Of each open loop: where `continue` and where `break` go."""
+    leaving: dict[int, tuple[int, int]] = field(init=False, default_factory=dict)
+    """Weights of the tests that leave a loop which begins with the same test as the one around it, by their identity."""
 
     def emit(self, body: tuple[tree.Stmt, ...]) -> None:
         """Emit statements one after the other."""
@@ -213,7 +215,7 @@ class _Statements:
 
     def _if(self, node: tree.If) -> None:
         yes, no, after = (self.builder.append_basic_block(name) for name in ("then", "else", "after"))
-        self.values.weights = (_weight(node.body), _weight(node.orelse))
+        self.values.weights = self.leaving.get(id(node), (_weight(node.body), _weight(node.orelse)))
         self.values.hint(self.builder.cbranch(self.values.value(node.test), yes, no))
         self.values.weights = EVEN
         for block, body in ((yes, node.body), (no, node.orelse)):
@@ -229,6 +231,9 @@ class _Statements:
         self.builder.branch(test)
         self.builder.position_at_end(test)
         self.values.at(node.line)
+        if self.one_way_back and (end := end_of_subloop(node, self.body)) is not None:
+            self.values.hold()
+            self.leaving[id(end[0])] = LEAVES if end[1] else LEAVES[::-1]
         self.builder.cbranch(self.values.value(node.test), body, after)
         self.builder.position_at_end(body)
         with self._loop(again, after):

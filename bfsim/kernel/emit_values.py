@@ -12,7 +12,7 @@ from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
 from bfsim.kernel.intrinsics.meaning import function_type
-from bfsim.kernel.ir_text import ENTERS, NO_HINT, STEPS
+from bfsim.kernel.ir_text import ENTERS, HOLDS, NO_HINT, STEPS
 from bfsim.kernel.types import FloatType, IntType, Number, u32
 
 InlinedCall = tuple[str, str, int]
@@ -258,6 +258,11 @@ class Values:
         """Say where a loop begins whose start, stop and step are to be checked."""
         with self.site(node):
             self._mark(STEPS, *bounds)
+
+    def hold(self) -> None:
+        """Say that the loop that begins here is not to be rotated."""
+        self._mark(HOLDS)
+        self.builder.module.globals[HOLDS].attributes.add("noduplicate")
 
     def _mark(self, name: str, *given: ir.Value) -> None:
         """Emit a call that does nothing: it stays in its block, and stands in nothing's way."""

@@ -21,6 +21,8 @@ WIDTH = re.compile(r"\bi(\d+)\b")
 INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
 NO_HINT = (1 << 20, 1)
 """Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
+LEAVES = (11, 189)
+"""Weights of a branch whose first side leaves one of two loops that begin with the same test [PRED_LOOP_EXIT in predict.def of GCC 12, of two exits]."""
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
            "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
 """Relations by those of the same two values the other way round."""
@@ -31,6 +33,8 @@ ENTERS = "bfsim.enters."
 """Before the symbol of a kernel, names a call that does nothing, where the code of that kernel begins, which is inlined."""
 STEPS = "bfsim.steps"
 """A call that does nothing, with start, stop and step of the loop behind it, whose step is no constant: `guards` checks them."""
+HOLDS = "bfsim.holds"
+"""A call that does nothing, in the header of a loop that is not to be rotated, until loops are."""
 OF_VARIABLE = "cut.variable"
 """In the name of what a store cuts off a local variable, and of what LLVM makes of that: in C the variable is a whole word until then."""
 HIDES = "bfsim.hides"
@@ -95,7 +99,7 @@ class Instruction:
     @property
     def is_mark(self) -> bool:
         """Whether it is no code, and only says what is to be checked here."""
-        return self.opcode == "call" and f"@{STEPS}(" in self.text
+        return self.opcode == "call" and any(f"@{each}(" in self.text for each in (STEPS, HOLDS))
 
     @property
     def is_computation(self) -> bool:

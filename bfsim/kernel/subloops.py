@@ -31,6 +31,42 @@ def makes_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> bool:
     return False
 
 
+def end_of_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> tuple[tree.If, bool] | None:
+    """The test that ends an iteration of `loop`, if GCC makes two loops of one by it, and whether the loop within is left where it holds.
+
+    Of `if a[m] > x: high = m`, `else: low = m + 1`, a side that only says what variables are next leads back at once. The loop within begins
+    with the test of both, so neither is rotated. Behind the test of `loop` itself, that side leads out of it.
+    """
+    *before, last = loop.body
+    if not isinstance(last, tree.If) or any(map(_continues, loop.body)) or _is_same(last.test, loop.test):
+        return None
+    changed = {name for each in before for name in _changed(each)}
+    for side, other in ((last.orelse, last.body), (last.body, last.orelse)):
+        handed_on = {name for name in changed - _changed(side) if _is_carried(name, loop, function)}
+        ways = [*_ways_back(other, frozenset(), to_next=True)]
+        if _only_chooses(side) and other and ways and all(handed_on <= each for each in ways):
+            return last, other is last.body
+    return None
+
+
+def _is_same(one: tree.Expr, other: tree.Expr) -> bool:
+    """Whether two expressions are written alike."""
+    return [*map(_said, tree.parts(one))] == [*map(_said, tree.parts(other))]
+
+
+def _said(part: object) -> tuple[object, ...]:
+    """What a part of an expression says beside its operands."""
+    own = (getattr(part, each, None) for each in ("name", "array", "op", "to"))
+    return (type(part), *own, part.value if isinstance(part, tree.Const) else None)
+
+
+def _only_chooses(side: Sequence[tree.Stmt]) -> bool:
+    """Whether statements only set variables to others, or to numbers."""
+    return all(
+        isinstance(each, tree.Assign) and isinstance(each.value, (tree.Local, tree.Const)) for each in side
+    )
+
+
 def _is_bare(statement: tree.Stmt) -> bool:
     """Whether it is `if test: continue` and nothing else."""
     return (

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import cached_property
 
-from bfsim.kernel.ir_text import NO_HINT, BasicBlock, is_number, predicate
+from bfsim.kernel.ir_text import LEAVES, NO_HINT, BasicBlock, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.counter_comparisons import CounterComparisons
 from bfsim.kernel.lowering.frequencies import frequencies
@@ -72,6 +72,8 @@ class Likelihood:
         yes, no = block.successors
         if self.flow.is_overflow_guard(block):
             return float("icmp ne" in self._text_of_test(block))
+        if set(block.terminator.weights) == set(LEAVES):
+            return block.terminator.weights[0] / sum(LEAVES)
         loop = self._whole(self.flow.innermost(block.label))
         if loop is not None:
             inside = loop.blocks | loop.leaving
@@ -135,7 +137,11 @@ class Likelihood:
     def _leaving(self, loop: Loop) -> float:
         """How likely each exit of a loop is; before its first iteration, too, as the test there is a copy of its header's."""
         inside = loop.blocks | loop.leaving
-        exits = sum(bool(set(self.flow.blocks[each].successors) - inside) for each in inside)
+        exits = sum(
+            bool({*self.flow.blocks[each].successors} - inside)
+            or {*self.flow.blocks[each].terminator.weights} == {*LEAVES}
+            for each in inside
+        )
         return max((1 - LOOP_EXIT) / max(exits, 1), LEAST_EXIT)
 
     def _entered(self, way: str, other: str, block: BasicBlock) -> Loop | None:

@@ -14,6 +14,7 @@ from bfsim.kernel.lowering.bit_tests import with_bit_tests
 from bfsim.kernel.lowering.carried_values import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.early_loads import with_early_loads
+from bfsim.kernel.lowering.even_addresses import with_even_addresses
 from bfsim.kernel.lowering.extremes import with_extremes
 from bfsim.kernel.lowering.factored_sums import factor_sums
 from bfsim.kernel.lowering.final_values import with_final_values
@@ -56,6 +57,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_sides_apart,
     with_reduced_strength,
     with_summed_indices,
+    with_even_addresses,
     without_saturations,
     widen_extremes,
     without_lagging,

@@ -9,21 +9,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bfsim.kernel.ir_reading import placed_rows, read_module
-from bfsim.kernel.ir_text import Routine
+from bfsim.kernel.ir_text import HOLDS, Routine
 from bfsim.kernel.loops import ControlFlow
-
-HOLDS = "@bfsim.holds()"
 
 
 def held(text: str) -> str | None:
     """Return the module `text` with a call in the header of each such loop; None if there is none."""
     headers = {(routine.symbol, header) for routine in read_module(text) for header in _headers(routine)}
-    return "\n".join((*_marked(text, headers), f"declare void {HOLDS}")) if headers else None
+    if not headers:
+        return None
+    declared = () if HOLDS in text else (f"declare void @{HOLDS}()",)
+    return "\n".join((*_marked(text, headers), *declared))
 
 
 def released(text: str) -> str:
     """Return a module without these calls."""
-    return "\n".join(row for row in text.splitlines() if HOLDS not in row)
+    return "\n".join(row for row in text.splitlines() if f"@{HOLDS}()" not in row)
 
 
 def _headers(routine: Routine) -> Iterator[str]:
@@ -36,5 +37,5 @@ def _headers(routine: Routine) -> Iterator[str]:
 def _marked(text: str, headers: set[tuple[str, str]]) -> Iterator[str]:
     for symbol, label, row in placed_rows(text):
         if row.startswith("  br ") and (symbol, label) in headers:
-            yield f"  call void {HOLDS} noduplicate"
+            yield f"  call void @{HOLDS}() noduplicate"
         yield row
