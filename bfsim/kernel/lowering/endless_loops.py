@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import is_number, predicate
+from bfsim.kernel.ir_text import Instruction, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariables
 from bfsim.kernel.lowering.range_arithmetic import ANY, LARGEST
@@ -32,7 +32,7 @@ class EndlessLoops:
 
         GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
         ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i < n + 1`, which is `i <= n` and may always
-        hold.
+        hold, nor a counter of its own that may step over the largest number.
         """
         if len(self.flow.exits(loop)) < 2:
             return False
@@ -40,6 +40,8 @@ class EndlessLoops:
             return True
         if self.flow.is_split(loop):
             return not self._steps_by_one(loop)
+        if self._is_wanted(loop):
+            return not self._steps_by_one(loop) and not self._ends_at_number(loop)
         steps = {
             abs(variable.increment.constant)
             for variable in self.induction_variables.all
@@ -47,10 +49,15 @@ class EndlessLoops:
         }
         wide = bool(steps) and 1 not in steps
         fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        return wide and not fixed and not self._may_not_start(loop) and not self._is_wanted_behind(loop)
+        return wide and not fixed and not self._may_not_start(loop)
 
-    def _is_wanted_behind(self, loop: Loop) -> bool:
-        """Whether the counter is wanted behind the loop, and not as an index alone: then no pointer takes its place."""
+    def _ends_at_number(self, loop: Loop) -> bool:
+        """Whether a counter of wider steps is sure not to pass the largest number there is ["infinite" in niter_for_exit in loop-iv.cc]."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        return test is not None and is_number(test.operands[1])
+
+    def _is_wanted(self, loop: Loop) -> bool:
+        """Whether each iteration wants the counter, or something behind the loop, and not as an index alone: then no pointer takes its place."""
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         waiting = [each for each in test.operands if not self.flow.is_invariant(each, loop)] if test else []
         seen: set[str] = set()
@@ -58,12 +65,22 @@ class EndlessLoops:
             name = waiting.pop()
             seen.add(name)
             for user in self.flow.users.get(name, []):
-                inside = any(user in self.flow.blocks[label].instructions for label in loop.blocks)
                 if user.opcode == "phi" and (user.result or "") not in seen:
                     waiting.append(user.result or "")
-                elif not inside and user.opcode not in ("phi", "getelementptr"):
+                elif user.opcode not in ("phi", "getelementptr") and self._is_use(user, loop):
                     return True
         return False
+
+    def _is_use(self, user: Instruction, loop: Loop) -> bool:
+        """Whether an instruction is behind `loop`, or made in each iteration and neither its test nor a step."""
+        home = next((label for label in loop.blocks if user in self.flow.blocks[label].instructions), None)
+        if home is None:
+            return True
+        is_counting = (
+            user.result == self.evolution.exit_test(loop)
+            or self.evolution.increment(user.result or "", loop) is not None
+        )
+        return not is_counting and self.flow.every_iteration(home, loop)
 
     def _may_not_start(self, loop: Loop) -> bool:
         """Whether a counter that goes down to a constant is tested before the loop.
