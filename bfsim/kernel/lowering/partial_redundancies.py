@@ -14,6 +14,8 @@ from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_n
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from, going_to, put_between
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
+from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.unused import without_unused
 from bfsim.kernel.profile import GCC_O2
 
@@ -66,7 +68,8 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
     if any(flow.blocks[each].terminator.opcode != "br" for each in before):
         return None
     for each in block.instructions:
-        if each.opcode in NEUTRAL and any(_root(flow, operand) in choices for operand in each.operands):
+        is_operation = each.opcode in NEUTRAL or (_is_address(each) and not _is_stepped(flow, label, each))
+        if is_operation and any(_root(flow, operand) in choices for operand in each.operands):
             found = _redundancy(flow, block, each)
             if found is not None:
                 return found
@@ -88,6 +91,21 @@ def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) ->
         else:
             values[source] = value
     return _Redundancy(block.label, operation, values, rows) if values and rows else None
+
+
+def _is_address(each: Instruction) -> bool:
+    """Whether it is the address of an element, which for element 0 is the array itself."""
+    return each.opcode == "getelementptr" and len(each.operands) == 2
+
+
+def _is_stepped(flow: ControlFlow, label: str, address: Instruction) -> bool:
+    """Whether the index that is chosen is a counter of the loop on some way: a pointer that walks is its address there."""
+    loop, chosen = flow.innermost(label), flow.instruction(address.operands[1])
+    if loop is None or chosen is None or chosen.opcode != "phi":
+        return False
+    evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
+    gains = (evolution.increment(each, loop) for each in chosen.operands if not is_number(each))
+    return any(gain is not None and gain.moves for gain in gains)
 
 
 def _loops(flow: ControlFlow, label: str) -> set[str]:
@@ -151,6 +169,8 @@ def _operand_on_way(
 def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
     """Return what an operation gives without being done, None if it has to be."""
     left, right = operands
+    if opcode == "getelementptr":
+        return left if right == "0" else None
     if left == "0" and opcode in SHIFTS:
         return left
     if is_number(left) and is_number(right):
@@ -183,7 +203,7 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
         *before, last = blocks[home].instructions
         blocks[home] = replace(blocks[home], instructions=(*before, *rows, last))
         values[home] = rows[-1].result or ""
-    kind = f"i{found.operation.bits}"
+    kind = "ptr" if _is_address(found.operation) else f"i{found.operation.bits}"
     arms = ((value, source) for source, value in values.items())
     phi = phi_of(found.operation.result or "", kind, arms, found.operation)
     rest = [each for each in blocks[label].instructions if each is not found.operation]
