@@ -24,6 +24,7 @@ from bfsim.kernel.emit_values import (
     Site,
     Values,
 )
+from bfsim.kernel.first_turns import has_first
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import LEAVES, OF_VARIABLE
@@ -255,11 +256,13 @@ class _Statements:
         test, body, step, after = (
             builder.append_basic_block(name) for name in ("for", "body", "step", "after")
         )
-        builder.branch(test)
+        is_first_sure = self.one_way_back and has_first(node)
+        builder.branch(body if is_first_sure else test)
         builder.position_at_end(test)
         now = builder.load(counter, typ=I32)
         builder.cbranch(builder.icmp_signed("<" if node.goes_up else ">", now, stop), body, after)
         builder.position_at_end(body)
+        now = builder.load(counter, typ=I32) if is_first_sure else now
         builder.store(now, self.values.slots[node.name])
         with self._loop(step, after):
             self.emit(node.body)

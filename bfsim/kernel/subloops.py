@@ -38,7 +38,7 @@ def end_of_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> tuple[tre
     with the test of both, so neither is rotated. Behind the test of `loop` itself, that side leads out of it.
     """
     *before, last = loop.body
-    if not isinstance(last, tree.If) or any(map(_continues, loop.body)) or _is_same(last.test, loop.test):
+    if not isinstance(last, tree.If) or any(map(_continues, loop.body)) or tree.alike(last.test, loop.test):
         return None
     changed = {name for each in before for name in _changed(each)}
     for side, other in ((last.orelse, last.body), (last.body, last.orelse)):
@@ -47,17 +47,6 @@ def end_of_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> tuple[tre
         if _only_chooses(side) and other and ways and all(handed_on <= each for each in ways):
             return last, other is last.body
     return None
-
-
-def _is_same(one: tree.Expr, other: tree.Expr) -> bool:
-    """Whether two expressions are written alike."""
-    return [*map(_said, tree.parts(one))] == [*map(_said, tree.parts(other))]
-
-
-def _said(part: object) -> tuple[object, ...]:
-    """What a part of an expression says beside its operands."""
-    own = (getattr(part, each, None) for each in ("name", "array", "op", "to"))
-    return (type(part), *own, part.value if isinstance(part, tree.Const) else None)
 
 
 def _only_chooses(side: Sequence[tree.Stmt]) -> bool:

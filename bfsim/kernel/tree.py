@@ -289,3 +289,14 @@ def parts(node: object) -> Iterator[object]:
         elif hasattr(node, "line"):
             yield node
             waiting.extend(getattr(node, each) for each in reversed(node.__slots__))  # type: ignore[attr-defined]
+
+
+def alike(one: Expr, other: Expr) -> bool:
+    """Whether two expressions are written alike, but for where they stand."""
+    return [*map(_said, parts(one))] == [*map(_said, parts(other))]
+
+
+def _said(part: object) -> tuple[object, ...]:
+    """What a part of an expression says beside its operands."""
+    own = (getattr(part, each, None) for each in ("name", "array", "op", "to", "callee", "intrinsic"))
+    return (type(part), *own, part.value if isinstance(part, Const) else None)
