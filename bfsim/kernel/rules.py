@@ -48,6 +48,7 @@ class Rule(StrEnum):
     STEPPED_COUNTERS = "a counter that only the next iteration wants is stepped in place, last"
     CONSTANT_MOVES = "constants that do not fit in the registers of a loop come from others, by a move"
     KEPT_RESULTS = "a result that is wanted behind the next call moves out of R0"
+    OPPOSITE_FLAGS = "a flag that no comparison says is the opposite of one that one says"
     SINGLE_BITS = "a single bit is set, cleared or toggled by its number, without a mask"
     BIT_COUNTS = "a loop that clears the lowest bit until none is left is an instruction"
     COPIED_HEADERS = "a loop of two tests is rotated until both are at its end"
@@ -180,6 +181,7 @@ GCC: dict[Rule, str] = {
     Rule.BYTE_ADDRESSES: "find_costs_and_classes in ira-costs.cc",
     Rule.NARROW_BITS: '"(bitop (convert @0) (convert? @1))" in match.pd',
     Rule.OWN_OPERATIONS: "factor_out_conditional_conversion in tree-ssa-phiopt.cc, which takes nothing else",
+    Rule.OPPOSITE_FLAGS: "cstoresi4 in bfin.md",
     Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
 }
 """Where GCC 12 does so; the others are fitted to its code."""
@@ -215,6 +217,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.STEPPED_COUNTERS: ("percentiles",),
     Rule.CONSTANT_MOVES: ("hamming_pairs",),
     Rule.KEPT_RESULTS: ("morton",),
+    Rule.OPPOSITE_FLAGS: (),  # from kernels that are not measured here: tests/kernel/test_flags.py
     Rule.SINGLE_BITS: ("heap_sort",),
     Rule.BIT_COUNTS: ("popcount_words",),
     Rule.COPIED_HEADERS: ("run_tasks", "mu_law_block"),

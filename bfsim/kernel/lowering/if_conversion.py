@@ -183,7 +183,7 @@ class IfConversion:
             return None
         if work:
             return self._negation(label, arms, phi, work, test)
-        if "0" in (yes, no) and _is_bit(no if yes == "0" else yes):
+        if "0" in (yes, no) and self._is_bit(no if yes == "0" else yes, phi):
             return ConvertedIf(ConversionKind.SHIFTED_FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in self._bounds(test)}
         of_loads = all(self._is_narrow_load(each) for each in (yes, no))
@@ -200,6 +200,14 @@ class IfConversion:
             or is_conditional_move(self.flow, phi, (yes, no), frozenset(bounds))
         )
         return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms) if moves else None
+
+    def _is_bit(self, value: str, phi: Instruction) -> bool:
+        """Whether a value is a number of a single bit, or of all of them ["a ? powerof2cst : 0" and "a ? -1 : 0" in match.pd]."""
+        if not is_number(value):
+            return False
+        all_of_byte = (1 << phi.bits) - 1 if self.profile.applies(Rule.OPPOSITE_FLAGS) else -1
+        number = int(value)
+        return number in (-1, all_of_byte) or (number > 0 and number & (number - 1) == 0)
 
     def _converts(self, arm: str, phi: Instruction) -> bool:
         """Whether a side that stores a word as narrow has to extend what is left of it: GCC promotes the choice to a word [PROMOTE_MODE in bfin.h].
@@ -255,11 +263,3 @@ class IfConversion:
 def _arm_value(phi: Instruction, source: str) -> str:
     values = arms_of(phi)
     return values[source]
-
-
-def _is_bit(value: str) -> bool:
-    """Whether a value is a number of a single bit, or of all of them ["a ? powerof2cst : 0" and "a ? -1 : 0" in match.pd]."""
-    if not is_number(value):
-        return False
-    number = int(value)
-    return number == -1 or (number > 0 and number & (number - 1) == 0)

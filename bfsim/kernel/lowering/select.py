@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import Instruction, is_number, predicate
+from bfsim.kernel.ir_text import INVERTED, Instruction, is_number, predicate
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
@@ -19,9 +19,12 @@ from bfsim.kernel.lowering.if_conversion import ConversionKind, ConvertedIf
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.ranges import Range
+from bfsim.kernel.lowering.widths import WORD
 from bfsim.kernel.rules import Rule
 
 ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
+SIGNS = {("slt", "0"), ("sgt", "-1")}
+"""Tests of a sign, which is a shift."""
 EXTENDING_MASKS = {"255": 8, "65535": 16}
 
 
@@ -290,9 +293,9 @@ class _Selector(Accesses):
             self.append(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))
             self.append(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
         elif conversion.kind is ConversionKind.FLAG:
-            self.append(Op.CC_MOVE, each, result, DATA)
+            self._flag(each, result, conversion)
         elif conversion.kind is ConversionKind.SHIFTED_FLAG:
-            self.append(Op.CC_MOVE, each, f"{result}.flag", DATA)
+            self._flag(each, f"{result}.flag", conversion)
             op = Op.ALU if "-1" in conversion.operands else Op.SHIFT
             self.append(op, each, result, DATA, (f"{result}.flag", DATA))
         else:
@@ -301,6 +304,25 @@ class _Selector(Accesses):
             uses = tuple((value, ANY) for value in conversion.operands)
             over = self._either(*conversion.operands)
             self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=over)
+
+    def _flag(self, each: Instruction, result: str, conversion: ConvertedIf) -> None:
+        """The condition as 0 or 1: what no comparison says is the opposite of what one does [cstoresi4 in bfin.md]."""
+        self.append(Op.CC_MOVE, each, result, DATA)
+        test = self.flow.instruction(self.flow.blocks[conversion.label].terminator.operands[0])
+        tells = test is not None and test.opcode == "icmp" and conversion.label not in self.context.ranges
+        if test is None or not tells or not self.context.profile.applies(Rule.OPPOSITE_FLAGS):
+            return
+        relation = predicate(test) if conversion.operands[1] == "0" else INVERTED[predicate(test)]
+        if self.context.folding.bit_tested(test) is not None:
+            is_opposite = relation == "eq"
+        elif is_number(test.operands[1]):
+            is_opposite = (
+                relation[1:] in ("gt", "ge") and (predicate(test), test.operands[1]) not in SIGNS
+            ) or (relation == "ne" and conversion.kind is ConversionKind.FLAG and conversion.phi.bits < WORD)
+        else:
+            is_opposite = relation == "ne"
+        if is_opposite:
+            self.append(Op.ALU, each, result, DATA, (result, DATA), overwrites=(result,))
 
     def _test_again(self) -> None:
         """Each of several conditional moves has a comparison of its own [noce_emit_cmove in ifcvt.cc]."""
