@@ -23,6 +23,7 @@ from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
 from bfsim.kernel.lowering.charges import Access, merged
+from bfsim.kernel.lowering.first_iterations import with_first_iterations
 from bfsim.kernel.lowering.hidden_numbers import revealed
 from bfsim.kernel.lowering.kept_bounds import with_kept_bounds
 from bfsim.kernel.lowering.rewrites import rewritten, rewritten_early
@@ -92,8 +93,14 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         module = llvm.parse_assembly(unrolling)
         generic.run(("loop_unroll", *CLEANING), module)
         text = str(module)
-    text = rewritten(with_rounded_names(text, function), profile)
-    return with_kept_bounds(text) if profile.applies(Rule.KEPT_BOUNDS) else text
+    return _threaded(rewritten(with_rounded_names(text, function), profile), profile)
+
+
+def _threaded(text: str, profile: CompilerProfile) -> str:
+    """Thread jumps behind all other passes."""
+    if profile.applies(Rule.KEPT_BOUNDS):
+        text = with_kept_bounds(text)
+    return with_first_iterations(text) if profile.applies(Rule.FIRST_ITERATIONS) else text
 
 
 def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:

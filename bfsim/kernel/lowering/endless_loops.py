@@ -34,7 +34,9 @@ class EndlessLoops:
         ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i < n + 1`, which is `i <= n` and may always
         hold, nor a counter of its own that may step over the largest number.
         """
-        if len(self.flow.exits(loop)) < 2:
+        around = self.flow.around(loop)
+        is_one = around is not None and around.latch in loop.blocks  # an iteration that begins elsewhere
+        if len(self.flow.exits(loop)) - is_one < 2:
             return False
         if self._is_inclusive(loop):
             return True
