@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, phi_of
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of, is_number, phi_of, renamed
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from, going_to, put_between
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
@@ -73,7 +73,27 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
             found = _redundancy(flow, block, each)
             if found is not None:
                 return found
-    return None
+    return next(filter(None, (_narrowing(flow, block, each, choices) for each in block.instructions)), None)
+
+
+def _narrowing(
+    flow: ControlFlow, block: BasicBlock, each: Instruction, choices: set[str | None]
+) -> _Redundancy | None:
+    """Return on which ways a choice that is stored as narrow, and wanted as wide as well, is a number, which is narrow at once."""
+    wide = each.operands[0] if each.opcode == "trunc" else ""
+    users = flow.users.get(each.result or "", ())
+    if wide not in choices or len(flow.users[wide]) < 2 or any(user.opcode != "store" for user in users):
+        return None
+    phi = flow.instruction(wide)
+    assert phi is not None
+    bits = int(each.text.rsplit("i", 1)[1])
+    values, rows = dict[str, str](), dict[str, list[Instruction]]()
+    for source, value in arms_of(phi).items():
+        if is_number(value):
+            values[source] = str((int(value) + (1 << bits - 1)) % (1 << bits) - (1 << bits - 1))
+        else:
+            rows[source] = [replace(renamed(each, {wide: value}), result=f"{each.result}.{source}")]
+    return _Redundancy(block.label, each, values, rows) if values and rows else None
 
 
 def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) -> _Redundancy | None:
@@ -173,20 +193,28 @@ def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
         return left if right == "0" else None
     if left == "0" and opcode in SHIFTS:
         return left
+    absorbed = ABSORBING.get(opcode)
+    if absorbed in (left, right):
+        return absorbed
     if is_number(left) and is_number(right):
         return None  # another number, which takes a register there: to add it behind, as it was, is nearer to GCC's code
     sides = [(left, right), (right, left)] if opcode in COMMUTATIVE else [(left, right)]
     for kept, other in sides:
         if other == NEUTRAL[opcode]:
             return kept
-        if other == ABSORBING.get(opcode):
-            return other
     return None
 
 
 def _with(text: str, name: str, value: str) -> str:
     """Return the text of an instruction with another operand in the place of one."""
     return re.sub(rf"{re.escape(name)}(?![\w.$-])", value, text) if name.startswith("%") else text
+
+
+def _type_of(operation: Instruction) -> str:
+    """Return the type of what an operation gives."""
+    if _is_address(operation):
+        return "ptr"
+    return operation.text.split()[-1] if operation.opcode in CASTS else f"i{operation.bits}"
 
 
 def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
@@ -203,7 +231,7 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
         *before, last = blocks[home].instructions
         blocks[home] = replace(blocks[home], instructions=(*before, *rows, last))
         values[home] = rows[-1].result or ""
-    kind = "ptr" if _is_address(found.operation) else f"i{found.operation.bits}"
+    kind = _type_of(found.operation)
     arms = ((value, source) for source, value in values.items())
     phi = phi_of(found.operation.result or "", kind, arms, found.operation)
     rest = [each for each in blocks[label].instructions if each is not found.operation]
