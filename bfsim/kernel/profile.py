@@ -180,7 +180,7 @@ VDSP_O2 = CompilerProfile(
              Rule.COUNTER_REGISTERS, Rule.STRENGTH_REDUCTION, Rule.COPIES_IN_FRONT, Rule.JUMP_TABLES,
              Rule.BIT_TESTS, Rule.CONSTANT_TABLES, Rule.STATE_MACHINES, Rule.ARGUMENT_LOADS, Rule.NARROW_BITS,
              Rule.CODE_HOISTING, Rule.THREADED_CHOICES, Rule.KEPT_BOUNDS, Rule.CROSS_JUMPS, Rule.POINTER_DIFFERENCES,
-             Rule.FIELD_ADDRESSES, Rule.SPILLED_SUMS, Rule.OPPOSITE_FLAGS,
+             Rule.FIELD_ADDRESSES, Rule.SPILLED_SUMS, Rule.OPPOSITE_FLAGS, Rule.EVEN_ADDRESSES, Rule.FIRST_TURNS,
              Rule.FIRST_ITERATIONS),  # GCC's alone: nothing says that VisualDSP++ does so
 )  # fmt: skip
 GCC_ADI = replace(

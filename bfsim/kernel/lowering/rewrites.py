@@ -98,6 +98,7 @@ SWITCHES = {
     with_predictive_commoning: Rule.PREDICTIVE_COMMONING,
     with_reduced_strength: Rule.STRENGTH_REDUCTION,
     with_summed_indices: Rule.SUMMED_INDICES,
+    with_even_addresses: Rule.EVEN_ADDRESSES,
     with_shifted_products: Rule.SHIFTED_PRODUCTS,
     with_operations_on_sides: Rule.OWN_OPERATIONS,
     with_bit_tests: Rule.BIT_TESTS,
