@@ -14,6 +14,7 @@ from bfsim.kernel.ir_text import Instruction, Routine, arms_of, is_number, predi
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
 from bfsim.kernel.lowering.copied_ways import answered
 from bfsim.kernel.lowering.known_ways import KnownWays, with_known_ways, with_one_way
+from bfsim.kernel.lowering.same_values import COMPUTED, is_same
 from bfsim.kernel.lowering.short_circuits import SECOND
 from bfsim.kernel.lowering.threaded_choices import MOST_ON_A_WAY
 from bfsim.kernel.lowering.value_ranges import LARGEST, LEAST, Range, value_range
@@ -26,8 +27,7 @@ ACCESS = 2
 """Statements of an access: itself, and the step of its pointer."""
 CONDITION = 2
 """What a condition and its branch count of that."""
-COMPUTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "select", "call", "getelementptr")
-STEPPED = ("add", "sub", "shl", "getelementptr")
+STEPPED = ("add", "sub", "shl", "getelementptr", "phi")
 """What is computed from a counter and goes along with it."""
 WIDEST_STEP = 256
 """[ours] Of a counter that no loop brings so far that it wraps."""
@@ -72,24 +72,25 @@ def _may_copy(flow: ControlFlow, loop: Loop, chain: tuple[str, ...], goal: str) 
 
 
 def _cost(flow: ControlFlow, loop: Loop, chain: tuple[str, ...]) -> int:
-    """Statements that are copied: values that the loop carries, pointers too, but for the one that is tested, and what is computed."""
-    carried = sum(each.opcode == "phi" for each in flow.blocks[loop.header].instructions) - 1
+    """Statements that are copied: values that the loop carries, pointers too, but for the one that is tested, and what is computed.
+
+    Where a sum of the counter is computed, that may be what is tested.
+    """
+    carried = {each.result for each in flow.blocks[loop.header].instructions if each.opcode == "phi"}
     rows = [each for label in chain for each in flow.blocks[label].instructions]
+    is_other = any(each.opcode == "add" and each.operands[0] in carried for each in rows)
     accesses = sum(each.opcode in ("load", "store") for each in rows)
     computed = sum(
-        each.opcode in COMPUTED and each.opcode != "getelementptr" and not _stays(flow, loop, each)
+        each.opcode in COMPUTED and each.opcode != "getelementptr" and not is_same(flow, loop, each)
         for each in rows
     )
-    return carried + len(_walked(flow, loop)) + ACCESS * accesses + computed + CONDITION * (len(chain) - 1)
-
-
-def _stays(flow: ControlFlow, loop: Loop, each: Instruction) -> bool:
-    """Whether an instruction computes the same in all iterations of a loop."""
-    made_of = (flow.instruction(operand) for operand in each.operands if not flow.is_invariant(operand, loop))
     return (
-        each.opcode in COMPUTED
-        and not each.is_call
-        and all(made and _stays(flow, loop, made) for made in made_of)
+        len(carried)
+        - (not is_other)
+        + len(_walked(flow, loop))
+        + ACCESS * accesses
+        + computed
+        + CONDITION * (len(chain) - 1)
     )
 
 
@@ -100,7 +101,7 @@ def _with_invariants_before(routine: Routine, found: Iterable[KnownWays]) -> Rou
     for test in found:
         loop = next(each for each in flow.loops if each.header == test.chain[0])
         rows = [
-            each for label in test.chain for each in blocks[label].instructions if _stays(flow, loop, each)
+            each for label in test.chain for each in blocks[label].instructions if is_same(flow, loop, each)
         ]
         before = blocks[flow.entering(loop)]
         *own, end = before.instructions

@@ -28,6 +28,7 @@ from bfsim.kernel.lowering.bits_set import STATEMENTS as WORD_COUNT
 from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.edges import going_to
 from bfsim.kernel.lowering.jump_threading import JumpThreading
+from bfsim.kernel.lowering.same_values import is_same
 from bfsim.kernel.lowering.short_circuits import SECOND
 
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
@@ -121,7 +122,12 @@ def _counts(flow: ControlFlow, loop: Loop) -> bool:
         return False
     if JumpThreading(flow).decides(header.terminator):
         return False  # gone by then
-    return all(flow.is_invariant(each, loop) or _is_carried(flow, loop, each) for each in test.operands[:2])
+    return all(_is_same(flow, loop, each) or _is_carried(flow, loop, each) for each in test.operands[:2])
+
+
+def _is_same(flow: ControlFlow, loop: Loop, value: str) -> bool:
+    each = flow.instruction(value)
+    return flow.is_invariant(value, loop) or (each is not None and is_same(flow, loop, each))
 
 
 def _is_carried(flow: ControlFlow, loop: Loop, value: str) -> bool:
