@@ -68,7 +68,7 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
             function,
             inlined,
             one_way_back=profile.optimises,
-            begins=profile.optimises and profile.applies(Rule.FIRST_TURNS),
+            begins=profile.optimises and profile.applies(Rule.FIXED_RANGES),
         )
     )
     if not profile.optimises:
