@@ -121,9 +121,11 @@ def _is_address(each: Instruction) -> bool:
 
 
 def _is_stepped(flow: ControlFlow, label: str, address: Instruction) -> bool:
-    """Whether the index that is chosen is a counter of the loop on some way: a pointer that walks is its address there."""
+    """Whether the index that is chosen is a counter of the loop on some way, so that its address walks, or was chosen by a loop before."""
     loop, chosen = flow.innermost(label), flow.instruction(address.operands[1])
-    if loop is None or chosen is None or chosen.opcode != "phi":
+    if loop is None:
+        return True  # what a loop has loaded there goes along with it (`carried_values`)
+    if chosen is None or chosen.opcode != "phi":
         return False
     evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
     gains = (evolution.increment(each, loop) for each in chosen.operands if not is_number(each))
