@@ -121,6 +121,7 @@ class Rule(StrEnum):
     THREADED_CHOICES = "a way on which a number was chosen leads past later tests of it"
     KEPT_BOUNDS = "where an iteration leaves a number as it was, its bound is not tested again"
     FIRST_ITERATIONS = "what only the first iteration of a loop is for is tested before it"
+    COMPUTED_STARTS = "a loop with several exits is counted where its first address is computed before it"
     CROSS_JUMPS = "what ends two blocks stands in the code once, if it is all of one"
     SPILLED_SUMS = "a sum that has no data register is added to in an I register"
     FIELD_ADDRESSES = "a field of a record that is loaded and stored has an address of its own"
@@ -163,6 +164,7 @@ GCC: dict[Rule, str] = {
     Rule.CODE_HOISTING: "do_hoist_insertion in tree-ssa-pre.cc",
     Rule.THREADED_CHOICES: "tree-ssa-threadbackward.cc",
     Rule.KEPT_BOUNDS: "tree-ssa-threadbackward.cc",
+    Rule.COMPUTED_STARTS: "simplify_using_initial_values in loop-iv.cc",
     Rule.FIRST_ITERATIONS: "profitable_path_p in tree-ssa-threadbackward.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
@@ -267,6 +269,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.CODE_HOISTING: (),  # from kernels that are not measured here: tests/kernel/test_code_that_decides.py
     Rule.THREADED_CHOICES: (),
     Rule.KEPT_BOUNDS: (),  # from kernels that are not measured here: tests/kernel/test_kept_bounds.py
+    Rule.COMPUTED_STARTS: (),  # from kernels that are not measured here: tests/kernel/test_computed_starts.py
     Rule.FIRST_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_first_iterations.py
     Rule.CROSS_JUMPS: (),  # tests/kernel/test_ends_of_loops.py
     Rule.SPILLED_SUMS: (),

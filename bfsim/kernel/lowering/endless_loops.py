@@ -51,7 +51,30 @@ class EndlessLoops:
         }
         wide = bool(steps) and 1 not in steps
         fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        return wide and not fixed and not self._may_not_start(loop)
+        known = fixed or self._starts_in_front(loop)
+        return wide and not known and not self._may_not_start(loop)
+
+    def _starts_in_front(self, loop: Loop) -> bool:
+        """Whether the address that a loop walks from is computed right before it: what is left to its end is a multiple of the step then.
+
+        That of what the loop around counts is a pointer, too, of which that is not known [simplify_using_initial_values in loop-iv.cc]. Nor
+        is it asked of a counter that is wanted behind the loop, or steps by more than one.
+        """
+        start = self.evolution.counter_start(loop)
+        if start is None or not self._steps_by_one(loop) or not self.profile.applies(Rule.COMPUTED_STARTS):
+            return False
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        moving = {each for each in test.operands if not self.flow.is_invariant(each, loop)} if test else set()
+        inside = {id(each) for label in loop.blocks for each in self.flow.blocks[label].instructions}
+        behind = any(id(user) not in inside for each in moving for user in self.flow.users.get(each, ()))
+        return not behind and not self._comes_from_choice(start)
+
+    def _comes_from_choice(self, value: str) -> bool:
+        """Whether a value is a phi, or computed from one; what is loaded is not."""
+        made = self.flow.instruction(value)
+        if made is None or made.opcode == "load":
+            return False
+        return made.opcode == "phi" or any(map(self._comes_from_choice, made.operands))
 
     def _ends_at_number(self, loop: Loop) -> bool:
         """Whether a counter of wider steps is sure not to pass the largest number there is ["infinite" in niter_for_exit in loop-iv.cc]."""
