@@ -55,13 +55,15 @@ class EndlessLoops:
         return wide and not known and not self._may_not_start(loop)
 
     def _starts_in_front(self, loop: Loop) -> bool:
-        """Whether the address that a loop walks from is computed right before it: what is left to its end is a multiple of the step then.
+        """Whether a loop walks from an address that is computed right before it, of no constant: what is left to its end is a multiple of the step then.
 
         That of what the loop around counts is a pointer, too, of which that is not known [simplify_using_initial_values in loop-iv.cc]. Nor
         is it asked of a counter that is wanted behind the loop, or steps by more than one.
         """
         start = self.evolution.counter_start(loop)
-        if start is None or not self._steps_by_one(loop) or not self.profile.applies(Rule.COMPUTED_STARTS):
+        if start is None or is_number(start) or not self.profile.applies(Rule.COMPUTED_STARTS):
+            return False
+        if not self._steps_by_one(loop):
             return False
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         moving = {each for each in test.operands if not self.flow.is_invariant(each, loop)} if test else set()

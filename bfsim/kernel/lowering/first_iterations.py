@@ -129,9 +129,24 @@ def _each_entered(flow: ControlFlow) -> Iterator[KnownWays]:
         if loop.inner or loop.latch.endswith(SECOND) or f"{loop.latch}{COPIED}" in flow.blocks:
             continue  # LLVM had made one test of both, so they are at its end, or what begins it has been copied
         if len(before) == 1 and _cost(flow, loop, (loop.header,)) <= MOST_ON_A_WAY:
-            said = _said_first(flow, loop, block.terminator.operands[0])
+            condition = block.terminator.operands[0]
+            said = None if _is_of_flag(flow, loop, condition) else _said_first(flow, loop, condition)
             if said is not None and ways[0 if said else 1] == inside[0]:
                 yield KnownWays((loop.header,), inside[0], tuple(before), goes_back=False)
+
+
+def _is_of_flag(flow: ControlFlow, loop: Loop, condition: str) -> bool:
+    """Whether a test is of what each way through the loop sets to a constant: all of them lead past it, the ways that end the loop out of it."""
+    test = flow.instruction(condition)
+    phi = flow.instruction(test.operands[0]) if test is not None and test.opcode == "icmp" else test
+    if phi is None or phi.opcode != "phi" or flow.defined[phi.result or ""][0] != loop.header:
+        return False
+    last = flow.instruction(arms_of(phi)[loop.latch])
+    return (
+        last is not None
+        and last.opcode == "phi"
+        and all(_constant(each) != (LEAST, LARGEST) for each in last.operands)
+    )
 
 
 def _said_first(flow: ControlFlow, loop: Loop, condition: str) -> bool | None:
