@@ -63,14 +63,7 @@ def costed(function: Function, profile: CompilerProfile) -> Costs:
 def optimised(function: Function, profile: CompilerProfile) -> str:
     """Return the optimised IR of `function` and its callees: the code that is costed and counted."""
     inlined = inlined_calls(function, profile)
-    module = generic.parsed(
-        emit(
-            function,
-            inlined,
-            one_way_back=profile.optimises,
-            begins=profile.optimises and profile.applies(Rule.FIXED_RANGES),
-        )
-    )
+    module = generic.parsed(emit(function, inlined, one_way_back=profile.optimises))
     if not profile.optimises:
         return str(module)
     if inlined:

@@ -24,7 +24,6 @@ from bfsim.kernel.emit_values import (
     Site,
     Values,
 )
-from bfsim.kernel.first_turns import has_first
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import LEAVES, OF_VARIABLE
@@ -36,18 +35,13 @@ POINTER = ir.PointerType()
 
 
 def emit(
-    function: Function,
-    inlined: frozenset[InlinedCall] = frozenset(),
-    *,
-    one_way_back: bool = True,
-    begins: bool = True,
+    function: Function, inlined: frozenset[InlinedCall] = frozenset(), *, one_way_back: bool = True
 ) -> ir.Module:
     """Emit `function` and every kernel it calls as one module; calls that are to be inlined are marked so.
 
     `one_way_back`: whether each way round a `while` joins the others before the test, where GCC makes one loop of them (`subloops`).
-    `begins`: whether a loop that is sure to iterate begins without a test (`first_turns`).
     """
-    return _emitted(function, inlined, one_way_back=one_way_back, begins=begins)[0]
+    return _emitted(function, inlined, one_way_back=one_way_back)[0]
 
 
 def sites_of(function: Function) -> dict[str, Sites]:
@@ -66,13 +60,12 @@ def emit_alone(function: Function) -> ir.Module:
 
 
 def _emitted(
-    function: Function, inlined: frozenset[InlinedCall], *, one_way_back: bool, begins: bool = True
+    function: Function, inlined: frozenset[InlinedCall], *, one_way_back: bool
 ) -> tuple[ir.Module, dict[str, Sites]]:
     module = _module(function)
     all_of_them = (*function.callees(), function)
     return module, {
-        each.symbol: _emit_into(module, each, inlined, one_way_back=one_way_back, begins=begins)
-        for each in all_of_them
+        each.symbol: _emit_into(module, each, inlined, one_way_back=one_way_back) for each in all_of_them
     }
 
 
@@ -101,12 +94,7 @@ def _declare(module: ir.Module, function: Function) -> None:
 
 
 def _emit_into(
-    module: ir.Module,
-    function: Function,
-    inlined: frozenset[InlinedCall],
-    *,
-    one_way_back: bool,
-    begins: bool = True,
+    module: ir.Module, function: Function, inlined: frozenset[InlinedCall], *, one_way_back: bool
 ) -> Sites:
     """Emit the code of a kernel that is declared; return its sites."""
     target = module.get_global(function.symbol)
@@ -120,7 +108,7 @@ def _emit_into(
         values.slots[name] = builder.alloca(register_type(kind), name=f"{name}.v{number}")
     for name, value in scalars.items():
         builder.store(value, values.slots[name])
-    _Statements(builder, values, function.body, one_way_back, begins).emit(function.body)
+    _Statements(builder, values, function.body, one_way_back).emit(function.body)
     if not builder.block.is_terminated:
         if function.result:
             builder.unreachable()
@@ -186,7 +174,6 @@ class _Statements:
     values: Values
     body: tuple[tree.Stmt, ...]
     one_way_back: bool
-    begins: bool
     loops: list[tuple[ir.BasicBlock, ir.BasicBlock]] = field(init=False, default_factory=list)
     """Of each open loop: where `continue` and where `break` go."""
     leaving: dict[int, tuple[int, int]] = field(init=False, default_factory=dict)
@@ -268,13 +255,11 @@ class _Statements:
         test, body, step, after = (
             builder.append_basic_block(name) for name in ("for", "body", "step", "after")
         )
-        is_first_sure = self.begins and has_first(node)
-        builder.branch(body if is_first_sure else test)
+        builder.branch(test)
         builder.position_at_end(test)
         now = builder.load(counter, typ=I32)
         builder.cbranch(builder.icmp_signed("<" if node.goes_up else ">", now, stop), body, after)
         builder.position_at_end(body)
-        now = builder.load(counter, typ=I32) if is_first_sure else now
         builder.store(now, self.values.slots[node.name])
         with self._loop(step, after):
             self.emit(node.body)

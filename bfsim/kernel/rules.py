@@ -114,7 +114,6 @@ class Rule(StrEnum):
     EXPANSION_ORDER = "what is used once is computed where it is used, the longer operand first"
     BYTE_ADDRESSES = "of an array of bytes that comes in a data register, addresses are added up there if they are all that uses it"
     NARROW_BITS = "narrow values are masked and joined bit by bit before they are extended"
-    FIXED_RANGES = "a range from something to a number more than that is not tested for its first iteration"
     EVEN_ADDRESSES = "half of a number as an index of words of 16 bits is the number without its lowest bit"
     SUMMED_INDICES = "an index that is a sum is added up before it becomes an address, unless elements are bytes and one access uses it"
     CODE_HOISTING = "what every way from a test computes is computed before it, if one of its sides does so"
@@ -188,7 +187,6 @@ GCC: dict[Rule, str] = {
     Rule.NARROW_BITS: '"(bitop (convert @0) (convert? @1))" in match.pd',
     Rule.OWN_OPERATIONS: "factor_out_conditional_conversion in tree-ssa-phiopt.cc, which takes nothing else",
     Rule.OPPOSITE_FLAGS: "cstoresi4 in bfin.md",
-    Rule.FIXED_RANGES: '"X + C > X" in match.pd',
     Rule.EVEN_ADDRESSES: "combine.cc, by BITCLR in bfin.md",
     Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
 }
@@ -225,7 +223,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.STEPPED_COUNTERS: ("percentiles",),
     Rule.CONSTANT_MOVES: ("hamming_pairs",),
     Rule.KEPT_RESULTS: ("morton",),
-    Rule.FIXED_RANGES: (),  # tests/kernel/test_ranges_of_windows.py
     Rule.EVEN_ADDRESSES: (),  # tests/kernel/test_searches_by_halves.py
     Rule.OPPOSITE_FLAGS: (),  # from kernels that are not measured here: tests/kernel/test_flags.py
     Rule.SINGLE_BITS: ("heap_sort",),

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from bfsim.kernel import Kernel
-from tests.kernel.modules import import_text
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from tests.kernel.modules import import_text, kernel_of
 from tests.kernel.plain import arrays_of, plain_run
 from tests.kernel.programs import ARGUMENTS, programs
+from tests.kernel.running import run
 from tests.tiers import tried
 
 
@@ -30,3 +33,11 @@ def test_random_programs_compute_what_plain_python_computes(
             np.testing.assert_array_equal(found[name], array, err_msg=name)
 
     holds()
+
+
+@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
+def test_a_range_whose_end_wraps_has_no_iteration(profile: CompilerProfile, tmp_path: Path) -> None:
+    """`range(v, v + 3)` ends behind its start only where that sum does not wrap, though C knows nothing of that."""
+    text = "def f(v: i32) -> i32:\n    s = 0\n    for i in range(v, v + 3):\n        s += 1\n    return s\n"
+    counting = kernel_of(text, tmp_path)
+    assert [run(counting, v, profile=profile).value for v in (5, 2**31 - 2)] == [3, 0]
