@@ -41,7 +41,7 @@ def test_every_loss_has_its_words() -> None:
 
 @pytest.mark.parametrize("geometry", [None, StereoGeometry(300.0, 60.0, 200.0, 5.0)])
 def test_a_run_on_noise_ends_with_warnings(tmp_path: Path, geometry: StereoGeometry | None) -> None:
-    """More edges than there is room for; and cameras that are nowhere, unless the recording says where."""
+    """More edges than there is room for; cameras that are nowhere, unless the recording says where; and pictures that show nothing in common."""
     rng = np.random.default_rng(12)
     with RecordingWriter(tmp_path / "noise.mcap", width=320, height=96, geometry=geometry) as writer:
         writer.add(*rng.integers(0, 256, (2, 96, 640), np.uint8), 0, 0)
@@ -50,7 +50,10 @@ def test_a_run_on_noise_ends_with_warnings(tmp_path: Path, geometry: StereoGeome
     )
     run = json.loads(result.stdout)
     warnings = {(each["kind"], *each.get("results", [None])): each for each in run["warnings"]}
-    assert (("geometry", None) in warnings) == (geometry is None)
+    of_cameras = [each["text"] for each in run["warnings"] if each["kind"] == "geometry"]
+    assumed = ["the recording does not say where its cameras are"] if geometry is None else []
+    for text, words in zip(of_cameras, (*assumed, "the right pictures seem not to show"), strict=True):
+        assert text.startswith(words)
     lost = run["frames"][0]["results"]["edges_lost_A"]
     assert warnings["lost", "edges_lost_A"]["total"] == lost > 0
     results = run["frames"][0]["results"]
