@@ -15,6 +15,7 @@ from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import come_to_from, going_to, put_between
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.number_tests import CONVERSIONS
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.unused import without_unused
 from bfsim.kernel.profile import GCC_O2
@@ -27,7 +28,6 @@ COMMUTATIVE = ("add", "or", "xor", "mul", "and")
 ABSORBING = {"mul": "0", "and": "0"}
 """With these nothing else counts."""
 SHIFTS = ("shl", "lshr", "ashr")
-CASTS = ("zext", "sext", "trunc")
 SAME_IN_ALL_WIDTHS = 1 << 7
 """Numbers from 0 to before it."""
 
@@ -149,7 +149,7 @@ def _is_end(flow: ControlFlow, label: str, behind: str) -> bool:
 
 def _root(flow: ControlFlow, value: str) -> str:
     each = flow.instruction(value)
-    while each is not None and each.opcode in CASTS:
+    while each is not None and each.opcode in CONVERSIONS:
         value = each.operands[0]
         each = flow.instruction(value)
     return value
@@ -178,7 +178,7 @@ def _operand_on_way(
         return operand
     if made.opcode == "phi":
         return arms_of(made)[source]
-    if made.opcode not in CASTS:
+    if made.opcode not in CONVERSIONS:
         return None
     value = _operand_on_way(flow, block, made.operands[0], source, rows)
     if value is None or (is_number(value) and not 0 <= int(value) < SAME_IN_ALL_WIDTHS):
@@ -218,7 +218,7 @@ def _type_of(operation: Instruction) -> str:
     """Return the type of what an operation gives."""
     if _is_address(operation):
         return "ptr"
-    return operation.text.split()[-1] if operation.opcode in CASTS else f"i{operation.bits}"
+    return operation.text.split()[-1] if operation.opcode in CONVERSIONS else f"i{operation.bits}"
 
 
 def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
@@ -242,7 +242,7 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
     blocks[label] = replace(blocks[label], instructions=(phi, *rest))
     for source in found.values:
         _without_empty(blocks, flow, source, label)
-    return without_unused(replace(routine, blocks=tuple(blocks.values())), ("phi", *CASTS))
+    return without_unused(replace(routine, blocks=tuple(blocks.values())), ("phi", *CONVERSIONS))
 
 
 def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str, label: str) -> None:

@@ -12,13 +12,13 @@ from dataclasses import replace
 from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.edges import bypass, join_before, put_between
+from bfsim.kernel.lowering.number_tests import CONVERSIONS
 from bfsim.kernel.lowering.predict import Likelihood
 
 MOVABLE = (
     "load", "getelementptr", "add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "zext", "sext", "trunc",
 )  # fmt: skip
 CHOOSING = ("@llvm.smin", "@llvm.smax", "@llvm.umin", "@llvm.umax", "@llvm.abs")
-CASTS = ("zext", "sext", "trunc")
 RARER, RARER_LOAD = (
     0.75,
     0.82,
@@ -94,7 +94,7 @@ def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
 
 def _is_tested(flow: ControlFlow, each: Instruction) -> bool:
     """Whether a conversion is of what is wanted for something else, too: in C, that is extended already."""
-    return each.opcode in CASTS and flow.users.get(each.operands[0]) != [each]
+    return each.opcode in CONVERSIONS and flow.users.get(each.operands[0]) != [each]
 
 
 def _is_movable(each: Instruction) -> bool:
