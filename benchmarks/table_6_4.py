@@ -16,7 +16,7 @@ from itertools import count, product
 from math import log
 from pathlib import Path
 from statistics import mean, median
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
@@ -64,8 +64,12 @@ LATENCIES: Mapping[str, tuple[int, int]] = {
 }
 """The fast and the slow end of the ranges of HARDWARE 0 and 2.3."""
 
+LEAST_FRAMES = 3
+"""Of a scene, for one to be `timed`."""
+
 Times = dict[str, float]
 Tell = Callable[[], None]
+Frame = TypeVar("Frame")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,14 +117,22 @@ PREDICTED = (
 """Titles of `cells`."""
 
 
+def timed(frames: Sequence[Frame]) -> Sequence[Frame]:
+    """Return the frames to be timed: not the first, which knows no objects yet, nor the last, beside which no next picture comes in.
+
+    Of fewer than three, all.
+    """
+    return frames[1:-1] or frames
+
+
 def times(
     recording: Path | None,
     firmware: Firmware | str,
     setting: Setting = PLAIN,
-    frames: int = 2,
+    frames: int | None = LEAST_FRAMES,
     **options: Any,
 ) -> Times:
-    """Return core A's median ms of each row, and their sum, from frame 1 on if there are more: beside frame 0 no next picture comes in."""
+    """Return core A's median ms of each row in the frames that are `timed`, and the sum of these."""
     board, numbers = setting.board, setting.numbers
     run = simulate(
         recording,
@@ -132,7 +144,7 @@ def times(
     )
     per_ms = run.identity.cclk_hz / 1e3
     row_of = {each.stage: each.within or each.stage for each in run.rows}
-    measured = run.frames[1:] or run.frames
+    measured = timed(run.frames)
     found: dict[str, list[float]] = {row: [0.0] * len(measured) for row in ROWS}
     for number, frame in enumerate(measured):
         for each in frame.cores[0].stages:
@@ -235,7 +247,13 @@ def measured_columns(folder: Path, frames: int) -> tuple[Setting, list[Column]]:
 
 @click.command(help=__doc__)
 @click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
-@click.option("--frames", type=click.IntRange(min=2), default=3, show_default=True, help="Of each scene.")
+@click.option(
+    "--frames",
+    type=click.IntRange(min=LEAST_FRAMES),
+    default=LEAST_FRAMES,
+    show_default=True,
+    help="Of each scene.",
+)
 def main(folder: Path, frames: int) -> None:
     """Print the tables."""
     setting, columns = measured_columns(folder, frames)

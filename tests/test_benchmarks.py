@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from benchmarks.table_6_4 import timed
 from tests.pages import ROOT
 
 SCRIPTS = [
@@ -25,3 +26,11 @@ def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
         runpy.run_module(name, run_name="__main__")
     assert ended.value.code in {0, None}
     assert capsys.readouterr().out.lower().startswith("usage: ")
+
+
+@pytest.mark.parametrize(("frames", "expected"), [([0], [0]), ([0, 1], [0, 1]), ([0, 1, 2, 3], [1, 2])])
+def test_frames_that_the_robot_is_compared_with_have_a_next_picture(
+    frames: list[int], expected: list[int]
+) -> None:
+    """One that comes in takes a fifth of the rectification; beside the last frame there is none, and the first has no history."""
+    assert timed(frames) == expected
