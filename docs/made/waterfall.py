@@ -35,7 +35,7 @@ ROBOT_MS = 219.0  # T §6.6: the mean of Table 6.4
 CCLK_PER_MS = 600e3
 COLOURS = {"robot": "#8a8f98", "thesis": "#d9952b", "gain": "#1f5fa8", "cost": "#b3372f"}
 """Of each kind of bar."""
-WEAK_REMOVED_FIRST = partial(edge_detection, scanned=partial(scan, gradients=STRONG_FIRST))
+WEAK_REMOVED_FIRST = partial(edge_detection, scanned=partial(scan, steps=STRONG_FIRST))
 
 
 def frame_ms(firmware: Firmware) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,6 +43,7 @@ class Steps:
     """The steps that take most of a frame: plain ones, or others with the same results, or nearly so."""
 
     rectification: Callable[[Core, Frame, Area], Generator[Any, Any, Frame]] = rectification
+    colour_groups: Callable[[Core, Sequence[int]], Generator[Any, Any, None]] = join_groups
     edge_detection: Callable[[Core, Frame, EdgeThresholds, Area], Generator[Any, Any, int]] = edge_detection
     open_closing: Callable[[Core, Frame, NoiseRemoval], Generator[Any, Any, None]] = open_closing
     blob_detection: Callable[[Core, Frame, BlobThresholds], Generator[Any, Any, int]] = blob_detection
@@ -63,7 +64,7 @@ def features(
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from steps.rectification(core, frame, area)
-        yield from join_groups(core, mode.blobs.colour_groups)
+        yield from steps.colour_groups(core, mode.blobs.colour_groups)
         edges = yield from steps.edge_detection(core, frame, mode.edges, area)
     with core.stage("Open & closing"):
         yield from steps.open_closing(core, frame, mode.noise)

@@ -15,6 +15,7 @@ from tinyphoon.core_b import core_b
 from tinyphoon.features import Steps
 from tinyphoon.fields import to_words
 from tinyphoon.stages.circle_erosion import eroded_circles, shape_buffers
+from tinyphoon.stages.colour_reduction import single_colours
 from tinyphoon.stages.fast_opening import fast_opening
 from tinyphoon.stages.fast_scan import fast_edge_detection, fast_scan_buffers
 from tinyphoon.stages.feature_rectification import feature_rectification, picture_as_it_came
@@ -31,6 +32,7 @@ from tinyphoon.strategy.modes import THESIS_FIELD
 FAST = Steps(edge_detection=fast_edge_detection, open_closing=fast_opening)
 THESIS = Steps(
     rectification=sdram_rectification,
+    colour_groups=single_colours,
     edge_detection=rosenfeld_edges,
     open_closing=sdram_opening,
     blob_detection=rosenfeld_blobs,

@@ -133,6 +133,17 @@ def test_pictures_that_are_rectified_have_a_table_too() -> None:
     np.testing.assert_array_equal(moved.view(np.uint8), camera[16:])
 
 
+@pytest.mark.parametrize(("firmware", "is_kept"), [(tinyphoon, True), (thesis, False)])
+def test_the_opening_knows_no_models(firmware: Firmware, is_kept: bool) -> None:
+    """Pairs of two hues in turn, both of the ball: the thesis erodes bit by bit (T §5.2.3), so that nothing is left of it."""
+    turns = np.radians(np.tile([21.5, 22.5], (20, 5)) * 360 / 28)
+    picture = np.full((20, 40), 150, np.uint8)
+    picture[:, 0::4], picture[:, 2::4] = 128 + 60 * np.sin(turns), 128 + 60 * np.cos(turns)
+    board, _ = run(stereo((picture, picture)), firmware)
+    opened = buffer(board, "A", "opened_image")[1:-1, 1:-1] & YELLOW
+    assert opened.all() if is_kept else not opened.any()
+
+
 def test_the_circles_of_the_balls_that_the_thesis_erodes_for() -> None:
     """A blob without a ball's form costs no erosion, and no circle is found for it."""
     form = np.zeros(BLOB_WORDS, np.uint32)

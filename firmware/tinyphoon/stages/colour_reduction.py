@@ -132,3 +132,11 @@ def join_groups(core: Core, groups: Sequence[int]) -> Generator[Any, Any, None]:
     yield core.run(separate_colours, words)
     for group in groups:
         yield core.run(join_colours, words, group)
+
+
+def single_colours(core: Core, _: Sequence[int]) -> Generator[Any, Any, None]:
+    """Have each colour count alone, whatever the groups: as the thesis has it, each bit of a pixel is a colour [said, T §5.2.3].
+
+    So the opening, bit by bit, keeps of a thing that two hues are seen of what is of one of them.
+    """
+    yield core.run(separate_colours, core.array("joined_colours"))

@@ -203,17 +203,18 @@ def slopes_row(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Gradients:
-    """How a scan makes a row of gradients, and suppresses what is no edge: these ways, or others that leave the same edges.
+class RowSteps:
+    """How a scan reduces the colours of a row, makes its gradients, and suppresses what is no edge: these ways, or others with the same results.
 
     `slopes` takes the smoothed lines, the rows of lengths and directions to be made, and the threshold.
     """
 
+    colours: Kernel = colour_row
     slopes: Callable[[Core, Sequence[Row], Row, Row, int], Generator[Any, Any, None]] = slopes_row
     suppress: Kernel = suppress_row
 
 
-OF_ALL_PIXELS = Gradients()
+OF_ALL_PIXELS = RowSteps()
 
 
 def scan(
@@ -222,7 +223,7 @@ def scan(
     thresholds: EdgeThresholds,
     area: Area,
     found: FoundEdges,
-    gradients: Gradients = OF_ALL_PIXELS,
+    steps: RowSteps = OF_ALL_PIXELS,
 ) -> Generator[Any, Any, None]:
     """Read the picture once: its colours go to `colour_image`, its edges, one pixel wide, are `found`."""
     camera = core.input_ring(frame.rows, "camera_ring")
@@ -246,7 +247,7 @@ def scan(
             if gains:
                 yield core.run(balance_row, line, *gains)
             row = yield from colours.row()
-            yield core.run(colour_row, line, atan, joined, row, *limits)
+            yield core.run(steps.colours, line, atan, joined, row, *limits)
             colours.send()
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2
@@ -256,12 +257,12 @@ def scan(
         if 0 <= sloped < height:
             core.at(sloped)
             rows = window(smooth, sloped, height), magnitude[sloped], direction[sloped]
-            yield from gradients.slopes(core, *rows, least)
+            yield from steps.slopes(core, *rows, least)
         if done >= 0:
             core.at(done)
             near = window(magnitude, done, height)
             edges = yield from found.row()
-            yield core.run(gradients.suppress, *near, direction[done], edges, least)
+            yield core.run(steps.suppress, *near, direction[done], edges, least)
             if rim:
                 yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
             yield from found.add(done, edges, direction[done])

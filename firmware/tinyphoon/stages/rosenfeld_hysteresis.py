@@ -15,7 +15,7 @@ from typing import Any
 
 from bfsim.api import Core, Frame, OutputRing, Row, i32, kernel, u8, u16
 from tinyphoon.areas import WHOLE_PICTURE, Area
-from tinyphoon.stages.edge_detection import EdgeThresholds, Gradients, scan
+from tinyphoon.stages.edge_detection import EdgeThresholds, RowSteps, scan
 from tinyphoon.stages.edge_storing import store_edges_row
 from tinyphoon.stages.hysteresis import (
     LABELS,
@@ -82,14 +82,14 @@ def rosenfeld_edges(
     frame: Frame,
     thresholds: EdgeThresholds,
     area: Area = WHOLE_PICTURE,
-    gradients: Gradients = STRONG_FIRST,
+    steps: RowSteps = STRONG_FIRST,
 ) -> Generator[Any, Any, int]:
     """Detect the edges of a picture and reduce its colours; leaves and publishes what `edge_detection` does.
 
     Where the store is full, the edges further down are lost.
     """
     edges = PictureEdges(core, core.output_ring("edge_ring", core.rows("edge_image")))
-    yield from scan(core, frame, thresholds, area, edges, gradients)
+    yield from scan(core, frame, thresholds, area, edges, steps)
     yield from edges.picture.flush()
     groups = EdgeGroups.of(core, frame.width)
     given = yield from label_edges(groups, frame.height)

@@ -15,7 +15,7 @@ from typing import Any
 
 from bfsim.api import Core, Row, i16, i32, kernel, u8
 from tinyphoon.arithmetic import angle8
-from tinyphoon.stages.edge_detection import Gradients, magnitude_row, sobel_row
+from tinyphoon.stages.edge_detection import RowSteps, magnitude_row, sobel_row
 
 
 @kernel
@@ -66,4 +66,4 @@ def strong_slopes(
     yield core.run(direct_strong_row, gx, gy, magnitude, core.array("atan"), direction, edge_threshold)
 
 
-STRONG_FIRST = Gradients(slopes=strong_slopes, suppress=suppress_strong_row)
+STRONG_FIRST = RowSteps(slopes=strong_slopes, suppress=suppress_strong_row)
