@@ -17,18 +17,17 @@ from pathlib import Path
 from typing import Any
 
 import click
-from PIL import Image
 
 from benchmarks.robot import steps
+from benchmarks.robot.recordings import write_black, write_free
 from benchmarks.table_6_4 import COLUMNS, FITTED, FRAME, PLAIN, ROWS, Setting, Times, robot_times, times
 from bfsim.api import Firmware
-from bfsim.recording import RecordingReader, RecordingWriter
-from bfsim.recording.planes import YuvPlanes
 from bfsim.report.tables import new_table
 from bfsim.shipped import LDF_FOLDER
 from bfsim.terminal import print_report
 from tinyphoon import thesis, tinyphoon
 from tinyphoon.stages.circle_detection import circle_detection
+from tinyphoon.stages.colour_reduction import join_groups
 from tinyphoon.stages.line_detection import scan_by_labels
 from tinyphoon.stages.rectification import rectification
 from tinyphoon.strategy.models import MODELS, Shape
@@ -65,6 +64,10 @@ OF_THE_THESIS = (
     read_as(
         "edges: every pixel has a direction, weak ones go last", edge_detection=steps.edges_of_all_pixels
     ),
+    read_as(
+        "colours: root and hue of each pixel, not of each pair", edge_detection=steps.colours_of_each_pixel
+    ),
+    read_as("colours: those of a model are one", colour_groups=join_groups),
     read_as("opening: loops of T Eq. 2.14 and 2.15 over lines in L1", open_closing=steps.looped_opening),
     read_as("blobs: lines of picture and labels by DMA", blob_detection=steps.blobs_on_dma_lines),
     read_as("blobs: counted while they are renamed", blob_detection=steps.blobs_in_two_passes),
@@ -116,15 +119,13 @@ def of_colours(folder: Path, recording: Path) -> Iterator[Reading]:
     )
 
 
-def write_black(recording: Path, black: Path) -> None:
-    """Write a recording of as many black pictures."""
-    with RecordingReader(recording) as reader:
-        picture = YuvPlanes.from_image(Image.new("RGB", (reader.width, reader.height))).to_uyvy()
-        with RecordingWriter(
-            black, width=reader.width, height=reader.height, geometry=reader.geometry
-        ) as writer:
-            for frame in reader.frames():
-                writer.add(picture, picture, frame.left_ns, frame.right_ns)
+def of_free_cameras(folder: Path, recording: Path) -> Reading:
+    """Return what it is worth that the cameras send pictures all the time, and each goes to SDRAM."""
+    free = folder / "free.mcap"
+    write_free(recording, free)
+    options = {"feed": "cameras", "frames": None}
+    title = "the cameras run free, each picture goes to SDRAM"
+    return Reading(title=title, firmware=thesis, options=options, recording=free)
 
 
 def write_code_in_l2(folder: Path) -> Path:
@@ -144,7 +145,8 @@ def measured(folder: Path) -> Iterator[tuple[str, Times]]:
     with ExitStack() as stack:
         placements = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         colours = of_colours(placements, folder / f"{LEAST_BLOBS}.mcap")
-        for each in (*OF_THE_THESIS, *colours, *other_programs(write_code_in_l2(placements))):
+        free = of_free_cameras(placements, folder / f"{FITTED}.mcap")
+        for each in (*OF_THE_THESIS, free, *colours, *other_programs(write_code_in_l2(placements))):
             recording = each.recording or folder / f"{each.scene}.mcap"
             yield each.title, times(recording, each.firmware, each.setting, **each.options)
 

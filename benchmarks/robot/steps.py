@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from benchmarks.robot.pixel_colours import pixel_colours_row
 from bfsim.api import Core, Frame, Row, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area, area_in
 from tinyphoon.scan_lines import window
@@ -29,13 +30,17 @@ from tinyphoon.stages.rosenfeld_blobs import (
 )
 from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_rectification import move_row
+from tinyphoon.stages.strong_gradients import STRONG_FIRST
 
 BLACK_CHROMA = 128
 SMALL_REACH = 8  # to each side; the thesis says "small" (T §5.2.4)
 
 
-edges_of_all_pixels = partial(rosenfeld_edges, gradients=OF_ALL_PIXELS)
+edges_of_all_pixels = partial(rosenfeld_edges, steps=OF_ALL_PIXELS)
 """Every pixel has a direction, and weak ones are removed last."""
+
+colours_of_each_pixel = partial(rosenfeld_edges, steps=replace(STRONG_FIRST, colours=pixel_colours_row))
+"""The two pixels of a pair, which share U and V, have each its own root and hue."""
 
 
 @kernel

@@ -1,6 +1,6 @@
 """Put into the page beside the robot, and that of the accuracy, what the scripts of T Table 6.4 find: `python docs/made/robot.py FOLDER`, after a change of any cycle.
 
-FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and some five minutes.
+FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and some twenty minutes.
 """
 
 from __future__ import annotations
@@ -12,10 +12,20 @@ from blocks import DOCS, put, table
 
 from benchmarks.robot.claims import claims
 from benchmarks.robot.readings import measured
-from benchmarks.table_6_4 import FRAME, PREDICTED, ROWS, Column, cells, in_words, measured_columns
+from benchmarks.robot.unknowns import HEADS, unknowns
+from benchmarks.robot.unknowns import cells as open_cells
+from benchmarks.table_6_4 import (
+    FRAME,
+    LEAST_FRAMES,
+    PREDICTED,
+    ROWS,
+    Column,
+    cells,
+    in_words,
+    measured_columns,
+)
 
 PAGE, ACCURACY = DOCS / "robot.md", DOCS / "accuracy.md"
-FRAMES = 2
 
 
 def of_column(column: Column) -> str:
@@ -38,10 +48,12 @@ def main(folder: Path) -> None:
     short = [row.split()[0] for row in (*ROWS, FRAME)]
     rows = ([title, *(f"{found[row]:.1f}" for row in (*ROWS, FRAME))] for title, found in measured(folder))
     put(PAGE, "readings", table(["", *short], rows))
-    setting, columns = measured_columns(folder, FRAMES)
+    setting, columns = measured_columns(folder, LEAST_FRAMES)
     put(PAGE, "scenes", "\n\n".join(map(of_column, columns)))
     put(ACCURACY, "robot", of_the_mean(columns[-1]))
     put(PAGE, "fit", f"Fitted to Figure 6.7: {in_words(setting)}.")
+    variants = ([title, *open_cells(share, found)] for title, share, found in unknowns())
+    put(PAGE, "unknowns", table(["", *HEADS], variants))
     put(PAGE, "claims", table(["", "robot", "`thesis`"], claims(folder)))
 
 

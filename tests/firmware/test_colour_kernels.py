@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from PIL import Image
 
+from benchmarks.robot.pixel_colours import pixel_colours_row
 from bfsim.recording.planes import YuvPlanes
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy
@@ -73,6 +74,15 @@ def test_every_chroma_is_reduced_as_in_the_equations(thresholds: tuple[int, int,
     row = row_of_every_chroma(seed=thresholds[1])
     expected = references.colours(row[np.newaxis], *thresholds)[0]
     np.testing.assert_array_equal(reduced(row, *thresholds), expected)
+
+
+@pytest.mark.parametrize("thresholds", THRESHOLDS)
+def test_pixels_by_themselves_have_the_colours_of_their_pairs(thresholds: tuple[int, int, int]) -> None:
+    """What benchmarks/robot times as another reading of T Eq. 5.4 leaves the same."""
+    row = row_of_every_chroma(seed=4)
+    words = np.zeros(len(row) // 2, np.uint32)
+    pixel_colours_row(row, arctangent_table(), SINGLE_COLOURS, words, *thresholds)
+    np.testing.assert_array_equal(words, reduced(row, *thresholds))
 
 
 @pytest.mark.parametrize("groups", [(0b111 << 20,), (WHITE | 1 << 22, BLACK | 1 << 4 | 1 << 30)])

@@ -1,0 +1,54 @@
+"""Other recordings made of a scene's: smaller, black, or of cameras that run free."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from PIL import Image
+
+from bfsim.machine.cameras.skipping import skipped
+from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording.planes import YuvPlanes
+
+PICTURES_SHOWN = 12
+"""Of each frame of a scene, where the cameras run free: more than come in while one is worked on."""
+
+
+@contextmanager
+def like(
+    recording: Path, made: Path, *, halvings: int = 0
+) -> Iterator[tuple[RecordingReader, RecordingWriter]]:
+    """Open a recording, and one to be made of it, of the same cameras, with width and height halved so often."""
+    with RecordingReader(recording) as reader:
+        size = {"width": reader.width >> halvings, "height": reader.height >> halvings}
+        with RecordingWriter(made, **size, geometry=reader.geometry) as writer:
+            yield reader, writer
+
+
+def halve(recording: Path, smaller: Path) -> None:
+    """Write a recording of half the width and height, as a sensor skips pixels."""
+    with like(recording, smaller, halvings=1) as (reader, writer):
+        for frame in reader.frames():
+            pictures = (skipped(each, 2) for each in (frame.left, frame.right))
+            writer.add(*pictures, frame.left_ns, frame.right_ns)
+
+
+def write_black(recording: Path, black: Path) -> None:
+    """Write a recording of as many black pictures."""
+    with like(recording, black) as (reader, writer):
+        picture = YuvPlanes.from_image(Image.new("RGB", (reader.width, reader.height))).to_uyvy()
+        for frame in reader.frames():
+            writer.add(picture, picture, frame.left_ns, frame.right_ns)
+
+
+def write_free(recording: Path, free: Path) -> None:
+    """Write a recording in which every frame stands for some pictures, as where cameras go on while a robot thinks.
+
+    Its time stamps only count: the pace is that of the cameras.
+    """
+    with like(recording, free) as (reader, writer):
+        shown = (frame for frame in reader.frames() for _ in range(PICTURES_SHOWN))
+        for number, frame in enumerate(shown):
+            writer.add(frame.left, frame.right, number, number)
