@@ -56,7 +56,7 @@ def windowed(calibration: Calibration) -> Buffers:
 def stages() -> Iterator[tuple[str, float]]:
     """Yield each improvement and the frame with it, in ms."""
     yield "the robot (T Table 6.4)", ROBOT_MS
-    yield "the thesis's steps, simulated", frame_ms(thesis)
+    yield "the thesis's steps, as GCC compiles them", frame_ms(thesis)
     steps, rectified = THESIS, thesis
     for what, change in (
         ("blobs by runs, in one pass", {"blob_detection": PLAIN.blob_detection}),
@@ -71,8 +71,8 @@ def stages() -> Iterator[tuple[str, float]]:
         if "rectification" in change:
             rectified = replace(thesis, calibration=windowed)
         yield what, frame_ms(replace(rectified, mains=mains(steps)))
-    assert steps == PLAIN
-    yield "finer lines, circles and depths", frame_ms(replace(tinyphoon, calibration=windowed))
+    assert replace(steps, colour_groups=PLAIN.colour_groups) == PLAIN
+    yield "finer lines, circles and depths; a thing's hues as one", frame_ms(replace(tinyphoon, calibration=windowed))
     yield "no rectification, which this recording does not need", frame_ms(tinyphoon)
     steps = replace(PLAIN, edge_detection=FAST.edge_detection)
     yield "edges and colours four pixels at once", frame_ms(replace(fast, mains=mains(steps)))

@@ -6,7 +6,7 @@ with all colours at once: one serves every shape, whose own colours only the fil
 does those of the segmentation (T §5.2), for the stage benefits from the speed of L1 (T §6.6). [assumed] It is eroded as T Eq. 2.14 is
 written, in every frame, and goes back to SDRAM.
 
-The edges are those of `circle_edges.py`, as long as all colours of balls are one group.
+The edges are those of `circle_edges.py`, as long as all colours of balls are one group, and joined.
 """
 
 from __future__ import annotations

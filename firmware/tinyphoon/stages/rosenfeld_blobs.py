@@ -5,7 +5,7 @@ one in this line and the line before take the other, from the pixel above to the
 the look-up table, which begins empty; in the end all labels are renamed by the table (T §2.3.3). [said] Of the colours that the models
 name (T §5.2.3) it is executed for one after the other, or for all in parallel (T §2.3.4). [implied] The accesses to SDRAM take the time
 of the stage (T §6.6), so picture and labels are read and written there by the core; T §5.2 says that DMA brings the lines of this
-stage, too, which would be a third of the time. [assumed] One colour after the other; the colours of a model are one; of two labels the
+stage, too, which would be a third of the time. [assumed] One model's colours after the other's, and these as one; of two labels the
 smaller one stays; pixels are counted in another pass.
 """
 
