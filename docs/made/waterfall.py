@@ -72,7 +72,10 @@ def stages() -> Iterator[tuple[str, float]]:
             rectified = replace(thesis, calibration=windowed)
         yield what, frame_ms(replace(rectified, mains=mains(steps)))
     assert replace(steps, colour_groups=PLAIN.colour_groups) == PLAIN
-    yield "finer lines, circles and depths; a thing's hues as one", frame_ms(replace(tinyphoon, calibration=windowed))
+    yield (
+        "finer lines, circles and depths; a thing's hues as one",
+        frame_ms(replace(tinyphoon, calibration=windowed)),
+    )
     yield "no rectification, which this recording does not need", frame_ms(tinyphoon)
     steps = replace(PLAIN, edge_detection=FAST.edge_detection)
     yield "edges and colours four pixels at once", frame_ms(replace(fast, mains=mains(steps)))
