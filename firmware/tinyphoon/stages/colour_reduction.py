@@ -137,6 +137,6 @@ def join_groups(core: Core, groups: Sequence[int]) -> Generator[Any, Any, None]:
 def single_colours(core: Core, _: Sequence[int]) -> Generator[Any, Any, None]:
     """Have each colour count alone, whatever the groups: as the thesis has it, each bit of a pixel is a colour [said, T §5.2.3].
 
-    So the opening, bit by bit, keeps of a thing that two hues are seen of what is of one of them.
+    So of a thing that is seen in two hues the opening keeps only what is in one of them.
     """
     yield core.run(separate_colours, core.array("joined_colours"))
