@@ -25,8 +25,9 @@ def signed(value: int) -> int:
 ARITHMETIC: dict[str, Callable[[int, int], int]] = {
     "add": operator.add, "sub": operator.sub, "mul": operator.mul, "and": operator.and_, "or": operator.or_,
     "xor": operator.xor, "shl": operator.lshift, "lshr": operator.rshift,
-    "ashr": lambda value, amount: signed(value) >> amount,
+    "ashr": lambda value, amount: signed(value) >> amount, "udiv": operator.floordiv, "urem": operator.mod,
 }  # fmt: skip
+"""Of 32 bits that are not negative. What divides is not 0 (see `_counter`)."""
 RELATIONS: dict[str, Callable[[int, int], bool]] = {
     "eq": operator.eq, "ne": operator.ne, "lt": operator.lt, "le": operator.le, "gt": operator.gt, "ge": operator.ge,
 }  # fmt: skip
@@ -42,6 +43,8 @@ def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None
     stays = ways[0] == loop.header
     arms = arms_of(counter)
     if set(arms) != {flow.entering(loop), loop.latch} or not is_number(arms[flow.entering(loop)]):
+        return None
+    if _counter(flow, loop, arms[loop.latch]) is not counter:
         return None
     value = int(arms[flow.entering(loop)]) & WORD_MASK
     for iteration in range(1, MOST_ITERATIONS + 1):
@@ -61,6 +64,8 @@ def _counter(flow: ControlFlow, loop: Loop, value: str, depth: int = DEEPEST) ->
     if each.opcode not in (*ARITHMETIC, "icmp"):
         return None
     names = {operand for operand in each.operands[:2] if not is_number(operand)}
+    if each.opcode in ("udiv", "urem") and not (is_number(each.operands[1]) and int(each.operands[1])):
+        return None
     return _counter(flow, loop, names.pop(), depth - 1) if len(names) == 1 else None
 
 
