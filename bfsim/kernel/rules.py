@@ -120,8 +120,10 @@ class Rule(StrEnum):
     THREADED_CHOICES = "a way on which a number was chosen leads past later tests of it"
     KEPT_BOUNDS = "where an iteration leaves a number as it was, its bound is not tested again"
     FIRST_ITERATIONS = "what only the first iteration of a loop is for is tested before it"
+    ENDS_OF_RANGES = "a test against the end of a value's range is one for a number"
     COMPUTED_STARTS = "a loop with several exits is counted where its first address is computed before it"
     CROSS_JUMPS = "what ends two blocks stands in the code once, if it is all of one"
+    EITHER_BANK = "a value that may be in either bank gives way where one is full"
     SPILLED_SUMS = "a sum that has no data register is added to in an I register"
     FIELD_ADDRESSES = "a field of a record that is loaded and stored has an address of its own"
     POINTER_DIFFERENCES = (
@@ -163,8 +165,10 @@ GCC: dict[Rule, str] = {
     Rule.CODE_HOISTING: "do_hoist_insertion in tree-ssa-pre.cc",
     Rule.THREADED_CHOICES: "tree-ssa-threadbackward.cc",
     Rule.KEPT_BOUNDS: "tree-ssa-threadbackward.cc",
+    Rule.ENDS_OF_RANGES: "simplify_using_ranges in vr-values.cc",
     Rule.COMPUTED_STARTS: "simplify_using_initial_values in loop-iv.cc",
     Rule.FIRST_ITERATIONS: "profitable_path_p in tree-ssa-threadbackward.cc",
+    Rule.EITHER_BANK: "setup_regno_cost_classes_by_aclass in ira-costs.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
     Rule.POINTER_DIFFERENCES: "determine_group_iv_cost_generic in tree-ssa-loop-ivopts.cc",
@@ -234,7 +238,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.ROTATED_ONCE: ("segment_row",),
     Rule.SPLIT_TESTS: ("ray_length", "unpack_runs", "lzss_expand"),
     Rule.COPIED_BREAKS: ("match_features",),
-    Rule.FREQUENT_COUNTERS: ("label_boxes",),
+    Rule.FREQUENT_COUNTERS: (),  # tests/kernel/test_gcc_shapes.py
     Rule.LAGGING_COUNTERS: ("border_strength",),
     Rule.PARALLEL_COUNTS: ("nearest_words",),
     Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
@@ -266,9 +270,11 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.CODE_HOISTING: (),  # from kernels that are not measured here: tests/kernel/test_code_that_decides.py
     Rule.THREADED_CHOICES: (),
     Rule.KEPT_BOUNDS: (),  # from kernels that are not measured here: tests/kernel/test_kept_bounds.py
+    Rule.ENDS_OF_RANGES: (),  # from kernels that are not measured here: tests/kernel/test_rings.py
     Rule.COMPUTED_STARTS: (),  # from kernels that are not measured here: tests/kernel/test_computed_starts.py
     Rule.FIRST_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_first_iterations.py
     Rule.CROSS_JUMPS: (),  # tests/kernel/test_ends_of_loops.py
+    Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/test_register_classes.py
     Rule.SPILLED_SUMS: (),
     Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/test_field_addresses.py
     Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/test_pointer_differences.py

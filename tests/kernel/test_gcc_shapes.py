@@ -53,10 +53,10 @@ def f(a: u8[:], b: u8[:], n: i32, most: i32) -> i32:
     return total
 """
 COUNTER = """
-def f(a: u8[:], out: u8[:], w: i32, y: i32):
+def f(a: u8[:], b: i16[:], out: u8[:], w: i32, y: i32):
     for x in range(w):
         v = a[y * w + x]
-        if v > 3:
+        if v > b[x]:
             if x < out[v]:
                 out[v] = x
             if x > out[v + 100]:

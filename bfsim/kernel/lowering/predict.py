@@ -13,6 +13,7 @@ from functools import cached_property
 from bfsim.kernel.ir_text import LEAVES, NO_HINT, BasicBlock, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.counter_comparisons import CounterComparisons
+from bfsim.kernel.lowering.ends_of_ranges import EndsOfRanges
 from bfsim.kernel.lowering.frequencies import frequencies
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.loop_guards import loop_guards
@@ -43,6 +44,7 @@ class Likelihood:
         compares = Rule.COMPARED_COUNTERS not in without
         self.loop_guards = frozenset(loop_guards(flow)) if Rule.LOOP_GUARDS not in without else frozenset()
         self.comparisons = CounterComparisons(flow, self.evolution).votes if compares else {}
+        self.ends = EndsOfRanges(flow) if Rule.ENDS_OF_RANGES not in without else None
 
     @cached_property
     def taken(self) -> dict[tuple[str, str], float]:
@@ -112,6 +114,8 @@ class Likelihood:
             return []
         kind, constant = predicate(test), test.operands[1]
         number = int(constant) if is_number(constant) else None
+        if number is not None and self.ends is not None and self.ends.is_end(test, number):
+            kind = "ne"
         if kind in ("eq", "ne") and number != 0:
             return [1 - NOT_EQUAL if kind == "eq" else NOT_EQUAL]
         if number is not None and (kind, number) in BELOW_ZERO:

@@ -48,7 +48,7 @@ class UnsignedRanges:
         if len(before) != 1 or before[0] not in self.said:
             return {}
         found = {value: list(said) for value, said in self.said[before[0]].items()}
-        for value, relation, other in _said_between(self.flow, before[0], label):
+        for value, relation, other in said_between(self.flow, before[0], label):
             found.setdefault(value, []).append((relation, other))
         return found
 
@@ -87,7 +87,7 @@ class UnsignedRanges:
     def _on_way(self, value: str, label: str, behind: str) -> Range | None:
         """Return the range of a value on the way from a block to the one `behind`."""
         said = self.said.get(label, {})
-        for name, relation, other in _said_between(self.flow, label, behind):
+        for name, relation, other in said_between(self.flow, label, behind):
             said = {**said, name: [*said.get(name, ()), (relation, other)]}
         return self._within_said(value, said)
 
@@ -108,7 +108,7 @@ class UnsignedRanges:
         return found
 
 
-def _said_between(flow: ControlFlow, label: str, behind: str) -> Iterator[tuple[str, str, str]]:
+def said_between(flow: ControlFlow, label: str, behind: str) -> Iterator[tuple[str, str, str]]:
     """What the test at the end of a block says where that leads on to `behind`: a value, a relation, and another value."""
     end, ways = flow.blocks[label].terminator, flow.blocks[label].successors
     test = flow.instruction(end.operands[0]) if end.opcode == "br" and end.operands else None
