@@ -66,12 +66,13 @@ def eliminated_counters(
             if each.opcode != "phi" or name in found or affine.get(name) != 1:
                 continue
             is_plain = affine.keys() == {name, variable.root}
+            prepared = prepares and not is_plain and not evolution.ends_behind_start(loop)
             wishes = wishes_of(flow, evolution, loop, name) if weighs else None
-            if wishes and (not wishes.has_counter or (is_plain and len(steady) == 1)):
+            is_only = is_plain or (prepared and [each.loop for each in variables.all].count(loop) == 1)
+            if wishes and (not wishes.has_counter or (is_only and len(steady) == 1)):
                 choice = Choice(flow, evolution, variable, wishes)
                 found |= _differences(choice) if choice.spares else {}
                 continue
-            prepared = prepares and not is_plain and not evolution.ends_behind_start(loop)
             blocks = _seldom_wanted(flow, evolution, loop, name, frequency)
             if blocks and (len(steady) > 1 or prepared):
                 found[name] = EliminatedCounter(name, variable, blocks, 1 if prepared else 2)

@@ -12,16 +12,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Instruction, each_arm, is_number, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, each_arm, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable
+from bfsim.kernel.lowering.loop_registers import pressure, registers_used
 from bfsim.kernel.lowering.scalar_evolution import Affine, ScalarEvolution
 
 # The costs, in those of GCC's RTL: four is one instruction [rtx_cost, add_cost, force_var_cost].
 STEP, ORIGINAL = 5, 4  # of a variable; of the counter as it was written [determine_iv_cost]
 SUM = 4
 NEGATION = 4  # of an array alone, which is not computed before the loop
-REGISTER, VARIABLE = 1, 2  # of what does not change, and of a variable [ivopts_estimate_reg_pressure]
 AGAINST_ZERO = -1  # of a counter that is compared with zero [determine_group_iv_cost_cond]
 
 
@@ -128,6 +128,26 @@ def homes_of(flow: ControlFlow, user: Instruction, name: str) -> Iterator[str]:
         )
 
 
+def is_entered_untested(evolution: ScalarEvolution, loop: Loop) -> bool:
+    """Whether the test that a loop begins with is that at the end of the one around: `for i in range(n): for j in range(i + 1, n)`.
+
+    So GCC does not see that it has an iteration, and a pointer cannot end it [may_eliminate_iv].
+    """
+    flow, around = evolution.flow, evolution.flow.around(loop)
+    start = flow.instruction(evolution.counter_start(loop) or "")
+    if around is None or start is None or start.opcode != "phi":
+        return False
+    home = flow.defined[start.result or ""][0]
+    inner, outer = (flow.instruction(evolution.exit_test(each) or "") for each in (loop, around))
+    return (
+        home == around.header
+        and inner is not None
+        and outer is not None
+        and inner.operands[1] == outer.operands[1]
+        and outer.operands[0] == arms_of(start).get(around.latch)
+    )
+
+
 @dataclass(frozen=True)
 class Choice:
     """Whether the pointer of `variable` stands for the counter of its loop."""
@@ -190,29 +210,37 @@ class Choice:
     def _alone(self) -> int:
         fixed = {self.difference(each) for each in self.wishes.all}
         uses = sum(SUM + (NEGATION if self.is_simple(each) else 0) for each in self.wishes.all)
-        return STEP + VARIABLE + REGISTER * (1 + len(fixed)) + uses
+        end, bounds = (2 * SUM, 2) if is_entered_untested(self.evolution, self.variable.loop) else (0, 1)
+        return STEP + uses + end + self._registers(bounds + len(fixed), 1)
 
     def _with_counter(self) -> int:
         counter = Affine(((self.wishes.counter, 1),))
-        return STEP + ORIGINAL + 2 * VARIABLE + self._end() + self._from(counter)
+        against_zero, bounds = self._end()
+        uses, fixed = self._from(counter)
+        return STEP + ORIGINAL + against_zero + uses + self._registers(bounds + fixed, 2)
 
     def _own(self, wanted: Wanted) -> int:
-        return 2 * STEP + 2 * VARIABLE + REGISTER + self._from(wanted.sum)
+        uses, fixed = self._from(wanted.sum)
+        return 2 * STEP + uses + self._registers(1 + fixed, 2)
 
-    def _from(self, variable: Affine) -> int:
-        """What the wanted values cost from a variable."""
+    def _registers(self, fixed: int, variables: int) -> int:
+        return pressure(registers_used(self.evolution, self.variable.loop), fixed, variables)
+
+    def _from(self, variable: Affine) -> tuple[int, int]:
+        """What the wanted values cost from a variable, and of how many does not change."""
         rests = [each.sum.plus(variable, -1) for each in self.wishes.all]
-        return sum(SUM + REGISTER * bool(each.terms) for each in rests if each.terms or each.constant)
+        sums = sum(SUM for each in rests if each.terms or each.constant)
+        return sums, sum(bool(each.terms) for each in rests)
 
-    def _end(self) -> int:
-        """What the end of the loop costs with the counter."""
+    def _end(self) -> tuple[int, int]:
+        """What the end of the loop costs with the counter beside its test, and of how many that does not change."""
         loop, counter = self.variable.loop, self.wishes.counter
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         if test is None or not is_number(test.operands[1]):
-            return REGISTER
+            return 0, 1
         if self.variable.increment.constant > 0:
-            return 0
+            return 0, 0
         behind = self.evolution.affine(test.operands[0]).constant
         last = int(test.operands[1]) - behind - (predicate(test)[-2:] in ("lt", "ge"))
         starts_anywhere = not is_number(self.evolution.first(counter, loop) or "")
-        return AGAINST_ZERO if last == 1 or (last == 0 and starts_anywhere) else 0
+        return (AGAINST_ZERO if last == 1 or (last == 0 and starts_anywhere) else 0), 0
