@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
@@ -73,7 +74,11 @@ class Moves:
         """
         where, new = self.flow.defined.get(value.removesuffix(".wide"), ("", None))
         critical = home in self.flow.dominators[label] and len(set(self.flow.blocks[label].successors)) > 1
-        if where != home or new is None or new.opcode == "phi" or not critical:
+        if new is None or not critical:
+            return False
+        if new.opcode == "phi":
+            where = self._chosen_in(new)
+        if where != home:
             return False
         rows = [id(each) for each in self.flow.blocks[home].instructions]
         places = [
@@ -81,7 +86,14 @@ class Moves:
         ]
         if self._is_taken_over(phi, label):
             return ALONG in phi and not (label == home and self._is_numbered(phi, home))
-        return any(place > rows.index(id(new)) for place in places)
+        made = len(rows) - 1 if new.opcode == "phi" else rows.index(id(new))
+        return any(place > made for place in places)
+
+    def _chosen_in(self, phi: Instruction) -> str:
+        """The block that computes a phi without a branch; none if it is no such."""
+        conversions = self.webs.context.conversions_of(phi)
+        is_one = len(conversions) == 1 and not self.webs.context.others(phi)
+        return conversions[0].label if is_one else ""
 
     def _is_numbered(self, along: str, home: str) -> bool:
         """Whether a variable before `along` is used and computed anew in a loop of one block [maybe_renumber_stmts_bb]."""
