@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import Counter as Tally
 from collections import defaultdict
+from functools import cached_property
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
@@ -23,6 +24,20 @@ from bfsim.kernel.rules import Rule
 POINTERS = isa.POINTER_REGISTERS + 1  # with FP, which -O2 frees
 KEPT = {RegisterBank.DATA: 4, RegisterBank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
 ROOM = {RegisterBank.DATA: isa.DATA_REGISTERS, RegisterBank.POINTER: POINTERS}
+
+
+IN_EITHER = {Op.ALU, Op.COMPARE, Op.COND_MOVE, Op.MOVE, Op.IMM, Op.IMM32, Op.LOAD32, Op.STORE32}
+"""Operations that are there for both banks, and with a number or a copy even between them."""
+
+
+def _is_free(instruction: MachineInstruction) -> bool:
+    """Whether no operand must be in the bank of another one."""
+    if any(bank is not RegisterBank.ANY for _, bank in instruction.uses) or (
+        instruction.result and instruction.bank is not RegisterBank.ANY
+    ):
+        return False
+    names = [name for name, _ in instruction.uses if not name.startswith("#")]
+    return instruction.op not in (Op.ALU, Op.COMPARE) or len(names) < 2
 
 
 class Pressure:
@@ -41,11 +56,52 @@ class Pressure:
         for loop in self.flow.loops:
             for bank in (RegisterBank.DATA, RegisterBank.POINTER):
                 for _ in range(32):
-                    victim = self._victim(loop, bank, spilled)
-                    if victim is None:
+                    crowded = self._crowded(loop, bank, spilled)
+                    if crowded and self._gives_way(crowded, bank):
+                        continue
+                    if not crowded:
                         break
+                    victim = self._victim(loop, bank, spilled, crowded)
                     spilled.add(victim)
                     self._reload(victim, loop)
+
+    def _gives_way(self, crowded: list[set[str]], bank: RegisterBank) -> bool:
+        """Let one of the values of a bank that is full be in the other one, if that costs nothing; return whether there is any."""
+        if not self.webs.context.profile.applies(Rule.EITHER_BANK):
+            return False
+        other = RegisterBank.DATA if bank is RegisterBank.POINTER else RegisterBank.POINTER
+        tied = self.tied
+        names = Tally(name for here in crowded for name in here if name not in tied)
+        for name in sorted(names, key=lambda name: (-names[name], name)):
+            if self._has_room(name, other):
+                self.bank[name] = other
+                return True
+        return False
+
+    @cached_property
+    def tied(self) -> frozenset[str]:
+        """Webs that must be in their bank, or would need a move in the other one."""
+        return frozenset(
+            self.find(name)
+            for block in self.code.of.values()
+            for instruction in block
+            if instruction.op not in IN_EITHER or not _is_free(instruction)
+            for name in (*(name for name, _ in instruction.uses), instruction.result or "")
+        ) | frozenset(map(self.find, self.webs.context.parameters()))
+
+    def _has_room(self, web: str, bank: RegisterBank) -> bool:
+        """Whether a register of a bank is free wherever a web is alive."""
+        constants = {name for loop in self.flow.loops for name in self._constants(loop, bank, set())}
+        for label in self.flow.order:
+            loops = self.flow.loops_of(label)
+            counters = self._counters(label, loops[-1]) if loops and bank is RegisterBank.POINTER else 0
+            for alive in self.points(label, across_calls=False):
+                taken = sum(self.bank.get(name) is bank for name in alive)
+                if web in alive and taken + counters + len(constants) >= ROOM[bank]:
+                    return False
+            if any(web in alive for alive in self.points(label, across_calls=True)):
+                return False
+        return True
 
     def constants_in(self, loop: Loop) -> dict[str, float]:
         """Return the constants that a loop keeps in registers, and how often it uses them."""
@@ -57,9 +113,31 @@ class Pressure:
                         found[name] = found.get(name, 0) + self.frequency[label]
         return found
 
-    def _victim(self, loop: Loop, bank: RegisterBank, spilled: set[str]) -> str | None:
-        constants = {name: weight for name, weight in self.constants_in(loop).items() if name not in spilled}
-        extra = len(constants) if bank is RegisterBank.DATA else 0
+    def _victim(self, loop: Loop, bank: RegisterBank, spilled: set[str], crowded: list[set[str]]) -> str:
+        """What is used least for the places in which there are too many."""
+        constants = self._constants(loop, bank, spilled)
+        places = Tally(name for here in crowded for name in here) + Tally(
+            dict.fromkeys(constants, len(crowded))
+        )
+        if not self.webs.context.profile.applies(Rule.SPILLED_RANGES):
+            busiest = max(crowded, key=len)
+            places = Tally(dict.fromkeys([*busiest, *constants], 1))
+        used = self._weights(loop)
+        weights = {name: constants.get(name, 0) or used[name] for name in places}
+        victim = min(weights, key=lambda name: (weights[name] / (places[name] + 1), name))
+        if weights[victim] or not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS):
+            self.reloading.add((loop.header, bank))
+        return victim
+
+    def _constants(self, loop: Loop, bank: RegisterBank, spilled: set[str]) -> dict[str, float]:
+        """The constants that a loop keeps in registers of a bank."""
+        if bank is not RegisterBank.DATA:
+            return {}
+        return {name: weight for name, weight in self.constants_in(loop).items() if name not in spilled}
+
+    def _crowded(self, loop: Loop, bank: RegisterBank, spilled: set[str]) -> list[set[str]]:
+        """What is alive in a bank, at each place of a loop where that is too much."""
+        extra = len(self._constants(loop, bank, spilled))
         has_call = any(
             instruction.op is Op.CALL
             for label in self.flow.inside(loop)
@@ -77,22 +155,7 @@ class Pressure:
                 here = {name for name in alive if self.bank.get(name) is bank and name not in spilled}
                 if len(here) + extra + counters > room - reloading:
                     crowded.append(here)
-        if not crowded:
-            return None
-        places = Tally(name for here in crowded for name in here) + Tally(
-            dict.fromkeys(constants if extra else (), len(crowded))
-        )
-        if not self.webs.context.profile.applies(Rule.SPILLED_RANGES):
-            busiest = max(crowded, key=len)
-            places = Tally(dict.fromkeys([*busiest, *(constants if extra else ())], 1))
-        used = self._weights(loop)
-        weights = {name: constants.get(name, 0) or used[name] for name in places}
-        victim = min(weights, key=lambda name: (weights[name] / (places[name] + 1), name), default=None)
-        if victim is not None and (
-            weights[victim] or not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS)
-        ):
-            self.reloading.add((loop.header, bank))
-        return victim
+        return crowded
 
     def _counters(self, label: str, loop: Loop) -> int:
         """Pointer registers that counters of counted loops take in a block, from `loop` inwards [loop_end in bfin.md]."""
