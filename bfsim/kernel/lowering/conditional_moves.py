@@ -23,7 +23,9 @@ def is_conditional_move(
     flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
 ) -> bool:
     """Whether the choice `phi` between two `values` is one, behind a comparison of those in `tested`."""
-    if _is_narrow(flow, phi) and not (tested.issuperset(values) and _stays_a_branch(flow, phi, values)):
+    if _is_narrow(flow, phi, values) and not (
+        tested.issuperset(values) and _stays_a_branch(flow, phi, values)
+    ):
         tested = frozenset()  # wide, in a register of its own
     own, copied = _registers(flow, phi, values, tested)
     return len(copied) < 2 and tested.isdisjoint(own)
@@ -62,14 +64,26 @@ def _registers(
 
 
 def _stays_a_branch(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
-    """Whether a narrow minimum or maximum stays a branch: of two values, or of one that a side computes as narrow."""
+    """Whether a narrow minimum or maximum stays a branch: of two values, or of one that a side computes as narrow.
+
+    Not so of a value that is loaded and stored alike: to choose that takes no conversion.
+    """
+    if _is_stored_alike(flow, phi, values):
+        return False
     found = [flow.instruction(each) for each in values if each.startswith("%")]
     return len(found) == len(values) or any(
         each is not None and is_computed_narrow(flow, each, stored_bits(flow, phi)) for each in found
     )
 
 
-def _is_narrow(flow: ControlFlow, phi: Instruction) -> bool:
+def _is_stored_alike(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
+    """Whether one of the values is loaded with as many bits as are stored: the word that is made of it is in another register."""
+    found = [flow.instruction(each) for each in values]
+    bits = stored_bits(flow, phi)
+    return any(each is not None and each.opcode == "load" and each.bits == bits for each in found)
+
+
+def _is_narrow(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
     """Whether the choice is made between narrow values, and only stored: of `x if test else y`, C converts both sides before it chooses."""
     users = flow.users.get(phi.result or "", [])
     narrowed = len(users) == 1 and users[0].opcode == "trunc"
@@ -80,7 +94,7 @@ def _is_narrow(flow: ControlFlow, phi: Instruction) -> bool:
         len(users) == 1
         and users[0].opcode == "store"
         and users[0].bits < WORD
-        and not (narrowed and is_statement)
+        and not (narrowed and is_statement and not _is_stored_alike(flow, phi, values))
     )
 
 

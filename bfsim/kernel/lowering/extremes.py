@@ -152,13 +152,18 @@ def _comparison(test: Instruction) -> _Comparison | None:
 
 def _is_none(flow: ControlFlow, phi: Instruction, yes: str, no: str) -> bool:
     """Whether a choice of narrow values is no extreme, or one of unsigned numbers, of which there is no instruction."""
-    unsigned = stored_bits(flow, phi) < WORD and all(_is_unsigned(flow, each) for each in (yes, no))
+    unsigned = stored_bits(flow, phi) < WORD and _are_unsigned(flow, yes, no)
     return unsigned or (is_narrowed(flow, phi) and not is_narrowed_behind(flow, phi, yes, no))
 
 
-def _is_unsigned(flow: ControlFlow, value: str) -> bool:
-    each = flow.instruction(value)
-    return each is not None and each.opcode == "zext"
+def _are_unsigned(flow: ControlFlow, *values: str) -> bool:
+    """Whether narrow values are extended with zeros, and numbers are such values, too."""
+    made = [flow.instruction(each) for each in values if not is_number(each)]
+    most = max((each.bits for each in made if each is not None and each.opcode == "zext"), default=0)
+    numbers = [int(each) for each in values if is_number(each)]
+    return all(each is not None and each.opcode == "zext" for each in made) and all(
+        0 <= each < 1 << most for each in numbers
+    )
 
 
 def _is_of_narrow(flow: ControlFlow, comparison: _Comparison) -> bool:

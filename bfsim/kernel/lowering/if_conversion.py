@@ -13,7 +13,7 @@ from enum import Enum, auto
 from bfsim.kernel.ir_text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.conditional_moves import are_conditional_moves, is_conditional_move
-from bfsim.kernel.lowering.narrow_choices import is_narrowed, stored_bits
+from bfsim.kernel.lowering.narrow_choices import is_narrowed, is_of_one_type, stored_bits
 from bfsim.kernel.lowering.widths import BYTE, WORD, widest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -187,6 +187,9 @@ class IfConversion:
             return ConvertedIf(ConversionKind.SHIFTED_FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in self._bounds(test)}
         of_loads = all(self._is_narrow_load(each) for each in (yes, no))
+        if of_loads and stored_bits(self.flow, phi) < WORD:
+            bits = stored_bits(self.flow, phi)
+            of_loads = test.bits == bits or is_of_one_type(self.flow, test.operands, bits)
         narrows = self.profile.applies(Rule.NARROW_CHOICES)
         is_extreme = {yes, no} <= bounds and (of_loads or not (narrows and is_narrowed(self.flow, phi)))
         unsigned = predicate(test)[0] == "u"

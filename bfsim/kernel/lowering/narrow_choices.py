@@ -5,6 +5,8 @@ So other values are chosen than are tested, and the choice may be no minimum or 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from bfsim.kernel.ir_text import Instruction, is_number
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.widths import WORD
@@ -31,14 +33,21 @@ def is_narrowed(flow: ControlFlow, phi: Instruction) -> bool:
 def is_narrowed_behind(flow: ControlFlow, phi: Instruction, yes: str, no: str) -> bool:
     """Whether the conversion of both sides is done behind the choice again [factor_out_conditional_conversion in tree-ssa-phiopt.cc].
 
-    So it is of a number and a value, unless that is computed as narrow from the start, and of two values that are narrow.
+    So it is of a number and a value, unless that is computed as narrow from the start, and of two values of the one narrow type.
     """
     values = [flow.instruction(each) for each in (yes, no) if not is_number(each)]
     if len(phi.operands) != 2 or not values:
         return False
     if len(values) == 2:
-        return all(each is not None and is_extended(each) for each in values)
+        return is_of_one_type(flow, (yes, no), stored_bits(flow, phi))
     return values[0] is None or not is_computed_narrow(flow, values[0], stored_bits(flow, phi))
+
+
+def is_of_one_type(flow: ControlFlow, values: Sequence[str], bits: int) -> bool:
+    """Whether values are made of narrow ones that have so many bits, all with a sign or all without."""
+    made = [flow.instruction(each) for each in values]
+    kinds = {(each.opcode, each.bits) if each and is_extended(each) else ("", 0) for each in made}
+    return kinds in ({("sext", bits)}, {("zext", bits)})
 
 
 def is_extended(each: Instruction) -> bool:

@@ -114,13 +114,25 @@ def _around(
     stores: Sequence[Instruction],
     between: BasicBlock,
 ) -> Iterator[BasicBlock]:
-    """The blocks of the routine with `between` in front of `block`, in place of the stores."""
+    """The blocks of the routine with `between` in front of `block`, in place of the stores and of what is computed for them alone."""
+    kept = {name for row in between.instructions for name in row.operands}
     for each in flow.routine.blocks:
         if each is block:
             yield between
             yield replace(block, instructions=tuple(row for row in block.instructions if row.opcode != "phi"))
         elif each.label in sources:
-            rows = tuple(row for row in each.instructions if not any(row is store for store in stores))
+            rows = _without(flow, each, stores, kept)
             yield going_to(replace(each, instructions=rows), block.label, between.label)
         else:
             yield each
+
+
+def _without(
+    flow: ControlFlow, block: BasicBlock, stores: Sequence[Instruction], kept: set[str]
+) -> tuple[Instruction, ...]:
+    """The rows of a block but for the stores, and those that nothing else wants."""
+    gone = {id(each) for each in stores}
+    for row in reversed(block.instructions):
+        if row.opcode in ("getelementptr", "trunc") and row.result not in kept:
+            gone |= {id(row)} if all(id(user) in gone for user in flow.users[row.result or ""]) else set()
+    return tuple(row for row in block.instructions if id(row) not in gone)
