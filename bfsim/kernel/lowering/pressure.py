@@ -17,6 +17,7 @@ from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
+from bfsim.kernel.lowering.either_bank import tied_webs
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
 from bfsim.kernel.rules import Rule
@@ -24,20 +25,6 @@ from bfsim.kernel.rules import Rule
 POINTERS = isa.POINTER_REGISTERS + 1  # with FP, which -O2 frees
 KEPT = {RegisterBank.DATA: 4, RegisterBank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
 ROOM = {RegisterBank.DATA: isa.DATA_REGISTERS, RegisterBank.POINTER: POINTERS}
-
-
-IN_EITHER = {Op.ALU, Op.COMPARE, Op.COND_MOVE, Op.MOVE, Op.IMM, Op.IMM32, Op.LOAD32, Op.STORE32}
-"""Operations that are there for both banks, and with a number or a copy even between them."""
-
-
-def _is_free(instruction: MachineInstruction) -> bool:
-    """Whether no operand must be in the bank of another one."""
-    if any(bank is not RegisterBank.ANY for _, bank in instruction.uses) or (
-        instruction.result and instruction.bank is not RegisterBank.ANY
-    ):
-        return False
-    names = [name for name, _ in instruction.uses if not name.startswith("#")]
-    return instruction.op not in (Op.ALU, Op.COMPARE) or len(names) < 2
 
 
 class Pressure:
@@ -70,8 +57,7 @@ class Pressure:
         if not self.webs.context.profile.applies(Rule.EITHER_BANK):
             return False
         other = RegisterBank.DATA if bank is RegisterBank.POINTER else RegisterBank.POINTER
-        tied = self.tied
-        names = Tally(name for here in crowded for name in here if name not in tied)
+        names = Tally(name for here in crowded for name in here if name not in self.tied)
         for name in sorted(names, key=lambda name: (-names[name], name)):
             if self._has_room(name, other):
                 self.bank[name] = other
@@ -80,14 +66,8 @@ class Pressure:
 
     @cached_property
     def tied(self) -> frozenset[str]:
-        """Webs that must be in their bank, or would need a move in the other one."""
-        return frozenset(
-            self.find(name)
-            for block in self.code.of.values()
-            for instruction in block
-            if instruction.op not in IN_EITHER or not _is_free(instruction)
-            for name in (*(name for name, _ in instruction.uses), instruction.result or "")
-        ) | frozenset(map(self.find, self.webs.context.parameters()))
+        """Webs that must be in their bank."""
+        return tied_webs(self.webs)
 
     def _has_room(self, web: str, bank: RegisterBank) -> bool:
         """Whether a register of a bank is free wherever a web is alive."""
