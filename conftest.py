@@ -14,7 +14,7 @@ from contextlib import suppress
 import platformdirs
 import pytest
 
-from bfsim.garbage import collect_rarely
+from bfsim.process.garbage import collect_rarely
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:

@@ -17,10 +17,10 @@ import numpy as np
 from rich.table import Table
 
 from bfsim.api import Script
+from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader
 from bfsim.report.tables import new_table
 from bfsim.run import simulate
-from bfsim.terminal import print_report
 from tinyphoon import tinyphoon
 from tinyphoon.scenes.boxes import ANGLES_DEG, BOX, DISTANCES_MM
 from tinyphoon.stores.objects import BY_DISPARITY

@@ -29,7 +29,8 @@ from bfsim.compiling.object_code import ObjectCode, object_code
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import GCC_O0, GCC_O2, Kernel
 from bfsim.kernel.tree import first_float
-from bfsim.loading import kernels_of, load_firmware
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernels import kernels_of
 from bfsim.run import simulate
 from bfsim.verifying import Sampler
 from bfsim.verifying.played import simulated, translated

@@ -17,9 +17,9 @@ from rich.table import Table
 from benchmarks.quality import blobs, edges, lines
 from benchmarks.quality.seen import Seen, see_recording
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report
 from bfsim.report.tables import new_table, stacked
 from bfsim.shipped import RECORDING
-from bfsim.terminal import print_report
 
 FEATURES = edges, blobs, lines
 

@@ -15,11 +15,11 @@ import numpy as np
 from rich.table import Table
 
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report
 from bfsim.recording import StereoGeometry
 from bfsim.report.ldf.drawing import FAINT, INK, FilledBox, Sheet, Words
 from bfsim.report.ldf.picture import format_of
 from bfsim.report.tables import new_table
-from bfsim.terminal import print_report
 from tinyphoon.geometry import depth_mm, geometry_buffer
 from tinyphoon.stores.lines import SUBPIXELS
 

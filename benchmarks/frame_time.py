@@ -25,16 +25,16 @@ import bfsim
 import tinyphoon
 from benchmarks.native_time import Stopwatch, native_time
 from bfsim.api import FrameSize
-from bfsim.building import build_for
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.kernel.profile import profile_named
 from bfsim.linker import link, parse_ldf
-from bfsim.loading import LoadedFirmware, load_firmware
+from bfsim.loading.firmware import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.running.building import build_for
 from bfsim.shipped import DEFAULT_LDFS, FIRMWARE, RECORDING
 
 INTERVAL_S = 0.001

@@ -14,6 +14,7 @@ import zlib
 from pathlib import Path
 
 from bfsim import kernel
+from bfsim.files.store import KEPT
 from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.tape import note, note_access, note_run
 from bfsim.machine.bus.tape_lines import note_copy, note_fetch, note_program, note_send, note_wait
@@ -24,7 +25,6 @@ from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
 from bfsim.machine.retiming.stretch_writer import write_stretch
 from bfsim.machine.retiming.work_check import are_accesses, calls_in
-from bfsim.store import KEPT
 
 FOLDER = Path(kernel.__file__).parent / KEPT
 ENTRIES = (

@@ -13,11 +13,11 @@ import click
 from rich.table import Table
 
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report, progress_bar
 from bfsim.report.budget import Budget, budget_of, milliseconds
 from bfsim.report.tables import new_table, percent
 from bfsim.run import simulate
 from bfsim.shipped import LDF_FOLDER
-from bfsim.terminal import print_report, progress_bar
 from bfsim.trace import RunRecord, StallReason
 
 PLACEMENTS = ("thesis", "l2", "cache", "sdram")

@@ -14,9 +14,9 @@ from rich.table import Table
 from bfsim.errors import BfsimError
 from bfsim.placing.placed import Placed
 from bfsim.placing.search import place
+from bfsim.process.terminal import print_report, progress_bar
 from bfsim.report.tables import new_table, percent
 from bfsim.run import simulate
-from bfsim.terminal import print_report, progress_bar
 
 PLACEMENTS = ("sdram", "l2", "cache", "thesis")
 """Files of ldf/."""

@@ -22,10 +22,10 @@ from benchmarks.playing import Played, play
 from benchmarks.real import balls, depth, edges
 from benchmarks.real.sets import PICTURES, VIDEOS, PictureSet, read_recording, read_set
 from bfsim.api import Seen
+from bfsim.process.terminal import print_report, progress_bar
 from bfsim.report.overlay.files import OverlayWriter
 from bfsim.report.tables import new_table, stacked
 from bfsim.seen import SeenFrame
-from bfsim.terminal import print_report, progress_bar
 from tinyphoon import ROWS, tinyphoon
 from tinyphoon.view.view import view
 

@@ -23,11 +23,11 @@ from benchmarks.quality.seen import Picture, see, uyvy
 from benchmarks.rectified.cameras import RealCameras
 from bfsim.api import Calibration
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.lens import Lens
 from bfsim.report.tables import new_table, percent
 from bfsim.shipped import RECORDING
-from bfsim.terminal import print_report
 from tinyphoon import tinyphoon
 
 CAMERAS = RealCameras(386.0, Lens(-0.25, 0.08), (1.0, -1.0, 0.5))  # T §6.2: the focal length

@@ -26,11 +26,11 @@ from benchmarks.scenes import TALLY_HEADS, compare, tally_cells
 from bfsim.api import Seen
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.report.tables import new_table, percent, stacked
-from bfsim.run_inputs import calibration_of
-from bfsim.terminal import print_report
+from bfsim.running.inputs import calibration_of
 from tinyphoon import rectified_features, tinyphoon
 
 WAYS = {"pictures": tinyphoon, "features": rectified_features}

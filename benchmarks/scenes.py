@@ -23,12 +23,12 @@ from rich.table import Table
 
 from bfsim.api import Seen
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report, progress_bar
 from bfsim.recording import RecordingReader
 from bfsim.report.overlay.files import OverlayWriter
 from bfsim.report.tables import new_table
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame, SeenObject
-from bfsim.terminal import print_report, progress_bar
 from tinyphoon.scenes.thesis import FIGURES
 from tinyphoon.strategy.models import MODELS, Shape
 

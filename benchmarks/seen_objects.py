@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.playing import play
 from bfsim.api import Core, Firmware, Readout
 from bfsim.recording import RecordingReader
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 from tinyphoon import ROWS, TABLE_6_4
 from tinyphoon.buffers import buffers, calibration_buffers
 from tinyphoon.features import features

@@ -29,8 +29,8 @@ from PIL import Image
 from rich.table import Table
 
 from benchmarks.seen_objects import Records, Seen, see
+from bfsim.process.terminal import print_report
 from bfsim.report.tables import new_table
-from bfsim.terminal import print_report
 from tinyphoon.stages.blob_detection import hues
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.objects import (

@@ -17,8 +17,8 @@ from PIL import Image, ImageDraw
 from rich.table import Table
 
 from benchmarks.quality.seen import Lines, Picture, see_pictures
+from bfsim.process.terminal import print_report
 from bfsim.report.tables import new_table
-from bfsim.terminal import print_report
 
 Corners = Sequence[tuple[float, float]]
 

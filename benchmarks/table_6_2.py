@@ -24,10 +24,10 @@ from rich.table import Table
 from benchmarks.seen_stereo import SeenStereo, see_stereo
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import BfsimError
+from bfsim.process.terminal import print_report, progress_bar
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.report.tables import new_table
-from bfsim.run_inputs import calibration_of
-from bfsim.terminal import print_report, progress_bar
+from bfsim.running.inputs import calibration_of
 from tinyphoon.stages.stereo_lines import Correspondence
 from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 

@@ -21,9 +21,9 @@ from typing import Any, TypeVar
 import click
 
 from bfsim.api import Firmware
+from bfsim.process.terminal import print_report, progress_bar
 from bfsim.report.tables import new_table
 from bfsim.run import simulate
-from bfsim.terminal import print_report, progress_bar
 
 # T Table 6.4 in ms: the recordings of its columns, and the rows
 ROWS = (

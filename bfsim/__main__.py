@@ -9,8 +9,8 @@ import os
 import signal
 import sys
 
-from bfsim.garbage import collect_no_more, collect_rarely
-from bfsim.signals import BY_SIGNAL, hear_signals
+from bfsim.process.garbage import collect_no_more, collect_rarely
+from bfsim.process.signals import BY_SIGNAL, hear_signals
 
 
 def main() -> None:
@@ -23,7 +23,7 @@ def main() -> None:
     if hear is signal.default_int_handler:  # otherwise Ctrl-C is ignored: in the background of a shell
         signal.signal(signal.SIGINT, _leave)
     from bfsim.cli.main import main as command
-    from bfsim.endings import fault
+    from bfsim.process.endings import fault
 
     signal.signal(signal.SIGINT, hear)
     hear_signals()

@@ -9,12 +9,12 @@ from typing import Any
 
 from bfsim import shipped
 from bfsim.errors import BfsimError, ConfigError, cut, shown
-from bfsim.identifying import recording_digest
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
 from bfsim.planning import identified
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on, update_command
 from bfsim.report.check.judge import require_stages
 from bfsim.run import Feed, Fidelity
+from bfsim.running.identifying import recording_digest
 
 
 def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:

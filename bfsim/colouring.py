@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.device_script import read_script
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, with_article
-from bfsim.loading import LoadedFirmware, load_firmware
+from bfsim.loading.firmware import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.peripherals.device import Script
 from bfsim.recording import RecordingReader
 from bfsim.recording.images import picture_of_file
+from bfsim.running.device_script import read_script
 from bfsim.seen import PictureColours
 
 MCAP_MAGIC = b"\x89MCAP"

@@ -9,16 +9,17 @@ from collections import Counter as Tally
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from bfsim.building import build_for
 from bfsim.errors import ConfigError
-from bfsim.hardware import find_profile
 from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.build import Build
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import decisions
 from bfsim.kernel.isa import MNEMONICS, Op
-from bfsim.loading import load_firmware, load_kernel
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.hardware import find_profile
+from bfsim.loading.kernel_named import load_kernel
+from bfsim.running.building import build_for
 from bfsim.trace import KernelRecord, RunRecord, StallReason
 from bfsim.trace.explanation import (  # fmt: skip
     ExplainedCall,

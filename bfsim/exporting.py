@@ -11,7 +11,8 @@ from pathlib import Path
 from bfsim.errors import ConfigError, FirmwareError, listed
 from bfsim.kernel import Kernel
 from bfsim.kernel.c import CProgram, c_program, in_python
-from bfsim.loading import kernels_of, load_firmware, written_in_python
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernels import kernels_of, written_in_python
 from bfsim.report.save import write_text, writing
 
 MAKEFILE = """\

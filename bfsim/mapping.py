@@ -6,18 +6,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
-from bfsim.given import given_firmware
-from bfsim.hardware import find_board, find_profile
 from bfsim.linker import CORE_OF_PROCESSOR, LinkerScript, link
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.given import given_firmware
+from bfsim.loading.hardware import find_board, find_profile
 from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.program import Calibration, Firmware
 from bfsim.machine.symbols import PROCESSORS, symbols_of
 from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
-from bfsim.run_inputs import read_placement
+from bfsim.running.building import build_for
+from bfsim.running.inputs import read_placement
 
 
 def map_memory(

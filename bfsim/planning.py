@@ -6,8 +6,8 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from bfsim.identifying import recording_digest
 from bfsim.run import simulate
+from bfsim.running.identifying import recording_digest
 from bfsim.trace import Identity
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial, wraps
@@ -11,39 +10,38 @@ from itertools import count
 from pathlib import Path
 from threading import RLock
 from types import MappingProxyType
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec
 
 from bfsim import shipped
-from bfsim.assumptions import (
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import ConfigError, RecordingError
+from bfsim.kernel.profile import DEFAULT
+from bfsim.linker import LinkMap
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.given import given_firmware
+from bfsim.loading.hardware import find_board, find_profile
+from bfsim.machine.board import Board, Fidelity
+from bfsim.machine.calls.call_cache import BeforeCall, Sanitizer
+from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.named_kernels import kernels_named
+from bfsim.machine.program import Firmware
+from bfsim.machine.symbols import require_cores
+from bfsim.recording import RecordingReader
+from bfsim.recording.stereo_check import StereoCheck
+from bfsim.result import Run
+from bfsim.running.arguments import one_of, path_of, require_kinds
+from bfsim.running.assumptions import (
     assumed_clocks,
     assumed_geometry,
     assumed_tables,
     doubted_cameras,
     geometry_in_words,
 )
-from bfsim.chip.spec import BoardSpec
-from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
-from bfsim.given import given_firmware
-from bfsim.given_kinds import require_kinds
-from bfsim.hardware import find_board, find_profile
-from bfsim.identifying import DigestedFrames, identity_of, written
-from bfsim.kernel.profile import DEFAULT
-from bfsim.linker import LinkMap
-from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.calls.call_cache import BeforeCall, Sanitizer
-from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.named_kernels import kernels_named
-from bfsim.machine.peripherals.device import Device
-from bfsim.machine.peripherals.table import devices_of, makers_of
-from bfsim.machine.program import Firmware
-from bfsim.machine.symbols import require_cores
-from bfsim.recording import RecordingReader
-from bfsim.recording.stereo_check import StereoCheck
-from bfsim.result import Run
-from bfsim.retiming import retimed
-from bfsim.run_inputs import opened, read_placement
-from bfsim.run_setup import FittedFirmware, RunSetup, fit
+from bfsim.running.devices import told_devices
+from bfsim.running.identifying import DigestedFrames, identity_of, written
+from bfsim.running.inputs import opened, read_placement
+from bfsim.running.retiming import retimed
+from bfsim.running.setup import FittedFirmware, RunSetup, fit
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
 from bfsim.trace import BoardRecord, Identity, MemoryRecord, RunWarning
@@ -52,7 +50,6 @@ _WATCHING = ("before", "progress", "on_seen", "on_time", "on_spans", "on_call", 
 """Arguments of `simulate` that change nothing in the records: whoever makes the run again has others."""
 
 Given = ParamSpec("Given")
-Choice = TypeVar("Choice", Feed, Fidelity)
 
 
 _ONE_AT_A_TIME = RLock()
@@ -141,9 +138,9 @@ def simulate(
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
-    feed, fidelity = _one_of(Feed, "feed", feed), _one_of(Fidelity, "fidelity", fidelity)
+    feed, fidelity = one_of(Feed, "feed", feed), one_of(Fidelity, "fidelity", fidelity)
     recording, script, record_work, work = (
-        _path_of(what, given)
+        path_of(what, given)
         for what, given in {
             "recording": recording, "script": script, "record_work": record_work, "work": work,
         }.items()
@@ -152,7 +149,7 @@ def simulate(
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
     require_cores(loaded.firmware, found_board.value)
     with loaded.own.named():
-        devices, script_digest = _devices(script, loaded)
+        devices, script_digest = told_devices(script, loaded)
     setup = RunSetup(
         board=found_board,
         compiler=found_compiler,
@@ -217,24 +214,6 @@ def _told_of_frames(
     return frame_done
 
 
-def _one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
-    try:
-        return kind(name)
-    except ValueError:
-        known = ", ".join(each.value for each in kind)
-        raise ConfigError(f"{option} must be one of {known}, not {shown(name)}") from None
-
-
-def _path_of(what: str, given: object) -> Path | None:
-    """Return what was given as a file's path. Raises ConfigError if it is none."""
-    if given is None:
-        return None
-    if isinstance(given, (str, os.PathLike)):
-        return Path(given)
-    advice = "; write `simulate(firmware=...)`" if isinstance(given, Firmware) else ""
-    raise ConfigError(f"{what} must be a file, not {type(given).__name__}{advice}")
-
-
 def _frames_to_run(reader: RecordingReader, most: int | None) -> int:
     """Return how many frames of a recording are run. Raises RecordingError where it has none."""
     if not reader.frame_count:
@@ -257,23 +236,6 @@ def _memories(link_map: LinkMap, spec: BoardSpec) -> Iterator[MemoryRecord]:
         if segments:
             used_bytes = sum(each.used_bytes for each in segments)
             yield MemoryRecord(memory=region.name, nbytes=region.nbytes, used_bytes=used_bytes)
-
-
-def _devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Device], str]:
-    """Return the devices of the firmware, told by the script if there is one, and the digest of the script."""
-    if path is None:
-        return devices_of(loaded.firmware, {}), ""
-    if not makers_of(loaded.firmware):
-        raise ConfigError(
-            f"--script must go with firmware that has a device to tell, and {loaded.name} has none"
-        )
-    from bfsim.device_script import read_script  # few runs have one
-
-    script, digest = read_script(path)
-    try:
-        return devices_of(loaded.firmware, script), digest
-    except FirmwareError as error:
-        raise ConfigError(f"{path}: {error}") from error
 
 
 def _record(

@@ -11,7 +11,7 @@ from typing import Any
 
 from bfsim import shipped
 from bfsim.errors import ConfigError
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
 from bfsim.machine.program import Firmware
 from bfsim.mapping import map_memory
 from bfsim.recording import RecordingReader
@@ -23,9 +23,9 @@ from bfsim.report.html.pictures import Pictures
 from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.save import require_apart, require_place, write_text
 from bfsim.report.target import Target
-from bfsim.run_inputs import calibration_of, files_of_run
+from bfsim.running.inputs import calibration_of, files_of_run
+from bfsim.running.watchers import Watchers, calling
 from bfsim.trace import BudgetRow, Identity, RunRecord
-from bfsim.watchers import Watchers, calling
 
 _PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
 

@@ -15,7 +15,8 @@ from bfsim.assembly import Counting, KernelCode, find_code, listed
 from bfsim.cli.main import main
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O2
-from bfsim.loading import load_firmware, load_kernel
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernel_named import load_kernel
 from bfsim.machine.memories import Row
 from bfsim.trace.assembly import Assembly
 from tests.eyes import FIRMWARE

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 from benchmarks.toolchain.keep import FOLDER, programs, recipes
-from bfsim import compiling, store
+from bfsim import compiling
 from bfsim.blackfin.objects import read_object
 from bfsim.compiling.object_code import PROGRAMS, InC, object_code
 from bfsim.compiling.recipes import KEPT_COMPILER
 from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer
 from bfsim.errors import ConfigError
+from bfsim.files import store
 from bfsim.kernel import GCC_O0, GCC_O2
 from tests.kernel import c_kernels
 from tests.kernel.host_c import COMPILER, needs_compiler

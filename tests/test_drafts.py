@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.drafts import draft_folder, sweep
+from bfsim.files.drafts import draft_folder, sweep
 
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from bfsim.drafts import draft_folder
+from bfsim.files.drafts import draft_folder
 with draft_folder(Path(sys.argv[1])) as folder:
     (folder / "half").write_text("written")
     os.kill(os.getpid(), signal.SIGKILL)
@@ -40,9 +40,7 @@ def test_what_a_killed_process_left_is_swept_by_the_next(tmp_path: Path) -> None
 def test_the_draft_of_a_living_process_stays(tmp_path: Path) -> None:
     """Two runs may write into one folder at once."""
     with draft_folder(tmp_path) as folder:
-        program = (
-            "import sys; from pathlib import Path; from bfsim.drafts import sweep; sweep(Path(sys.argv[1]))"
-        )
+        program = "import sys; from pathlib import Path; from bfsim.files.drafts import sweep; sweep(Path(sys.argv[1]))"
         subprocess.run([sys.executable, "-c", program, str(tmp_path)], check=True)
         assert folder.is_dir()
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.endings import FAULT
+from bfsim.process.endings import FAULT
 from tests.tiers import exhaustive
 
 # a run that is in the midst of a drawing when the signal comes, however late that is
@@ -161,7 +161,7 @@ def test_a_device_without_an_end_is_no_file_to_read(arguments: tuple[str, ...]) 
 
 DROPPED = """
 import os, signal, time, weakref
-from bfsim.signals import hear_signals, interrupted_code
+from bfsim.process.signals import hear_signals, interrupted_code
 
 class Thing: ...
 

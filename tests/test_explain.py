@@ -12,7 +12,7 @@ from bfsim.cli.main import main
 from bfsim.errors import ConfigError, FirmwareError
 from bfsim.explain import explain, explain_named
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2
-from bfsim.loading import load_kernel
+from bfsim.loading.kernel_named import load_kernel
 from bfsim.run import simulate
 from bfsim.trace import RunRecord, StallReason
 from bfsim.trace.explanation import ExplainedLine, Explanation

@@ -7,7 +7,7 @@ import gc
 import pytest
 
 from bfsim.__main__ import main
-from bfsim.garbage import COLLECT_AFTER, collect_no_more, rarely_collected
+from bfsim.process.garbage import COLLECT_AFTER, collect_no_more, rarely_collected
 
 
 def test_python_looks_rarely_for_as_long_as_a_run_and_then_as_before() -> None:

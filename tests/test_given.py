@@ -13,8 +13,8 @@ from types import ModuleType
 
 import pytest
 
-from bfsim.given import CELL, given_firmware
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.given import CELL, given_firmware
 from bfsim.machine.program import Firmware
 from bfsim.run import simulate
 from tests.eyes import FIRMWARE, record

@@ -14,8 +14,8 @@ from click.testing import CliRunner, Result
 from bfsim.chip.boards import BOARDS, CM_BF561
 from bfsim.cli.main import main
 from bfsim.errors import ConfigError
-from bfsim.hardware import find_board, find_profile
 from bfsim.kernel.profile import DEFAULT
+from bfsim.loading.hardware import find_board, find_profile
 from bfsim.run import simulate
 from tests.eyes import FIRMWARE, record
 

@@ -14,7 +14,7 @@ from bfsim.errors import KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2
 from bfsim.kernel.objects import compiled
-from bfsim.loading import load_kernel
+from bfsim.loading.kernel_named import load_kernel
 from tests.sums import DATA, ROW, SUMS, expected_sums, sums
 
 

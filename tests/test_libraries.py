@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
 from bfsim.run import simulate
 from tests.eyes import FIRMWARE, record
 

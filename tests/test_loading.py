@@ -12,9 +12,10 @@ from types import CodeType, ModuleType
 
 import pytest
 
-from bfsim import loading, shipped
+from bfsim import shipped
 from bfsim.errors import FirmwareError, KernelError
-from bfsim.loading import load_firmware, load_kernel
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernel_named import load_kernel
 from tests.commands import started
 from tests.eyes import FIRMWARE
 
@@ -167,7 +168,7 @@ def test_what_was_not_edited_is_not_compiled_again(write: Write, monkeypatch: py
 
     monkeypatch.setattr(SourceFileLoader, "source_to_code", noted)
     for text in ("one", "one", "two"):
-        monkeypatch.setattr(loading, "_imported", {})  # as another process would begin
+        monkeypatch.setattr("bfsim.loading.modules._imported", {})  # as another process would begin
         write("fw_again.py", named(text))
         assert load_firmware("fw_again:fw").firmware.camera == text
     assert compiled == [named(text).encode() for text in ("one", "two")]

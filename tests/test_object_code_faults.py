@@ -10,7 +10,7 @@ import pytest
 
 from bfsim.api import i32, kernel_from
 from bfsim.errors import KernelError
-from bfsim.loading import load_kernel
+from bfsim.loading.kernel_named import load_kernel
 from tests.sums import DATA, ROW
 
 

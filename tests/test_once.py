@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
-from bfsim.once import Known, once, remembering
+from bfsim.process.once import Known, once, remembering
 
 CALLED: list[object] = []
 

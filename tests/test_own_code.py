@@ -13,11 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bfsim import building
 from bfsim.api import kernel as kernel_of_firmware
 from bfsim.blackfin.image import Use
 from bfsim.blackfin.objects import read_object
-from bfsim.building import build_for
 from bfsim.compiling.loaded_code import LoadedCode
 from bfsim.compiling.object_code import _shipped_programs, object_code
 from bfsim.errors import BfsimWarning
@@ -25,13 +23,17 @@ from bfsim.explain import explain_named
 from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.profile import DEFAULT, GCC, GCC_ADI
-from bfsim.loading import entries_of, kernels_of, load_firmware, load_kernel
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernel_named import load_kernel
+from bfsim.loading.kernels import entries_of, kernels_of
 from bfsim.machine.memories import Row
 from bfsim.report.code import MODEL_ERROR_PERCENT, code_in_words
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.result_file import result_of
 from bfsim.result import Run
 from bfsim.run import simulate
+from bfsim.running import building
+from bfsim.running.building import build_for
 from bfsim.seen import SeenFrame
 from bfsim.shipped import FIRMWARE, accuracy_on
 from bfsim.trace import StallReason
@@ -225,7 +227,7 @@ def test_the_run_says_whose_code_and_for_how_much(exact: Run, tmp_path: Path) ->
 def _nothing_at_hand(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr("bfsim.store.shipped", lambda _package, _name: None)
+    monkeypatch.setattr("bfsim.files.store.shipped", lambda _package, _name: None)
     _shipped_programs.cache_clear()
     yield
     _shipped_programs.cache_clear()

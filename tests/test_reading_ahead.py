@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from bfsim.reading_ahead import read_ahead
+from bfsim.process.reading_ahead import read_ahead
 
 
 def test_items_come_in_order() -> None:

@@ -218,7 +218,7 @@ def test_firmware_that_imports_while_it_runs_is_played(
     )
     monkeypatch.setitem(sys.modules, "antigravity", None)  # would be an ImportError
     for path in (tmp_path / "run.work", other):
-        monkeypatch.setattr("bfsim.loading._imported", {})  # as in another process
+        monkeypatch.setattr("bfsim.loading.modules._imported", {})  # as in another process
         assert simulate(**what, work=path).frames == plain.frames
 
 

@@ -6,16 +6,16 @@ import re
 
 import pytest
 
-from bfsim.building import build_for
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import LinkError
-from bfsim.hardware import find_profile
 from bfsim.linker import LinkMap
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.hardware import find_profile
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.program import Calibration
-from bfsim.room import place
-from bfsim.run_inputs import read_placement
+from bfsim.running.building import build_for
+from bfsim.running.inputs import read_placement
+from bfsim.running.room import place
 
 
 def placed(width_px: int, height_px: int) -> LinkMap:

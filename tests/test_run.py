@@ -16,7 +16,7 @@ import pytest
 
 import tinyphoon
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.run import Feed, Fidelity, simulate
 from bfsim.shipped import LDF_FOLDER, RECORDING
@@ -27,7 +27,7 @@ import json, sys
 sys.modules["numba"] = None  # which cannot be imported then
 from pathlib import Path
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
 from bfsim.run import Feed, Fidelity, simulate
 runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]
 print(json.dumps([[identity_digest(run.identity), cycle_digest(run.frames)] for run in runs]))

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from bfsim import run_setup
 from bfsim.errors import KernelError
 from bfsim.kernel import VDSP_O2
 from bfsim.kernel.build import Build
+from bfsim.running import setup
 from tests.eyes import FIRMWARE, record, run_eyes
 
 CHANGES = (
@@ -35,7 +35,7 @@ def write(folder: Path, wrong: int) -> Path:
 def untried(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Kernels count as object code that was compiled just now."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(run_setup, "build_for", lambda _loaded, _profile: Build(VDSP_O2, is_tried=False))
+    monkeypatch.setattr(setup, "build_for", lambda _loaded, _profile: Build(VDSP_O2, is_tried=False))
 
 
 @pytest.mark.usefixtures("untried")

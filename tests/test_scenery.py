@@ -8,8 +8,8 @@ import pytest
 
 from bfsim import shipped
 from bfsim.errors import BfsimError
+from bfsim.loading.scenes import load_scenes
 from bfsim.recording.scenes import Scene, SceneAtDistances
-from bfsim.scenery import load_scenes
 from tinyphoon.scenes import SCENES
 
 OWN = """\

@@ -18,7 +18,7 @@ from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, Kernel
 from bfsim.report.verification import verdict
 from bfsim.run import simulate
-from bfsim.verified import Verification, VerifiedKernel
+from bfsim.trace.verification import Verification, VerifiedKernel
 from bfsim.verifying import Sampler, verify
 from bfsim.verifying.played import Calls, simulated
 from bfsim.verifying.player import FACTOR, checksum

@@ -17,7 +17,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.retiming.work import BYTE, CALL, KIND, SITE, FrameWork
 from bfsim.machine.retiming.work_check import check
 from bfsim.run import simulate
-from bfsim.work_file import FORMAT
+from bfsim.running.work_file import FORMAT
 from tests.work_files import changed, rewritten
 
 FRAMES = 2

@@ -11,7 +11,7 @@ from typing import Any
 import zstandard
 
 from bfsim.machine.retiming.work import FrameWork
-from bfsim.work_file import _read, _written
+from bfsim.running.work_file import _read, _written
 
 
 def changed(work: Path, path: Path, change: Callable[[FrameWork], None]) -> Path:

@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.bare import BareCore, run_bare
 from bfsim.api import Kernel
 from bfsim.recording import RecordingReader
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 from bfsim.shipped import RECORDING
 from bfsim.verifying import Sampler
 from bfsim.verifying.sample import Argument, Sample

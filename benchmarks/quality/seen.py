@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from benchmarks.playing import Played, play
 from bfsim.api import Firmware, Readout
+from bfsim.process.terminal import progress_bar
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run_inputs import calibration_of
-from bfsim.terminal import progress_bar
+from bfsim.running.inputs import calibration_of
 from bfsim.trace import FrameRecord
 from tinyphoon import tinyphoon
 from tinyphoon.stores.blobs import BLOB_WORDS

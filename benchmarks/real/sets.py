@@ -20,7 +20,7 @@ from PIL import Image
 from bfsim.machine.program import Calibration
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.planes import YuvPlanes
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 
 Disparities = NDArray[np.float64]
 """Of each pixel of the left picture, in pixels of that picture; NaN where unknown."""

@@ -17,8 +17,8 @@ from rich.table import Table
 from benchmarks.robot.recordings import halve
 from benchmarks.shape_balls import MOST_BALLS, scene_with
 from benchmarks.table_6_4 import COLUMNS, FITTED, FRAME, ROWS, Times, robot_times, times
+from bfsim.process.terminal import print_report
 from bfsim.recording.scenes.studio import record_scene
-from bfsim.terminal import print_report
 
 PIXEL_ROWS, OTHER_ROWS = ROWS[:3], ROWS[3:]
 AREA = [10, 20, 300, 200]

@@ -22,9 +22,9 @@ from benchmarks.robot import steps
 from benchmarks.robot.recordings import write_black, write_free
 from benchmarks.table_6_4 import COLUMNS, FITTED, FRAME, PLAIN, ROWS, Setting, Times, robot_times, times
 from bfsim.api import Firmware
+from bfsim.process.terminal import print_report
 from bfsim.report.tables import new_table
 from bfsim.shipped import LDF_FOLDER
-from bfsim.terminal import print_report
 from tinyphoon import thesis, tinyphoon
 from tinyphoon.stages.circle_detection import circle_detection
 from tinyphoon.stages.colour_reduction import join_groups

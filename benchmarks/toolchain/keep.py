@@ -19,9 +19,10 @@ from bfsim.compiling.file_code import SOURCES, recipe_of_source
 from bfsim.compiling.object_code import LEVELS, PROGRAMS, InC, recipe_of, written
 from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
-from bfsim.loading import entries_of, kernels_of, load_firmware
+from bfsim.files.store import KEPT
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernels import entries_of, kernels_of
 from bfsim.shipped import FIRMWARE
-from bfsim.store import KEPT
 from tests.pages import PAGES, ROOT, blocks_of
 
 FOLDER = ROOT / "bfsim" / "compiling" / KEPT

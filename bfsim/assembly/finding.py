@@ -18,7 +18,8 @@ from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.places import Places
 from bfsim.kernel.objects.timing import timing_of
-from bfsim.loading import LoadedFirmware, entries_of, kernels_of, written_in_python
+from bfsim.loading.firmware import LoadedFirmware
+from bfsim.loading.kernels import entries_of, kernels_of, written_in_python
 
 AS_IT_IS = "as compiled"
 """In place of a compiler's name, where nothing is known of it."""

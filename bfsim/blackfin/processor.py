@@ -11,7 +11,7 @@ import llvmlite.binding as llvm
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim import machine_code, store
+from bfsim import machine_code
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import runner
@@ -19,6 +19,7 @@ from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUS
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.errors import BfsimError
+from bfsim.files import store
 from bfsim.machine_code import Effort
 from bfsim.machine_code.native_code import native_code
 

@@ -12,7 +12,7 @@ from bfsim.chip.interrupts import SicInterrupt
 from bfsim.cli.options.hardware import SET_OPTION
 from bfsim.errors import ConfigError
 from bfsim.fields import leaves
-from bfsim.terminal import print_report
+from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
     from bfsim.chip.spec import BoardSpec
@@ -38,7 +38,7 @@ def boards(name: str | None, settings: dict[str, str]) -> None:
       bfsim boards cm-bf561 --set sdram.nRP=3 --set pll.ssel=6
     """
     from bfsim.chip.boards import BOARDS
-    from bfsim.hardware import find_board
+    from bfsim.loading.hardware import find_board
     from bfsim.report.board_tables import board_report, boards_report
 
     if name is None:

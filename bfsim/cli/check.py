@@ -14,9 +14,9 @@ from click.core import ParameterSource
 from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import run_and_seen, takes_a_run
 from bfsim.cli.options.sets import takes
-from bfsim.endings import LIMIT_BROKEN
 from bfsim.errors import ConfigError
-from bfsim.terminal import print_report
+from bfsim.process.endings import LIMIT_BROKEN
+from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case, Configuration
@@ -86,7 +86,7 @@ def check(
     from bfsim.checking import arguments_of, require_comparable, require_held
     from bfsim.report.check.history import read_history, trend_table
     from bfsim.report.check.outputs import check_json
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
     cases = _cases(path, _given(what, path.parent), name, update=update)

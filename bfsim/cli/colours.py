@@ -10,8 +10,8 @@ import click
 from bfsim.cli.options.firmware import firmware_option
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.errors import ConfigError, shown
+from bfsim.process.terminal import print_report
 from bfsim.shipped import RECORDING
-from bfsim.terminal import print_report
 
 
 class _Area(click.ParamType[tuple[int, int, int, int]]):

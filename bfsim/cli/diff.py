@@ -13,8 +13,8 @@ import click
 
 from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import run_and_seen, takes_a_run
-from bfsim.terminal import print_report
-from bfsim.watchers import Watchers
+from bfsim.process.terminal import print_report
+from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case
@@ -150,7 +150,7 @@ def _named(text: str) -> tuple[Path, str]:
 
 def _read(text: str, side: Result | Case | dict[str, Any]) -> Iterator[Path | None]:
     """Yield the files that a side is read from."""
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
 
     if isinstance(side, dict):
         yield from files_of_run(side)

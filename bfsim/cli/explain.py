@@ -10,7 +10,7 @@ import click
 
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.running import simulated, takes_a_run, warn
-from bfsim.terminal import print_report
+from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
     from bfsim.trace import RunRecord
@@ -48,7 +48,7 @@ def explain(
       bfsim explain sobel_row --asm --run --frames 2
       bfsim explain my_kernels:convolve --profile gcc-O2 --json
     """
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
 
     require_json_place(json_path, files_of_run(what))
     runs = runs or what["recording"] is not None
@@ -76,8 +76,9 @@ def _explain_code(kernel: str, *, runs: bool, json_path: Path | None, **what: An
     """Print the instructions that the profile's compiler makes of a kernel; return the run, if there was one."""
     from bfsim.assembly import Counting, find_code, listed
     from bfsim.compiling.toolchain import blackfin_compiler
-    from bfsim.hardware import find_profile
-    from bfsim.loading import load_firmware, load_kernel
+    from bfsim.loading.firmware import load_firmware
+    from bfsim.loading.hardware import find_profile
+    from bfsim.loading.kernel_named import load_kernel
     from bfsim.report.assembly_tables import assembly_json, assembly_report
 
     found = load_kernel(kernel, what["firmware"])

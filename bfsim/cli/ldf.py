@@ -12,7 +12,7 @@ from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.cli.options.sizes import Size
-from bfsim.terminal import print_report
+from bfsim.process.terminal import print_report
 
 
 @click.command(short_help="Print where an LDF puts buffers and code.")

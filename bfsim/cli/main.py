@@ -21,7 +21,7 @@ from bfsim.cli.record import record
 from bfsim.cli.run import run
 from bfsim.cli.sweep import sweep
 from bfsim.cli.verify import verify
-from bfsim.endings import exit_code_of
+from bfsim.process.endings import exit_code_of
 
 
 class _Bfsim(click.Group):

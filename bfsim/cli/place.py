@@ -11,7 +11,7 @@ import click
 from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run
 from bfsim.errors import ConfigError
-from bfsim.terminal import print_report
+from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
     from bfsim.trace import RunRecord
@@ -55,7 +55,7 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
     from bfsim.placing.search import place as found_by
     from bfsim.placing.tables import placed_json, placed_report
     from bfsim.report.save import require_apart, require_place, write_text
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
 
     if output:
         require_place(output)

@@ -12,8 +12,8 @@ from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place,
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli.options.timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError, shown
-from bfsim.terminal import print_report
-from bfsim.watchers import Watchers
+from bfsim.process.terminal import print_report
+from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.target import Target
@@ -68,7 +68,7 @@ def profile(
     """
     from bfsim.report.profile.as_json import profile_json
     from bfsim.report.profile.tables import profile_report
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
 
     require_json_place(json_path, (*files_of_run(what), html, trace, flame))
     require_told(target, html, is_json_only=json_path == STDOUT)
@@ -92,7 +92,7 @@ def profile(
 
 def _require_stage(stage: str, firmware: str) -> None:
     """Raise ConfigError unless the firmware has a stage of that name."""
-    from bfsim.loading import load_firmware
+    from bfsim.loading.firmware import load_firmware
     from bfsim.trace import REST
 
     known = [*(each.stage for each in load_firmware(firmware).firmware.rows), REST]

@@ -13,8 +13,8 @@ from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_ru
 from bfsim.cli.options.seen import stages_named, takes_views, watching
 from bfsim.cli.options.timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError
-from bfsim.terminal import print_report
-from bfsim.watchers import Watchers
+from bfsim.process.terminal import print_report
+from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.target import Target
@@ -71,13 +71,13 @@ def run(
       bfsim run drive.mcap --record-work drive.work
       bfsim run drive.mcap --work drive.work --set clocks.cclk_hz=500e6
     """
-    from bfsim.loading import load_firmware
+    from bfsim.loading.firmware import load_firmware
     from bfsim.report.as_json import json_chunks
     from bfsim.report.run_tables import run_report
     from bfsim.report.save import require_apart
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
 
     read = files_of_run(what)
     if what["record_work"]:

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bfsim.endings import MISTAKE
 from bfsim.errors import ConfigError
-from bfsim.signals import interrupted_code
-from bfsim.terminal import print_report, progress_bar
+from bfsim.process.endings import MISTAKE
+from bfsim.process.signals import interrupted_code
+from bfsim.process.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
     from bfsim.report.sweep.plot import Axes

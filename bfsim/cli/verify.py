@@ -9,7 +9,7 @@ import click
 
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.options.running import simulated, takes_a_run
-from bfsim.terminal import print_report
+from bfsim.process.terminal import print_report
 
 
 @click.command(
@@ -44,10 +44,11 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     """
     from bfsim.compiling.object_code import level_of, object_code
     from bfsim.compiling.toolchain import blackfin_compiler
-    from bfsim.hardware import find_profile
-    from bfsim.loading import entries_of, kernels_of, load_firmware, written_in_python
+    from bfsim.loading.firmware import load_firmware
+    from bfsim.loading.hardware import find_profile
+    from bfsim.loading.kernels import entries_of, kernels_of, written_in_python
     from bfsim.report.verification import as_json, verification_report
-    from bfsim.run_inputs import files_of_run
+    from bfsim.running.inputs import files_of_run
     from bfsim.verifying import Sampler
     from bfsim.verifying import verify as verified
 

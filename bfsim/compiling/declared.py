@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
-from bfsim import store
 from bfsim.blackfin.image import Image
 from bfsim.blackfin.prototypes import CPrototype, CType, prototype_of
 from bfsim.errors import KernelError
+from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number

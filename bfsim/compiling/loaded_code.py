@@ -5,11 +5,11 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field
 
-from bfsim import store
 from bfsim.blackfin.image import Image, packed, unpacked
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
+from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject, code_bytes, compiled_object

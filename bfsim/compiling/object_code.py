@@ -8,10 +8,10 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Any
 
-from bfsim import store
 from bfsim.compiling.recipes import Recipe, code_at_hand, code_of, is_shipped
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
+from bfsim.files import store
 from bfsim.kernel import CompilerProfile, Kernel, keys
 from bfsim.kernel.function import Function
 

@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from bfsim import store
 from bfsim.compiling.toolchain import ADVICE, CPU, GCC, Compiler, Toolchain
 from bfsim.errors import ConfigError
+from bfsim.files import store
 
 OPTIONS = ("-std=gnu99", "-g1")
 """-g1: lines, but no word of variables. It changes no code."""

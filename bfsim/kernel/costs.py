@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from bfsim import store
+from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter

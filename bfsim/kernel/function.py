@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
-from bfsim.file_content import lines_of
+from bfsim.files.content import lines_of
 from bfsim.kernel.types import ArrayType, Number, Value
 
 if TYPE_CHECKING:

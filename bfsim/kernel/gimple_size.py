@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 from functools import cache, cached_property
 from math import floor
 
-from bfsim import store
+from bfsim.files import store
 from bfsim.kernel import generic, keys
 from bfsim.kernel.emit import emit_alone
 from bfsim.kernel.function import Function

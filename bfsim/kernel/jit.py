@@ -13,8 +13,9 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim import machine_code, store
+from bfsim import machine_code
 from bfsim.errors import KernelError
+from bfsim.files import store
 from bfsim.kernel import crashes, keys
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costs import Costs, costs_of

@@ -14,7 +14,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from bfsim import machine_code, store
+from bfsim import machine_code
+from bfsim.files import store
 from bfsim.kernel.keys import tools
 
 Function = TypeVar("Function", bound=Callable[..., Any])

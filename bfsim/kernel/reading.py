@@ -15,8 +15,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from bfsim import store
 from bfsim.errors import KernelError
+from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.constants import constant_of, members_of
 from bfsim.kernel.function import Function, Parameter

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from bfsim.errors import KernelError
-from bfsim.file_content import lines_of
+from bfsim.files.content import lines_of
 
 LONGEST_EXCERPT = 100
 """As many characters of a line are shown on either side of the caret."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
-from bfsim import store
+from bfsim.files import store
 from bfsim.kernel import keys
 
 

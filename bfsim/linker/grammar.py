@@ -13,8 +13,8 @@ from lark import Lark, Token, Tree, UnexpectedInput, UnexpectedToken
 from lark.exceptions import VisitError
 from lark.lexer import PatternStr
 
-from bfsim import store
 from bfsim.errors import LinkError, printable
+from bfsim.files import store
 from bfsim.linker.expression_builder import ExpressionBuilder
 from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionError
 from bfsim.linker.source import Source

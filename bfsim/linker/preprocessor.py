@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bfsim.errors import LinkError, cut, shown
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 from bfsim.linker.conditions import holds
 from bfsim.linker.macros import TOKEN, Macro, MacroError, Macros, expand_use
 from bfsim.linker.predefined import chip_in, macros_for

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.garbage import rarely_collected
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
@@ -52,6 +51,7 @@ from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
 from bfsim.machine_code.endless import ended_by_signals
+from bfsim.process.garbage import rarely_collected
 from bfsim.trace import BoardRecord, FrameRecord, Later
 
 

@@ -11,7 +11,7 @@ from bfsim.linker import LinkMap, Placement, Symbol
 from bfsim.machine.memories import Memories
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Main
-from bfsim.once import once
+from bfsim.process.once import once
 from bfsim.trace import CodeRecord
 
 SECTION = "program"  # input section of code, as VisualDSP++ names it

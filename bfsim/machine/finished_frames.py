@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.main_loop import MainLoop
+from bfsim.process.signals import uninterrupted
 from bfsim.seen import Seen
-from bfsim.signals import uninterrupted
 from bfsim.trace import FrameRecord
 
 

@@ -9,8 +9,8 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.finished_frames import FinishedFrames
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import Timeline
+from bfsim.process.signals import uninterrupted
 from bfsim.seen import Seen
-from bfsim.signals import uninterrupted
 from bfsim.spans import Span
 from bfsim.trace import FrameRecord
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 
-from bfsim import machine_code, store
+from bfsim import machine_code
+from bfsim.files import store
 from bfsim.machine_code import Effort
 
 

@@ -10,9 +10,8 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
 
-from bfsim.building import build_for
-from bfsim.hardware import find_board, find_profile
-from bfsim.loading import load_firmware
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.hardware import find_board, find_profile
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.symbols import require_cores, symbols_of
 from bfsim.placing.ldf import LdfWriter
@@ -22,7 +21,8 @@ from bfsim.placing.placed import NEAR_CAMERA, Fill, Placed, PlacedPart, Trial
 from bfsim.placing.reasons import about, accesses_of, cost_ms, reason
 from bfsim.recording import RecordingReader
 from bfsim.report.budget import milliseconds
-from bfsim.run_inputs import calibration_of, read_placement
+from bfsim.running.building import build_for
+from bfsim.running.inputs import calibration_of, read_placement
 from bfsim.shipped import RECORDING
 from bfsim.trace import RunRecord
 

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import IO
 
-from bfsim.drafts import growing_draft
 from bfsim.errors import RecordingError
+from bfsim.files.drafts import growing_draft
 
 
 def growing_file(path: Path) -> AbstractContextManager[IO[bytes]]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from bfsim.errors import RecordingError
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 from bfsim.recording.camera_info import Rig, rig_of
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.import_checks import camera_size, check_call, check_options, check_pair

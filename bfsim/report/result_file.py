@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from bfsim.errors import ConfigError, cut, shown
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 from bfsim.report.as_json import SCHEMA
 from bfsim.report.owners import OwnerFrames, owner_frames
 from bfsim.report.wrong_value import key_of, wrong_value

@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import IO
 
-from bfsim.drafts import growing_draft
 from bfsim.errors import ConfigError
+from bfsim.files.drafts import growing_draft
 
 if sys.platform != "win32":
     import fcntl

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from bfsim.report.jsonable import jsonable
 from bfsim.report.tables import new_table, stacked
-from bfsim.verified import Verification
+from bfsim.trace.verification import Verification
 
 SCHEMA = "bfsim.verify/1"
 MILLION = 1e6
@@ -62,7 +62,7 @@ def _judged(found: Verification) -> str:
 
 
 def as_json(found: Verification) -> str:
-    """Return the comparison as indented JSON; keys are the field names of `bfsim.verified`."""
+    """Return the comparison as indented JSON; keys are the field names of `bfsim.trace.verification`."""
     totals = {
         "signed_error": found.signed_error,
         "error_by_share": found.error_by_share,

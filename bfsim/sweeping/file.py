@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from bfsim.errors import ConfigError, cut, printable, shown
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.check.settings import written
 from bfsim.sweeping.options import SCRIPT, Options, configured, flattened, merged

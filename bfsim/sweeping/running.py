@@ -15,10 +15,9 @@ from typing import Any
 
 from bfsim.checking import arguments_of
 from bfsim.errors import BfsimError, ConfigError, RecordingError, WorkError
-from bfsim.identifying import recording_digest
-from bfsim.loading import load_firmware
-from bfsim.once import Known, remembering
+from bfsim.loading.firmware import load_firmware
 from bfsim.planning import planned
+from bfsim.process.once import Known, remembering
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.result_file import Result
 from bfsim.report.seen_json import SeenStore
@@ -26,6 +25,7 @@ from bfsim.report.sweep.figures import sweep_figures
 from bfsim.report.warnings import warnings_of
 from bfsim.result import Run
 from bfsim.run import simulate
+from bfsim.running.identifying import recording_digest
 from bfsim.trace import Identity, StallReason
 
 PACKAGE = Path(__file__).parent.parent

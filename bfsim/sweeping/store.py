@@ -17,8 +17,8 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
+from bfsim.files.drafts import draft_folder
 from bfsim.report.digest import identity_digest
 from bfsim.report.jsonable import jsonable
 from bfsim.report.save import writing

@@ -14,9 +14,9 @@ from typing import Any, Protocol, TypeVar
 
 from bfsim.checking import arguments_of
 from bfsim.errors import ConfigError
+from bfsim.process.signals import uninterrupted
 from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
-from bfsim.signals import uninterrupted
 from bfsim.sweeping.file import Point, read_sweep
 from bfsim.sweeping.planned import Planned, planned_point
 from bfsim.sweeping.running import Outcome, Work, code_digest, digest_recording, plan_point, run_point

@@ -17,8 +17,8 @@ from threading import Thread
 from typing import Any
 
 from bfsim.errors import BfsimWarning
+from bfsim.files.store import can_keep
 from bfsim.report.check.baseline import Configuration
-from bfsim.store import can_keep
 from bfsim.sweeping.running import Outcome, Work, run_point
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from bfsim.compiling.object_code import ObjectCode
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.kernel import CompilerProfile, Kernel
-from bfsim.verified import Verification, VerifiedKernel
+from bfsim.trace.verification import Verification, VerifiedKernel
 from bfsim.verifying.played import Calls, Played, copied, simulated, translated
 from bfsim.verifying.player import checksum
 from bfsim.verifying.sample import Sample, Sampler

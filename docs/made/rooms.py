@@ -7,6 +7,7 @@ from html import escape
 FLOORS = (
     (
         ("errors", "what goes wrong"),
+        ("files", "the cache"),
         ("clocks", "ticks"),
         ("trace", "records"),
         ("seen", "what a frame showed"),
@@ -14,13 +15,18 @@ FLOORS = (
     (("spans", "the timeline"), ("chip", "data: boards"), ("blackfin", "instructions → native code")),
     (("kernel", "Python → code and cost"), ("linker", "LDF → placement"), ("recording", "frames in and out")),
     (("compiling", "C → object code"), ("machine", "the devices; has SimPy"), ("report", "records → tables")),
-    (("api", "all that firmware imports"), ("loading", "firmware by name"), ("result", "a run with reports")),
     (
-        ("run", "recording + firmware + board + LDF → records"),
+        ("api", "all that firmware imports"),
+        ("loading", "firmware by name"),
+        ("running", "what a run is made of"),
+    ),
+    (("run", "recording + firmware + board + LDF → records"), ("result", "a run with reports")),
+    (
         ("explain", "a kernel line by line"),
         ("assembly", "its instructions"),
+        ("verifying", "beside the real compiler"),
     ),
-    (("sweeping", "many runs"), ("placing", "the best LDF"), ("verifying", "beside the real compiler")),
+    (("sweeping", "many runs"), ("placing", "the best LDF"), ("checking", "a budget of cycles")),
     (("cli", "commands: parse, call, print"),),
 )
 WIDTH, HEIGHT, GAP = 760, 46, 12

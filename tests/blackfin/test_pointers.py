@@ -10,13 +10,14 @@ import pytest
 
 from bfsim.blackfin.decode import decode
 from bfsim.blackfin.origins import Origin, made_by
-from bfsim.building import build_for
 from bfsim.kernel import Kernel
 from bfsim.kernel.access_trace import KIND_BIT, KIND_MASK, LOG, STORE, AccessTrace
 from bfsim.kernel.build import Build
 from bfsim.kernel.profile import DEFAULT
-from bfsim.loading import entries_of, load_firmware
+from bfsim.loading.firmware import load_firmware
+from bfsim.loading.kernels import entries_of
 from bfsim.run import simulate
+from bfsim.running.building import build_for
 from bfsim.shipped import FIRMWARE
 from bfsim.verifying import Sampler
 

@@ -13,7 +13,7 @@ from benchmarks.seen_stereo import SeenStereo, see_stereo
 from benchmarks.table_6_2 import MODES, THESIS, border_lines, measured
 from bfsim.recording import RecordingReader, StereoFrame, StereoGeometry
 from bfsim.recording.scenes import render
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 from tinyphoon.scenes.distances import BOX_DISTANCES
 
 LEFT_MM = 15.0

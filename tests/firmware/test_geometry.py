@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import Calibration, FirmwareError, FrameSize
-from bfsim.assumptions import assumed_geometry, geometry_in_words
 from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
-from bfsim.run_inputs import calibration_of
+from bfsim.running.assumptions import assumed_geometry, geometry_in_words
+from bfsim.running.inputs import calibration_of
 from tests.firmware.whole_pictures import buffer, random_frames, run
 from tinyphoon import one_eye, tinyphoon
 from tinyphoon.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at

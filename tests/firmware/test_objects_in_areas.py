@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bfsim.recording import RecordingReader
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 from bfsim.shipped import RECORDING
 from tests.firmware.object_rig import as_dicts
 from tests.firmware.ordered_modes import run

@@ -13,7 +13,7 @@ import pytest
 from bfsim.api import Core, Firmware
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 from bfsim.shipped import RECORDING
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.pictures import EXTREMES

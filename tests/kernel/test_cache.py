@@ -13,8 +13,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from bfsim import store
 from bfsim.errors import BfsimWarning
+from bfsim.files import store
 from bfsim.kernel import VDSP_O2, Kernel, costing, instrument
 from bfsim.kernel.profile import DEFAULT
 from bfsim.machine_code.caller import caller

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from benchmarks.keep_native import ENTRIES, FOLDER
-from bfsim import kernel, store
+from bfsim import kernel
 from bfsim.errors import BfsimError
+from bfsim.files import store
 from bfsim.kernel.native_sources import source_of
 from tests.kernel.modules import import_text
 

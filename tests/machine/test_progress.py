@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from bfsim.api import FrameSize
 from bfsim.machine.board import Fidelity
-from bfsim.terminal import progress_bar
+from bfsim.process.terminal import progress_bar
 from tests.machine.rig import load, noise, see_all
 
 

@@ -12,9 +12,9 @@ import pytest
 
 from bfsim.api import Buffer, Core, Frame, SpiDevice, SpiMessage, u16
 from bfsim.chip.boards import CM_BF561
-from bfsim.device_script import read_script
 from bfsim.errors import BfsimError, ConfigError, FirmwareError
 from bfsim.run import simulate
+from bfsim.running.device_script import read_script
 from bfsim.trace import BoardRecord
 from tests.machine.kernels import spin
 from tests.machine.made_boards import made_board

@@ -8,7 +8,7 @@ from bfsim.chip.boards import BOARDS
 from bfsim.linker import Symbol
 from bfsim.machine.code import object_file
 from bfsim.placing.model import Model
-from bfsim.run_inputs import read_placement
+from bfsim.running.inputs import read_placement
 
 BOARD = BOARDS["cm-bf561"]
 

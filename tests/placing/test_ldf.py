@@ -14,7 +14,7 @@ from bfsim.placing.ldf import LdfWriter
 from bfsim.placing.measured import Accesses, Measured
 from bfsim.placing.model import Model
 from bfsim.placing.stretches import Level
-from bfsim.run_inputs import read_placement
+from bfsim.running.inputs import read_placement
 
 SIZES = (4, 13, 77, 300, 1024, 2049)
 

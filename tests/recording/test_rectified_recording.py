@@ -15,7 +15,7 @@ from bfsim.cli.main import main
 from bfsim.recording import RecordingReader, RecordingWriter
 from bfsim.recording.planes import YuvPlanes
 from bfsim.run import simulate
-from bfsim.run_inputs import calibration_of
+from bfsim.running.inputs import calibration_of
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.whole_pictures import buffer, check_core, run
 from tests.recording.chessboards import CORNERS, GEOMETRY

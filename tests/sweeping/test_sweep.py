@@ -86,8 +86,9 @@ def test_what_points_have_in_common_is_read_once(tmp_path: Path, monkeypatch: py
 
         monkeypatch.setattr(place, called)
 
-    for each in ("run_inputs.parse_ldf", "hardware.with_settings", "run_inputs.RecordingReader", "room.link"):
-        counted(f"bfsim.{each}")
+    counted("bfsim.loading.hardware.with_settings")
+    for each in ("inputs.parse_ldf", "inputs.RecordingReader", "room.link"):
+        counted(f"bfsim.running.{each}")
     before = {each.point.name: each.identity for each in planned(file).planned}
     assert calls == {"parse_ldf": 2, "with_settings": 3, "RecordingReader": 1, "link": 2}
     mine.write_text(f"{mine.read_text()}\n")

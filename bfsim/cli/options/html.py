@@ -11,7 +11,7 @@ import click
 
 from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
-from bfsim.watchers import Watchers
+from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.target import Target
@@ -79,8 +79,8 @@ def writing_page(
     if path is None:
         yield
         return
-    from bfsim.run_inputs import files_of_run
     from bfsim.run_page import paged, require_page
+    from bfsim.running.inputs import files_of_run
 
     require_page(path, (*files_of_run(what), *others))
     with paged(watchers, path, target, what):

@@ -13,10 +13,10 @@ from bfsim.cli.options.hardware import BOARD_OPTIONS, COMPILER_OPTIONS
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
+from bfsim.process.signals import interrupted_code
+from bfsim.process.terminal import progress_bar
+from bfsim.running.watchers import Watchers, calling
 from bfsim.shipped import LDFS
-from bfsim.signals import interrupted_code
-from bfsim.terminal import progress_bar
-from bfsim.watchers import Watchers, calling
 
 if TYPE_CHECKING:
     from bfsim.report.result_file import Result
@@ -121,7 +121,7 @@ def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any
 
     Ends the command if something interrupts it.
     """
-    from bfsim.loading import load_firmware
+    from bfsim.loading.firmware import load_firmware
     from bfsim.report.result_file import result_of
     from bfsim.report.seen_json import SeenStore
 

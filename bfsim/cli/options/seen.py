@@ -16,7 +16,7 @@ import click
 
 from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError, shown
-from bfsim.watchers import Watchers
+from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.recording.seen_writer import SeenWriter
@@ -143,7 +143,7 @@ def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
     """
     if heat is None:
         return None
-    from bfsim.loading import load_firmware
+    from bfsim.loading.firmware import load_firmware
     from bfsim.report.heat import stages_of
 
     rows = load_firmware(firmware).firmware.rows

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bfsim.cli.options.sets import takes
-from bfsim.watchers import Watchers
+from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.spans import Span

@@ -9,7 +9,7 @@ import click
 
 from bfsim.cli.options.sizes import Size
 from bfsim.cli.record.imported import fitted_text, skipped_texts
-from bfsim.terminal import progress_bar
+from bfsim.process.terminal import progress_bar
 
 if TYPE_CHECKING:
     from bfsim.recording.sources import SourceFormat

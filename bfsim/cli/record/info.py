@@ -11,7 +11,7 @@ import click
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.record.recorded import info_table
 from bfsim.errors import RecordingError
-from bfsim.terminal import print_report, progress_bar
+from bfsim.process.terminal import print_report, progress_bar
 
 
 @click.command(name="info", short_help="Say what is in a recording.")

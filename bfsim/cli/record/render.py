@@ -9,7 +9,7 @@ import click
 
 from bfsim import shipped
 from bfsim.errors import shown
-from bfsim.terminal import progress_bar
+from bfsim.process.terminal import progress_bar
 
 
 class _Distances(click.ParamType[tuple[float, ...]]):
@@ -103,8 +103,8 @@ def render_command(
     force: bool,
 ) -> None:
     """Render one scene, or several."""
+    from bfsim.loading.scenes import load_scenes
     from bfsim.recording import StereoGeometry, scenes
-    from bfsim.scenery import load_scenes
 
     misfit = None
     if distort or turn_right or shift_right:

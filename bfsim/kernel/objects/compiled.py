@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim import store
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
+from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.access_trace import WRITE
 from bfsim.kernel.call_paths import Program

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from bfsim import store
 from bfsim.blackfin.image import Image, Routine
+from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.function import Body, Function, Parameter
 from bfsim.kernel.ir_text import SourceLine

@@ -9,9 +9,9 @@ from functools import partial
 from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING
 
-from bfsim import store
 from bfsim.blackfin.image import Image, Routine
-from bfsim.file_content import lines_of
+from bfsim.files import store
+from bfsim.files.content import lines_of
 from bfsim.kernel import keys
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 
 from bfsim.errors import ConfigError, cut, shown
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 from bfsim.report.check.requirement import MOST_FRAMES, Requirement, parse_requirement
 from bfsim.report.check.settings import leaves, text_of
 from bfsim.report.wrong_value import key_of, wrong_value

@@ -11,7 +11,7 @@ from typing import Any
 from rich.table import Table
 
 from bfsim.errors import ConfigError
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 from bfsim.report.check.judge import Outcome
 from bfsim.report.check.outputs import figures_json
 from bfsim.report.save import alone_in, write_bytes

@@ -10,7 +10,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from bfsim import store
+from bfsim.files import store
 from bfsim.report.budget import budget_of, milliseconds
 from bfsim.report.configuration import configuration_of
 from bfsim.report.html.charts import cycle_stack, frames_a_bar, gantt, part_colours, row_colours, time_series

@@ -14,8 +14,8 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from bfsim.drafts import draft_folder, sweep
 from bfsim.errors import ConfigError
+from bfsim.files.drafts import draft_folder, sweep
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.style import PAPER

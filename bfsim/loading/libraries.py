@@ -13,7 +13,7 @@ import sys
 from itertools import accumulate
 from pathlib import Path
 
-from bfsim.importing import ImportedFile, relative_name
+from bfsim.loading.importing import ImportedFile, relative_name
 
 OURS = "bfsim"
 """Our own package has its version in every identity."""

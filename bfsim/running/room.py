@@ -15,7 +15,7 @@ from bfsim.linker import LinkerScript, LinkMap, link
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.program import Calibration, Firmware, SourcePixels
 from bfsim.machine.symbols import symbols_of
-from bfsim.once import once
+from bfsim.process.once import once
 
 _WIDTH_STEP, _HEIGHT_STEP = 4, 2
 """Of the sizes that are looked at: halves of pictures have whole pairs of pixels, and quarters whole rows."""

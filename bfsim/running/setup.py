@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
-from bfsim.hardware import Found
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
 from bfsim.linker import LinkerScript, LinkMap
-from bfsim.loading import LoadedFirmware
+from bfsim.loading.firmware import LoadedFirmware
+from bfsim.loading.hardware import Found
 from bfsim.machine.board import Fidelity
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.peripherals.device import Device
 from bfsim.machine.program import Calibration, Firmware
 from bfsim.recording import RecordingReader
-from bfsim.room import place
-from bfsim.run_inputs import calibration_of
+from bfsim.running.building import build_for
+from bfsim.running.inputs import calibration_of
+from bfsim.running.room import place
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,19 +10,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bfsim.errors import ConfigError, WorkError, shown
-from bfsim.identifying import DigestedFrames
 from bfsim.kernel import Kernel
-from bfsim.loading import LoadedFirmware, import_more, kernels_of
+from bfsim.loading.firmware import LoadedFirmware
+from bfsim.loading.kernels import kernels_of
+from bfsim.loading.modules import import_more
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
-from bfsim.reading_ahead import read_ahead
+from bfsim.process.reading_ahead import read_ahead
 from bfsim.report.save import growing_file
+from bfsim.running.identifying import DigestedFrames
 from bfsim.trace import Identity
 
 if TYPE_CHECKING:
-    from bfsim.work_file import WorkReader
+    from bfsim.running.work_file import WorkReader
 
 SAME = {
     "recording": "recording",
@@ -86,7 +88,7 @@ def recording_work(
     """
     from bfsim.machine.retiming.recorded_ahead import RecordedAhead  # few runs are recorded
     from bfsim.machine.retiming.recording_core import RecordingCore
-    from bfsim.work_file import WorkWriter
+    from bfsim.running.work_file import WorkWriter
 
     if machine.fidelity is not Fidelity.FAST:
         raise ConfigError(
@@ -130,7 +132,7 @@ def playing_work(
     that cannot be played on this machine.
     """
     from bfsim.machine.retiming.replayed_core import played_again
-    from bfsim.work_file import opened
+    from bfsim.running.work_file import opened
 
     with opened(path) as reader:
         _check(reader, machine, identity, frames.total)

@@ -17,11 +17,13 @@ from types import FunctionType
 from typing import Any
 
 from bfsim import shipped
-from bfsim.importing import ImportedFile, OwnModules, Root, relative_name
 from bfsim.kernel import Kernel
-from bfsim.libraries import add_libraries, imports_of
-from bfsim.loading import SHIPPED, LoadedFirmware, add_files_of_code, entries_of, kernels_of
-from bfsim.locating import located
+from bfsim.loading.firmware import LoadedFirmware
+from bfsim.loading.importing import ImportedFile, OwnModules, Root, relative_name
+from bfsim.loading.kernels import add_files_of_code, entries_of, kernels_of
+from bfsim.loading.libraries import add_libraries, imports_of
+from bfsim.loading.locating import located
+from bfsim.loading.modules import SHIPPED
 from bfsim.machine.peripherals.table import makers_of
 from bfsim.machine.program import Firmware
 

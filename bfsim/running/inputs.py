@@ -10,10 +10,10 @@ from bfsim import shipped
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import LinkError, shown
 from bfsim.linker import LinkerScript, parse_ldf
-from bfsim.locating import file_named
+from bfsim.loading.locating import file_named
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.program import Calibration, SourcePixels
-from bfsim.once import once
+from bfsim.process.once import once
 from bfsim.recording import RecordingReader
 
 

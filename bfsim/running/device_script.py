@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from bfsim.errors import ConfigError, with_article
-from bfsim.file_content import read_bounded
+from bfsim.files.content import read_bounded
 
 
 def _refuse(constant: str) -> Any:

@@ -11,10 +11,10 @@ import llvmlite.binding as llvm
 
 from bfsim import __version__, shipped
 from bfsim.errors import WorkError
-from bfsim.loading import compilers_of
-from bfsim.reading_ahead import read_ahead
+from bfsim.loading.firmware import compilers_of
+from bfsim.process.reading_ahead import read_ahead
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run_setup import FittedFirmware, RunSetup
+from bfsim.running.setup import FittedFirmware, RunSetup
 from bfsim.trace import Identity
 
 

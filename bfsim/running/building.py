@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
 from bfsim.kernel.profile import RUN_AS_COMPILED
-from bfsim.loading import LoadedFirmware, entries_of, kernels_of, written_in_python
+from bfsim.loading.firmware import LoadedFirmware
+from bfsim.loading.importing import OwnModules
+from bfsim.loading.kernels import entries_of, kernels_of, written_in_python
 from bfsim.machine.program import Firmware
-from bfsim.once import once
+from bfsim.process.once import once
 
 NOTHING_AT_HAND = "estimated, for bfin-elf-gcc is not on the PATH"
 

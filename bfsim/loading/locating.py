@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
 from bfsim.errors import FirmwareError, cut, shown
-from bfsim.importing import NEVER_OWN, Root
+from bfsim.loading.importing import NEVER_OWN, Root
 
 
 def parted(name: str, must_be: str) -> tuple[str, str]:

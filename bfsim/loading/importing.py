@@ -22,7 +22,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
 
-from bfsim import store
+from bfsim.files import store
 
 NEVER_OWN = {*sys.stdlib_module_names, "__main__", "bfsim", "llvmlite", "numpy", "scipy", "simpy"}
 """Names of the modules that firmware and bfsim have in common: of a second one of the name, objects would be no objects of the first."""

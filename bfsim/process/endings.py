@@ -14,7 +14,7 @@ from typing import Any
 import click
 
 from bfsim.errors import BfsimError, BfsimWarning
-from bfsim.signals import BY_SIGNAL, interrupted_code
+from bfsim.process.signals import BY_SIGNAL, interrupted_code
 
 LIMIT_BROKEN, MISTAKE = 1, 2
 LONGEST_MESSAGE = 1000

@@ -7,8 +7,8 @@ from typing import TypeGuard
 
 from bfsim import shipped
 from bfsim.errors import RecordingError, shown, with_article
-from bfsim.loading import SHIPPED, import_own
-from bfsim.locating import located
+from bfsim.loading.locating import located
+from bfsim.loading.modules import SHIPPED, import_own
 from bfsim.recording.scenes import Scene, SceneAtDistances, Scenes
 
 

@@ -14,11 +14,11 @@ from bfsim.chip.settings import with_settings
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, FirmwareError, cut
 from bfsim.fields import leaves, require_types
-from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile, profile_named
 from bfsim.kernel.profile import PROFILES
-from bfsim.loading import Kind, Loaded, Wanted, load_named
-from bfsim.once import once
+from bfsim.loading.importing import OwnModules
+from bfsim.loading.named import Kind, Loaded, Wanted, load_named
+from bfsim.process.once import once
 
 BOARD = Kind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS))
 PROFILE = Kind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))

@@ -1,0 +1,63 @@
+"""Importing a module that a user named, with what it imports: once, unless a source of it has changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+from bfsim import shipped
+from bfsim.errors import BfsimError, FirmwareError, cut, shown
+from bfsim.loading.importing import OwnModules, Root
+from bfsim.loading.kernels import add_files_of_code, kernels_of
+from bfsim.loading.libraries import add_libraries
+from bfsim.machine.firmware_lines import line_of
+
+SHIPPED = Root(shipped.FIRMWARE_FOLDER, shipped.FIRMWARE_PACKAGE)
+
+_imported: dict[tuple[str, Root], tuple[ModuleType, OwnModules]] = {}
+
+
+def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
+    """Import a module from `root`, and what it imports of built-in firmware from what is shipped.
+
+    Raises FirmwareError when that fails.
+    """
+    known = _imported.get((module, root))
+    if known and not known[1].changed:
+        return known
+    own = OwnModules((root, SHIPPED))
+    imported = import_more(module, own)
+    add_libraries(own.sources, SHIPPED.folder)
+    add_files_of_code(own, kernels_of(own))
+    _imported[module, root] = imported, own
+    return imported, own
+
+
+def import_more(module: str, own: OwnModules) -> ModuleType:
+    """Import a module among those of a firmware. Raises FirmwareError when that fails."""
+    try:
+        return own.load(module)
+    except BfsimError as error:
+        place = line_of(error)
+        if place.strip(" ()").rpartition(":")[0] in str(error):  # which it names itself
+            raise
+        raise type(error)(f"{error}{place}") from error
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
+            raise FirmwareError(
+                f"the module {shown(module)} must be in {own.roots[0].folder}, but there is none"
+            ) from None
+        raise _failed(module, error) from error
+
+
+def _failed(module: str, error: BaseException) -> FirmwareError:
+    """Say what went wrong while `module` was imported, and on which of its lines."""
+    place = f" ({error.filename}:{error.lineno})" if isinstance(error, SyntaxError) else line_of(error)
+    return FirmwareError(
+        f"importing {cut(module)} failed with {type(error).__name__}: {cut(str(error))}{place}"
+    )
+
+
+def path_of(module: ModuleType) -> Path:
+    """Return the file of a module, or the folder of one that has no file."""
+    return Path(getattr(module, "__file__", None) or next(iter(module.__path__)))
