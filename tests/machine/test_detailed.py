@@ -151,14 +151,14 @@ def test_rows_of_a_picture_are_told_one_by_one() -> None:
 def grants(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, Grant]]:
     """Who had the SDRAM bus, and when, in order."""
     found: list[tuple[int, Grant]] = []
-    serve = SdramArbiter._serve
+    serve = SdramArbiter.serve
 
     def told(self: SdramArbiter, request: Request) -> Grant:
         grant = serve(self, request)
         found.append((request.master, grant))
         return grant
 
-    monkeypatch.setattr(SdramArbiter, "_serve", told)
+    monkeypatch.setattr(SdramArbiter, "serve", told)
     return found
 
 

@@ -1,4 +1,4 @@
-"""What the arbiters of the detailed mode have in common: one transaction of a master at a time.
+"""The arbiter of a memory in the detailed mode: one transaction of a master at a time.
 
 The cores take turns, and their loads go before their stores [assumed].
 """
@@ -6,8 +6,8 @@ The cores take turns, and their loads go before their stores [assumed].
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, Protocol
 
 import simpy
 from simpy.events import EventPriority
@@ -40,19 +40,20 @@ def never() -> bool:
     return False
 
 
-@dataclass(eq=False, slots=True, kw_only=True)
+@dataclass(eq=False, slots=True)
 class Request:
     """A transaction that a master asks for. `owner`: of the memory. `granted` happens with a Grant when it has the bus."""
 
+    granted: simpy.Event
     master: int
     owner: int
-    offset: int = 0
     nbytes: int
-    write: bool = False
+    _: KW_ONLY
+    write: bool
+    offset: int = 0
     is_urgent: Callable[[], bool] = never
     hold_cclk: int = 0
     """How long it holds the port of L2."""
-    granted: simpy.Event
 
 
 def wait_until(env: Simulation, tick: int) -> Generator[simpy.Event, Any, None]:
@@ -71,18 +72,49 @@ def count_bytes(words: Any, master: int, owner: int, nbytes: int, *, write: bool
     words[traffic_at(owner, master) + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
 
 
-class Arbiter:
-    """A memory that serves one transaction at a time: asks wait until it is free, and the best of them has it."""
+class CoreTurns:
+    """How the cores take turns: the one that was served last comes behind the other."""
 
-    def __init__(self, env: Simulation) -> None:
+    def __init__(self) -> None:
+        self._last_core = 1
+
+    def rank(self, master: int) -> tuple[int, ...]:
+        """Return a key by which the master of a core that is served first is the least."""
+        core = CORE_OF[master]
+        return (master in STORES, core == self._last_core, core)
+
+    def count(self, master: int) -> None:
+        """Count a transaction of a master, if it is a core's."""
+        self._last_core = CORE_OF.get(master, self._last_core)
+
+
+class Memory(Protocol):
+    """A memory that serves one transaction at a time."""
+
+    def free_at(self) -> int:
+        """Tick from which the next transaction can be served."""
+
+    def is_held_up(self) -> bool:
+        """Whether the memory does something of its own first."""
+
+    def rank(self, request: Request) -> tuple[int, ...]:
+        """Return a key by which the request that is served first is the least."""
+
+    def serve(self, request: Request) -> Grant:
+        """Do what is asked for, from now on."""
+
+
+class Arbiter:
+    """Whoever asks for a transaction of a memory waits until it is free, and the best of them has it."""
+
+    def __init__(self, env: Simulation, memory: Memory) -> None:
         self._env = env
+        self._memory = memory
         self._requests: list[Request] = []
         self._asked = env.event()
-        self._last_core = 1
-        """The core that was served last: the other one comes first."""
         env.process(self._play())
 
-    def _ask(self, request: Request) -> simpy.Event:
+    def ask(self, request: Request) -> simpy.Event:
         """Ask for a transaction; return the event of its grant."""
         self._requests.append(request)
         if not self._asked.triggered:
@@ -94,13 +126,12 @@ class Arbiter:
             if not self._requests:
                 self._asked = self._env.event()
                 yield self._asked
-            yield self._everybody_asked(self._free_at())
-            if self._is_held_up():
+            yield self._everybody_asked(self._memory.free_at())
+            if self._memory.is_held_up():
                 continue
-            request = min(self._requests, key=self._rank)
+            request = min(self._requests, key=self._memory.rank)
             self._requests.remove(request)
-            self._last_core = CORE_OF.get(request.master, self._last_core)
-            request.granted.succeed(self._serve(request))
+            request.granted.succeed(self._memory.serve(request))
 
     def _everybody_asked(self, tick: int) -> simpy.Event:
         """Return the event at which all have asked that ask until `tick`."""
@@ -108,20 +139,3 @@ class Arbiter:
         event._ok, event._value = True, None  # noqa: SLF001  # as simpy.Timeout does
         self._env.schedule(event, LAST_OF_A_TICK, max(0, tick - self._env.tick))
         return event
-
-    def _free_at(self) -> int:
-        """Tick from which the next transaction can be served."""
-        raise NotImplementedError
-
-    def _is_held_up(self) -> bool:
-        """Whether the memory does something of its own first."""
-        return False
-
-    def _rank(self, request: Request) -> tuple[int, ...]:
-        """Return a key by which the request that is served first is the least."""
-        core = CORE_OF[request.master]
-        return (request.master in STORES, core == self._last_core, core)
-
-    def _serve(self, request: Request) -> Grant:
-        """Let the memory do what is asked for, from now on."""
-        raise NotImplementedError

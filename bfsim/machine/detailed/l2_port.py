@@ -9,12 +9,12 @@ import simpy
 from bfsim.chip.spec import L2Spec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import INTERNAL
-from bfsim.machine.detailed.arbiter import Arbiter, Grant, Request, count_bytes
+from bfsim.machine.detailed.arbiter import Arbiter, CoreTurns, Grant, Request, count_bytes
 from bfsim.machine.detailed.sdram import Page
 from bfsim.machine.simulation import Simulation
 
 
-class L2Port(Arbiter):
+class L2Port:
     """The port of L2 that both cores and the internal DMA share.
 
     XXX: the other DMAs come by a port of their own, 32 bits an SCLK, and meet this one in the sub-banks of L2, which are not
@@ -24,7 +24,9 @@ class L2Port(Arbiter):
     """
 
     def __init__(self, env: Simulation, l2: L2Spec, cclk_ticks: int, words: Any) -> None:
-        super().__init__(env)
+        self._env = env
+        self._arbiter = Arbiter(env, self)
+        self._core_turns = CoreTurns()
         self._words = words
         self._l2 = l2
         self._cclk_ticks = cclk_ticks
@@ -48,28 +50,29 @@ class L2Port(Arbiter):
         return self._ask_for(master, w.NO_BUFFER_IN_L2, 0, times * self._l2.next_cclk, write=False)
 
     def _ask_for(self, master: int, owner: int, nbytes: int, hold_cclk: int, *, write: bool) -> simpy.Event:
-        request = Request(
-            master=master,
-            owner=owner,
-            nbytes=nbytes,
-            write=write,
-            hold_cclk=hold_cclk,
-            granted=self._env.event(),
-        )
-        return self._ask(request)
+        granted = self._env.event()
+        return self._arbiter.ask(Request(granted, master, owner, nbytes, write=write, hold_cclk=hold_cclk))
 
-    def _free_at(self) -> int:
+    def free_at(self) -> int:
+        """Tick from which the next transaction can be served."""
         return self._free
 
-    def _rank(self, request: Request) -> tuple[int, ...]:
+    def is_held_up(self) -> bool:
+        """Whether the memory does something of its own first: it has nothing."""
+        return False
+
+    def rank(self, request: Request) -> tuple[int, ...]:
+        """Return a key by which the request that is served first is the least."""
         if request.master in INTERNAL:
             return (1 if self._imdma_was_last else -1, request.master)
-        return (0, *super()._rank(request))
+        return (0, *self._core_turns.rank(request.master))
 
-    def _serve(self, request: Request) -> Grant:
+    def serve(self, request: Request) -> Grant:
+        """Do what is asked for, from now on."""
         now = self._env.tick
         self._free = now + request.hold_cclk * self._cclk_ticks
         self._imdma_was_last = request.master in INTERNAL
+        self._core_turns.count(request.master)
         if request.nbytes:
             count_bytes(self._words, request.master, request.owner, request.nbytes, write=request.write)
         through = now + self._l2.read_cclk * self._cclk_ticks

@@ -14,16 +14,27 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import PARTNERS, RANKS
-from bfsim.machine.detailed.arbiter import CORE_OF, Arbiter, Grant, Request, count_bytes, never, traffic_at
+from bfsim.machine.detailed.arbiter import (
+    CORE_OF,
+    Arbiter,
+    CoreTurns,
+    Grant,
+    Request,
+    count_bytes,
+    never,
+    traffic_at,
+)
 from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.simulation import Simulation
 
 
-class SdramArbiter(Arbiter):
+class SdramArbiter:
     """The EBIU."""
 
     def __init__(self, env: Simulation, board: BoardSpec, words: Any) -> None:
-        super().__init__(env)
+        self._env = env
+        self._arbiter = Arbiter(env, self)
+        self._core_turns = CoreTurns()
         self._board = board
         self._words = words
         self._banks = SdramBanks(board.sdram, board.clocks)
@@ -42,22 +53,17 @@ class SdramArbiter(Arbiter):
         is_urgent: Callable[[], bool] = never,
     ) -> simpy.Event:
         """Ask for the bus, to move `nbytes` to or from memory of an owner; return the event of its grant."""
-        return self._ask(
-            Request(
-                master=master,
-                owner=owner,
-                offset=offset,
-                nbytes=nbytes,
-                write=write,
-                is_urgent=is_urgent,
-                granted=self._env.event(),
-            )
+        granted = self._env.event()
+        return self._arbiter.ask(
+            Request(granted, master, owner, nbytes, write=write, offset=offset, is_urgent=is_urgent)
         )
 
-    def _free_at(self) -> int:
+    def free_at(self) -> int:
+        """Tick from which the next transaction can be served."""
         return self._banks.command_from
 
-    def _is_held_up(self) -> bool:
+    def is_held_up(self) -> bool:
+        """Whether a refresh comes first."""
         now = self._env.tick
         while self._banks.refresh_due <= now:
             self._banks.refresh()
@@ -66,9 +72,10 @@ class SdramArbiter(Arbiter):
             self._refresh_wait = late
         return late > 0
 
-    def _rank(self, request: Request) -> tuple[int, ...]:
+    def rank(self, request: Request) -> tuple[int, ...]:
+        """Return a key by which the request that is served first is the least."""
         if request.master in CORE_OF:
-            return (True, self._board.dma_over_core, *super()._rank(request))
+            return (True, self._board.dma_over_core, *self._core_turns.rank(request.master))
         against = self._direction_left > 0 and request.write != self._direction
         return (
             not request.is_urgent(),
@@ -77,12 +84,15 @@ class SdramArbiter(Arbiter):
             self._streams.rank(request.master),
         )
 
-    def _serve(self, request: Request) -> Grant:
+    def serve(self, request: Request) -> Grant:
+        """Do what is asked for, from now on."""
         now, banks, write = self._env.tick, self._banks, request.write
         beats = max(1, request.nbytes // self._board.sdram.word_bytes)
         access = banks.issue(now, request.offset, write=write, beats=beats)
         self._count(request, access.page, beats, banks.command_from - now)
-        if request.master not in CORE_OF:
+        if request.master in CORE_OF:
+            self._core_turns.count(request.master)
+        else:
             self._go_on(request)
         refresh_wait, self._refresh_wait = self._refresh_wait, 0
         more = (beats - 1) * self._board.clocks.sclk_ticks
