@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from bfsim.chip.block_spec import CacheSpec, DmaSpec, EventSpec, ExternalSpec, L1Spec, L2Spec
 from bfsim.chip.interrupts import Bf561Interrupt
 from bfsim.chip.memory_map import BF561_REGIONS, CACHE_NBYTES, KIB
-from bfsim.chip.spec import CacheSpec, ChipSpec, DmaSpec, EventSpec, ExternalSpec, L1Spec, L2Spec
+from bfsim.chip.spec import ChipSpec
 
 BF561 = ChipSpec(
     name="ADSP-BF561",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from bfsim.chip.spec import CameraSpec, SensorMode, SensorSpec
+from bfsim.chip.sensor_spec import CameraSpec, SensorMode, SensorSpec
 
 MHZ = 1_000_000
 

@@ -1,4 +1,4 @@
-"""What is known about a chip, an SDRAM part, a sensor and a board: frozen records without behaviour.
+"""What is known about a chip, an SDRAM part and a board: frozen records without behaviour.
 
 Numbers carry their unit in the name: `_cclk` and `_sclk` are cycles of the core and system clock, `n*` are
 SCLK cycles of the SDRAM controller's own registers (EBIU_SDGCTL).
@@ -9,8 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from bfsim.chip.block_spec import CacheSpec, DmaSpec, EventSpec, ExternalSpec, L1Spec, L2Spec
 from bfsim.chip.interrupts import SicInterrupt
 from bfsim.chip.memory_map import Region
+from bfsim.chip.sensor_spec import CameraSpec, SensorSpec
 from bfsim.clocks import Clocks
 from bfsim.errors import ConfigError
 
@@ -61,86 +63,6 @@ class SdramSpec:
     def refresh_interval_sclk(self, sclk_hz: Fraction) -> int:
         """Cycles from one refresh to the next: EBIU_SDRRC of u-boot's formula, plus the cycles it leaves out."""
         return int(sclk_hz * self.refresh_ms / (1000 * self.rows_refreshed))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class L1Spec:
-    """L1 data memory: `subbank_bytes` that take one access a cycle. `conflict_cclk`: what the second one waits."""
-
-    subbank_bytes: int
-    conflict_cclk: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CacheSpec:
-    """A cache in L1: what it takes of each memory that can be cache, and how it is divided.
-
-    `invalidate_cclk`: what the loop that invalidates lines of the data cache takes for each.
-    """
-
-    line_bytes: int
-    data_ways: int
-    data_bytes_per_bank: int
-    code_ways: int
-    code_bytes: int
-    invalidate_cclk: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class L2Spec:
-    """Shared L2: latency of a core's read, and how long each 64 bits hold the port that both cores share."""
-
-    read_cclk: int
-    next_cclk: int
-    port_bytes: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExternalSpec:
-    """A core's way to SDRAM through the EBIU.
-
-    `core_sync_sclk`: what a read takes beside the SDRAM's own cycles, to the bus and back; a store is posted
-    into a buffer of `store_buffer` words.
-    """
-
-    core_sync_sclk: int
-    store_buffer: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DmaSpec:
-    """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element, beside its memory.
-
-    `word_bytes`: width of their buses, and the longest word; `mdma_streams`: memory DMA, of all controllers together.
-    `read_word_sclk`: memory DMA, cycles per word from SDRAM on an open page (to SDRAM it is one);
-    `on_chip_word_sclk`: between L1 and L2; `imdma_word_cclk`: the internal DMA, 0 without one.
-    """
-
-    controllers: int
-    mdma_streams: int
-    word_bytes: int
-    fifo_words: int
-    startup_sclk: int
-    descriptor_sclk: int
-    read_word_sclk: Fraction
-    on_chip_word_sclk: Fraction
-    imdma_word_cclk: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EventSpec:
-    """Interrupts, registers and locks. Entry: from the request to the handler's first line; exit: the way back.
-
-    `mmr_*_cclk`: an access to a register of a device. `testset_cclk`: TESTSET without its memory; `spin_cclk`: a turn
-    of a spin loop without its TESTSET.
-    """
-
-    interrupt_entry_cclk: int
-    interrupt_exit_cclk: int
-    mmr_read_cclk: int
-    mmr_write_cclk: int
-    testset_cclk: int
-    spin_cclk: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -202,91 +124,6 @@ class ChipSpec:
                     f"(CLKIN x {pll.vco_multiplier}, csel {pll.csel}, ssel {pll.ssel})"
                 )
         return clocks
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorMode:
-    """One picture size of a sensor, in PPI_CLK cycles and in lines; two cycles carry one UYVY pixel.
-
-    A line is `line_clocks` cycles, its pixels first and its blanking behind them (HREF, the line sync, rises
-    with the first pixel). A frame is `frame_lines` lines: `lines_before` blank ones from the frame sync on,
-    the picture, and the blank rest.
-    """
-
-    width_px: int
-    height_px: int
-    ppi_clk_hz: Fraction
-    line_clocks: int
-    frame_lines: int
-    lines_before: int
-
-    @property
-    def active_clocks(self) -> int:
-        """PPI_CLK cycles of a line that carry pixels."""
-        return 2 * self.width_px
-
-    @property
-    def blank_lines(self) -> int:
-        """Lines of a frame without a picture: the vertical blanking."""
-        return self.frame_lines - self.height_px
-
-    @property
-    def frame_clocks(self) -> int:
-        """PPI_CLK cycles of a frame."""
-        return self.line_clocks * self.frame_lines
-
-    @property
-    def frame_hz(self) -> Fraction:
-        """Frames per second."""
-        return self.ppi_clk_hz / self.frame_clocks
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorSpec:
-    """A camera with a UYVY output of two PPI_CLK cycles a pixel."""
-
-    name: str
-    modes: tuple[SensorMode, ...]
-
-    def mode(self, width_px: int, height_px: int) -> SensorMode:
-        """Return the mode of that size.
-
-        A size that the sensor does not have is timed like its largest mode: the same blanking in proportion, and
-        the same frame rate. That is an assumption for pictures of other cameras, not a property of the sensor.
-        """
-        for each in self.modes:
-            if (each.width_px, each.height_px) == (width_px, height_px):
-                return each
-        full = max(self.modes, key=lambda each: each.width_px)
-        line_clocks = -(-full.line_clocks * width_px // full.width_px)
-        frame_lines = -(-full.frame_lines * height_px // full.height_px)
-        return SensorMode(
-            width_px=width_px,
-            height_px=height_px,
-            ppi_clk_hz=full.frame_hz * line_clocks * frame_lines,
-            line_clocks=line_clocks,
-            frame_lines=frame_lines,
-            lines_before=full.lines_before * (frame_lines - height_px) // full.blank_lines,
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CameraSpec:
-    """What is a camera's own, beside the sensor in it: its oscillator, and how it settles after new settings.
-
-    The oscillator runs `offset_ppm` millionths fast (below 0: slow), and its first frame sync comes
-    `phase_frames` (0 to 1) of a frame after the board's start. After a change of its settings the next
-    `settling_frames` pictures are off: for each frame left to go they are `y_step_256ths` / 256 too bright, and
-    their U and V differ by `u_step_levels` and `v_step_levels`.
-    """
-
-    name: str
-    offset_ppm: Fraction
-    phase_frames: Fraction
-    settling_frames: int
-    y_step_256ths: int
-    u_step_levels: int
-    v_step_levels: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from bfsim.seen.features import (
-    CAMERAS,
+from bfsim.seen.frame import CAMERAS, Seen, SeenFrame
+from bfsim.seen.in_pictures import (
     Colour,
     Point,
-    PointMm,
-    Seen,
     SeenArrow,
     SeenBlob,
     SeenCircle,
     SeenEdges,
-    SeenEdges3D,
-    SeenFrame,
-    SeenGeometry,
     SeenHeat,
     SeenLine,
-    SeenLine3D,
     SeenLoss,
     SeenMap,
-    SeenObject,
     SeenRectangle,
     SeenText,
-    Solid,
     no_edges,
-    no_edges_3d,
 )
+from bfsim.seen.in_space import PointMm, SeenEdges3D, SeenGeometry, SeenLine3D, SeenObject, Solid, no_edges_3d
 from bfsim.seen.naming import NamedColour, PictureColours
 
 __all__ = [

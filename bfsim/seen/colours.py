@@ -6,7 +6,8 @@ import colorsys
 import math
 from dataclasses import dataclass
 
-from bfsim.seen.features import Colour, SeenFrame
+from bfsim.seen.frame import SeenFrame
+from bfsim.seen.in_pictures import Colour
 
 EDGE: Colour = (64, 205, 215)
 LINE: Colour = (255, 92, 205)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from bfsim.seen.features import SeenHeat
+from bfsim.seen.in_pictures import SeenHeat
 
 SHARE = 0.55
 """Of the colour over the picture."""

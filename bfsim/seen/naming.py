@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.seen.features import Colour
+from bfsim.seen.in_pictures import Colour
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from bfsim.chip.bf561 import BF561
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.chip.memory_map import MIB, Region
+from bfsim.chip.sensor_spec import CameraSpec
 from bfsim.chip.sensors import MHZ, OV9650
-from bfsim.chip.spec import BoardSpec, CameraSpec, Pll
+from bfsim.chip.spec import BoardSpec, Pll
 from bfsim.errors import ConfigError
 
 each_board = pytest.mark.parametrize("board", BOARDS.values(), ids=list(BOARDS))

@@ -8,6 +8,7 @@ import pytest
 
 from bfsim.chip.boards import BOARDS
 from bfsim.chip.ppi_registers import check_ppi_clk
+from bfsim.chip.sensor_spec import CameraSpec, SensorMode, SensorSpec
 from bfsim.chip.sensors import (
     LEFT_CAMERA,
     OV7648,
@@ -19,7 +20,6 @@ from bfsim.chip.sensors import (
     RIGHT_CAMERA,
     SENSORS,
 )
-from bfsim.chip.spec import CameraSpec, SensorMode, SensorSpec
 
 EVERY_MODE = [
     pytest.param(mode, id=f"{sensor.name.split()[-1]}-{mode.width_px}")

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, PpiStatusBit, i32
 from bfsim.chip.boards import CM_BF561, board_named
+from bfsim.chip.sensor_spec import SensorMode, SensorSpec
 from bfsim.chip.sensors import LEFT_CAMERA, MHZ, RIGHT_CAMERA
-from bfsim.chip.spec import BoardSpec, SensorMode, SensorSpec
+from bfsim.chip.spec import BoardSpec
 from bfsim.clocks import Clocks
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.cameras.oscillator import Oscillator

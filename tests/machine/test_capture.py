@@ -16,7 +16,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from bfsim.chip.spec import SensorMode, SensorSpec
+from bfsim.chip.sensor_spec import SensorMode, SensorSpec
 from bfsim.clocks import Clocks
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Capture, Feed, Pair

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from bfsim.chip.sensor_spec import CameraSpec
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
-from bfsim.chip.spec import CameraSpec
 from bfsim.machine.cameras.settling import CameraSettings, Settling, settled
 
 SETTINGS = CameraSettings(exposure_lines=200, gain=16, red_gain=128, blue_gain=128)

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from bfsim.chip.block_spec import CacheSpec
 from bfsim.chip.memory_map import Region
-from bfsim.chip.spec import CacheSpec
 from bfsim.errors import FirmwareError, LinkError
 from bfsim.kernel.access_trace import MAX_REGIONS, CachedRegion, CacheSize, Policy
 from bfsim.linker import LinkMap

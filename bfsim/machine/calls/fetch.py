@@ -13,7 +13,7 @@ from itertools import chain, repeat
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.chip.spec import CacheSpec
+from bfsim.chip.block_spec import CacheSpec
 from bfsim.kernel import Work
 from bfsim.kernel.access_trace import FUNCTION, AccessTrace
 from bfsim.kernel.counters import Counter

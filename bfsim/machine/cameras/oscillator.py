@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from bfsim.chip.spec import CameraSpec, SensorMode
+from bfsim.chip.sensor_spec import CameraSpec, SensorMode
 from bfsim.clocks import Clocks, PeriodicEdges
 
 

@@ -10,7 +10,8 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.chip.ppi_registers import check_ppi_clk
-from bfsim.chip.spec import BoardSpec, CameraSpec, SensorMode
+from bfsim.chip.sensor_spec import CameraSpec, SensorMode
+from bfsim.chip.spec import BoardSpec
 from bfsim.clocks import PeriodicEdges
 from bfsim.errors import ConfigError, FirmwareError
 from bfsim.kernel.types import u8

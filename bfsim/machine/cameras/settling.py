@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.chip.spec import CameraSpec
+from bfsim.chip.sensor_spec import CameraSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 import simpy
 
+from bfsim.chip.block_spec import EventSpec
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
-from bfsim.chip.spec import EventSpec
 from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
 from bfsim.kernel.access_trace import AccessTrace

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import simpy
 
-from bfsim.chip.spec import EventSpec
+from bfsim.chip.block_spec import EventSpec
 from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.work import UNYIELDED

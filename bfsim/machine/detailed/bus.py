@@ -9,7 +9,8 @@ from typing import Any
 
 import simpy
 
-from bfsim.chip.spec import BoardSpec, L2Spec
+from bfsim.chip.block_spec import L2Spec
+from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus_records import BusRecords
 from bfsim.machine.bus.core_calls import CoreCalls

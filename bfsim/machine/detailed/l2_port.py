@@ -6,7 +6,7 @@ from typing import Any
 
 import simpy
 
-from bfsim.chip.spec import L2Spec
+from bfsim.chip.block_spec import L2Spec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import INTERNAL
 from bfsim.machine.detailed.arbiter import Arbiter, CoreTurns, Grant, Request, count_bytes

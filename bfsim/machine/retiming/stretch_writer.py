@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.chip.spec import EventSpec
+from bfsim.chip.block_spec import EventSpec
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
