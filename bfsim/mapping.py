@@ -14,7 +14,7 @@ from bfsim.loading.hardware import find_board, find_profile
 from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.program import Calibration, Firmware
 from bfsim.machine.symbols import PROCESSORS, symbols_of
-from bfsim.report.ldf.map import Kind, MemoryMap
+from bfsim.report.ldf.map import ContentKind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 from bfsim.running.building import build_for
 from bfsim.running.inputs import read_placement
@@ -90,7 +90,7 @@ def _memories(script: LinkerScript, spec: BoardSpec) -> BoardMemories:
     return BoardMemories(board=script.chip, regions=(), bank_bytes=spec.sdram.bank_bytes)
 
 
-def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], Kind]:
+def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], ContentKind]:
     """Return what each buffer is; what else the linker places is code."""
     return {
         (PROCESSORS[owner], each.name): _kind(each, firmware.camera)
@@ -99,9 +99,9 @@ def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], 
     }
 
 
-def _kind(buffer: Buffer, camera: str) -> Kind:
+def _kind(buffer: Buffer, camera: str) -> ContentKind:
     if buffer.name == camera:
-        return Kind.CAMERA
+        return ContentKind.CAMERA
     if buffer.values is not None:
-        return Kind.TABLE
-    return Kind.LINES if buffer.rows > 1 else Kind.ROW
+        return ContentKind.TABLE
+    return ContentKind.LINES if buffer.rows > 1 else ContentKind.ROW

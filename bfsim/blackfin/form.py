@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from string import Formatter
 
-from bfsim.blackfin.operands import KINDS, NUMBER, Kind, Operand
+from bfsim.blackfin.operands import KINDS, NUMBER, Operand, OperandKind
 
 Given = Mapping[str, int | str]
 
@@ -48,7 +48,7 @@ class Form:
     """An encoding is of this form if its bits in `mask` are those of `match`."""
     fields: Mapping[str, tuple[int, ...]] = field(init=False)
     """Of each letter the places of its bits, most significant first; place 0 is the least significant of the encoding."""
-    kinds: Mapping[str, Kind] = field(init=False)
+    kinds: Mapping[str, OperandKind] = field(init=False)
 
     def __post_init__(self) -> None:
         bits = self.bits.replace(" ", "")
@@ -82,7 +82,7 @@ class Form:
         return found if self.only is None or self.only(**found) else None
 
 
-def _kinds(text: str) -> Iterator[tuple[str, Kind]]:
+def _kinds(text: str) -> Iterator[tuple[str, OperandKind]]:
     for _, letter, kind, _ in Formatter().parse(text):
         if letter and kind:
             yield letter, KINDS[kind]

@@ -22,7 +22,7 @@ from bfsim.blackfin.relocations import (
     OPERATIONS,
     PUSH,
     PUSH_CONSTANT,
-    Kind,
+    RelocationKind,
 )
 from bfsim.errors import KernelError, cut
 
@@ -151,7 +151,7 @@ def _routines(file: ObjectFile, places: tuple[int, ...]) -> tuple[Routine, ...]:
 def _pointers(file: ObjectFile, places: tuple[int, ...]) -> Iterator[int]:
     """Yield what words of memory hold the addresses of code."""
     for each in file.relocations:
-        if each.kind == Kind.WORD and file.sections[each.section].use is not Use.NOTES:
+        if each.kind == RelocationKind.WORD and file.sections[each.section].use is not Use.NOTES:
             symbol = file.symbols[each.symbol]
             if symbol.section is not None and file.sections[symbol.section].use is Use.CODE:
                 yield _value(symbol, file, places) + each.addend
@@ -195,7 +195,7 @@ def _apply(
     """Write the value of one relocation into the contents of its section."""
     section, body = file.sections[each.section], contents[each.section]
     kind = each.kind
-    if kind not in set(Kind):
+    if kind not in set(RelocationKind):
         if section.use is Use.NOTES:
             return  # what compilers of others note
         what = (
@@ -204,7 +204,7 @@ def _apply(
             else "are not for plain programs"
         )
         raise _refused(file, section, each, f"relocations of the type 0x{kind:02X} {what}")
-    field = FIELDS[Kind(kind)]
+    field = FIELDS[RelocationKind(kind)]
     at = each.offset - field.before
     if not 0 <= at <= len(body) - field.nbytes:
         raise _refused(file, section, each, "that is outside of the section")

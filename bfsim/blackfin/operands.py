@@ -17,64 +17,66 @@ def number_text(value: Operand) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class OperandKind:
     """`value`: of the bits of a field, in an instruction at an address; None where they mean nothing. `text`: of the value."""
 
     value: Callable[[int, int], Operand | None]
     text: Callable[[Operand], str] = number_text
 
 
-NUMBER = Kind(lambda raw, _: raw)
+NUMBER = OperandKind(lambda raw, _: raw)
 
 
-def signed(bits: int, scale: int = 1) -> Kind:
+def signed(bits: int, scale: int = 1) -> OperandKind:
     """Return the kind of a two's complement number, times `scale`."""
-    return Kind(lambda raw, _: _signed(raw, bits) * scale)
+    return OperandKind(lambda raw, _: _signed(raw, bits) * scale)
 
 
-def unsigned(scale: int = 1) -> Kind:
+def unsigned(scale: int = 1) -> OperandKind:
     """Return the kind of a number, times `scale`."""
-    return Kind(lambda raw, _: raw * scale)
+    return OperandKind(lambda raw, _: raw * scale)
 
 
-def decimal(kind: Kind) -> Kind:
+def decimal(kind: OperandKind) -> OperandKind:
     """Return a kind that is printed in decimal."""
-    return Kind(kind.value, str)
+    return OperandKind(kind.value, str)
 
 
-def register(names: Sequence[str]) -> Kind:
+def register(names: Sequence[str]) -> OperandKind:
     """Return the kind of a register by its number; an empty name is reserved."""
-    return Kind(lambda raw, _: (names[raw] or None) if raw < len(names) else None)
+    return OperandKind(lambda raw, _: (names[raw] or None) if raw < len(names) else None)
 
 
-def target(bits: int, *, forward: bool = False) -> Kind:
+def target(bits: int, *, forward: bool = False) -> OperandKind:
     """Return the kind of an address in code, as its distance from the instruction in halfwords."""
-    return Kind(lambda raw, address: address + 2 * (raw if forward else _signed(raw, bits)) & 0xFFFFFFFF)
+    return OperandKind(
+        lambda raw, address: address + 2 * (raw if forward else _signed(raw, bits)) & 0xFFFFFFFF
+    )
 
 
-def option(*texts: str) -> Kind:
+def option(*texts: str) -> OperandKind:
     """Return the kind of a number that is printed as one of `texts`; there is none for more."""
-    return Kind(lambda raw, _: raw if raw < len(texts) else None, lambda value: texts[int(value)])
+    return OperandKind(lambda raw, _: raw if raw < len(texts) else None, lambda value: texts[int(value)])
 
 
-def shift(*, right: bool) -> Kind:
+def shift(*, right: bool) -> OperandKind:
     """Return the kind of a shift of six bits, positive to the left, of which objdump prints the other sign if it is to the right."""
-    return Kind(
+    return OperandKind(
         lambda raw, _: _signed(raw, 6), lambda count: number_text((-int(count) if right else int(count)) & 63)
     )
 
 
-def mode(*left_out: str, mixed: str = "") -> Kind:
+def mode(*left_out: str, mixed: str = "") -> OperandKind:
     """Return the kind of a multiplication's mode, a name; `mixed` is printed before it."""
 
     def text(name: Operand) -> str:
         names = ", ".join(filter(None, (mixed, str(name))))
         return f" ({names})" if names else ""
 
-    return Kind(lambda raw, _: None if MODES.get(raw) in left_out else MODES.get(raw), text)
+    return OperandKind(lambda raw, _: None if MODES.get(raw) in left_out else MODES.get(raw), text)
 
 
-def crossing(scale: str = "") -> Kind:
+def crossing(scale: str = "") -> OperandKind:
     """Return the kind of the options of a vector sum: 1 exchanges its halves, 2 saturates; `scale` is printed behind."""
     names = (", ".join(filter(None, (each, scale))) for each in ("", "CO", "S", "SCO"))
     return option(*(f" ({each})" if each else "" for each in names))
@@ -111,14 +113,14 @@ KINDS = {
     "imm16": signed(16),
     "imm16x2": signed(16, 2),
     "imm16x4": signed(16, 4),
-    "frame": Kind(lambda raw, _: 4 * (raw - 32)),
+    "frame": OperandKind(lambda raw, _: 4 * (raw - 32)),
     "target4": target(4, forward=True),
     "target10": target(10),
     "target12": target(12),
     "target24": target(24),
     "end10": target(10, forward=True),
     "even": register(("R0", "R2", "R4", "R6")),
-    "odd": Kind(register(("R0", "R2", "R4", "R6")).value, lambda even: f"R{int(str(even)[1]) + 1}"),
+    "odd": OperandKind(register(("R0", "R2", "R4", "R6")).value, lambda even: f"R{int(str(even)[1]) + 1}"),
     "pair": register(("R1:0", "", "R3:2", "", "", "", "", "")),
     "half": option("L", "H"),
     "sign": option("+", "-"),
@@ -133,7 +135,7 @@ KINDS = {
     "end": option("LO", "HI"),
     "comparison": register(("GT", "GE", "LT", "LE")),
     "right": shift(right=True),
-    "right5": Kind(shift(right=True).value, lambda count: number_text(_signed(-int(count) & 31, 5))),
+    "right5": OperandKind(shift(right=True).value, lambda count: number_text(_signed(-int(count) & 31, 5))),
     "left": shift(right=False),
     "mixed": option("", " (M)"),
     "mode": mode("W32"),

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 
-class Kind(IntEnum):
+class RelocationKind(IntEnum):
     """Types of relocations that assemblers make for programs without position-independent code, by their ELF numbers."""
 
     LOOP_BEGIN = 0x01
@@ -35,7 +35,7 @@ class Kind(IntEnum):
 
 
 SECOND_HALF = {
-    Kind.IMMEDIATE_16, Kind.LOW_HALF, Kind.HIGH_HALF, Kind.JUMP_X, Kind.CALL_OR_JUMP_24, Kind.JUMP_L, Kind.CALL_X,
+    RelocationKind.IMMEDIATE_16, RelocationKind.LOW_HALF, RelocationKind.HIGH_HALF, RelocationKind.JUMP_X, RelocationKind.CALL_OR_JUMP_24, RelocationKind.JUMP_L, RelocationKind.CALL_X,
 }  # fmt: skip
 """Those that point to the second half of an instruction, or [seen] in object files of VisualDSP++ 5 to its first one."""
 HALF_BYTES = 2
@@ -74,18 +74,18 @@ class RelocatedField:
 LONG = RelocatedField(nbytes=4, bits=24, shift=1, relative=True, before=2)
 """The address of a long jump or a call."""
 
-FIELDS: dict[Kind, RelocatedField] = {
-    Kind.LOOP_BEGIN: RelocatedField(2, 4, shift=1, relative=True, forward=True),
-    Kind.LOOP_END: RelocatedField(4, 10, shift=1, relative=True, before=2, forward=True, over=16),
-    Kind.IF_CC_JUMP: RelocatedField(2, 10, shift=1, relative=True),
-    Kind.JUMP: RelocatedField(2, 12, shift=1, relative=True),
-    Kind.JUMP_S: RelocatedField(2, 12, shift=1, relative=True),
-    Kind.JUMP_X: LONG, Kind.CALL_OR_JUMP_24: LONG, Kind.JUMP_L: LONG, Kind.CALL_X: LONG,
-    Kind.IMMEDIATE_16: RelocatedField(2, 16),
-    Kind.LOW_HALF: RelocatedField(2, 16, is_part=True),
-    Kind.HIGH_HALF: RelocatedField(2, 16, shift=16, is_part=True),
-    Kind.BYTE: RelocatedField(1, 8),
-    Kind.HALFWORD: RelocatedField(2, 16),
-    Kind.WORD: RelocatedField(4, 32, is_part=True),
-    Kind.DEBUG_WORD: RelocatedField(4, 32, is_part=True),
+FIELDS: dict[RelocationKind, RelocatedField] = {
+    RelocationKind.LOOP_BEGIN: RelocatedField(2, 4, shift=1, relative=True, forward=True),
+    RelocationKind.LOOP_END: RelocatedField(4, 10, shift=1, relative=True, before=2, forward=True, over=16),
+    RelocationKind.IF_CC_JUMP: RelocatedField(2, 10, shift=1, relative=True),
+    RelocationKind.JUMP: RelocatedField(2, 12, shift=1, relative=True),
+    RelocationKind.JUMP_S: RelocatedField(2, 12, shift=1, relative=True),
+    RelocationKind.JUMP_X: LONG, RelocationKind.CALL_OR_JUMP_24: LONG, RelocationKind.JUMP_L: LONG, RelocationKind.CALL_X: LONG,
+    RelocationKind.IMMEDIATE_16: RelocatedField(2, 16),
+    RelocationKind.LOW_HALF: RelocatedField(2, 16, is_part=True),
+    RelocationKind.HIGH_HALF: RelocatedField(2, 16, shift=16, is_part=True),
+    RelocationKind.BYTE: RelocatedField(1, 8),
+    RelocationKind.HALFWORD: RelocatedField(2, 16),
+    RelocationKind.WORD: RelocatedField(4, 32, is_part=True),
+    RelocationKind.DEBUG_WORD: RelocatedField(4, 32, is_part=True),
 }  # fmt: skip

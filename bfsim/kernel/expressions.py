@@ -1,7 +1,6 @@
 """Expressions of the kernel language: Python AST → typed tree.
 
-All integer arithmetic is 32 bits wide and wraps. An int literal takes the type of the other side; mixing i32
-and u32 is refused, because C and Python disagree about what it means, and so is mixing integers and floats,
+All integer arithmetic is 32 bits wide and wraps; see `conversions` for what goes with what. Mixing integers and floats is refused,
 because the conversion is a call that should be seen.
 """
 
@@ -12,18 +11,17 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bfsim.kernel import tree
+from bfsim.kernel.conversions import as_number, as_type, common_type, refuse_nothing
 from bfsim.kernel.names import Names
 from bfsim.kernel.operators import ALIKE, BINARY, COMPARE, DIVISIONS, FOLD, ON_FLOATS, in_words
 from bfsim.kernel.types import (
     BOOL,
-    PAIR,
     FloatType,
     IntType,
     Number,
     f32,
     i32,
     promoted,
-    u32,
 )
 
 
@@ -50,8 +48,8 @@ class Expressions(Names):
         """Read an expression that must be an integer; a literal becomes `wanted`, anything else must be it."""
         result = self.expression(node)
         if isinstance(result.type, IntType):
-            return self._as_type(node, result, wanted)
-        self._as_number(node, result)
+            return as_type(self.source, node, result, wanted)
+        as_number(self.source, node, result)
         self.source.refuse(
             node, "an integer is needed here, not an f32", "write i32(...) around it: it rounds to 0"
         )
@@ -60,7 +58,7 @@ class Expressions(Names):
         """Read an expression that must be a number, of type `wanted` if that is given."""
         if isinstance(wanted, IntType):
             return self.integer(node, wanted)
-        result = self._as_number(node, self.expression(node))
+        result = as_number(self.source, node, self.expression(node))
         if wanted is None or isinstance(result.type, FloatType):
             return result
         instead = "write f32(...) around it: a call"
@@ -68,51 +66,16 @@ class Expressions(Names):
             instead = f"write {result.value}.0"
         self.source.refuse(node, f"f32 is needed here, not {result.type}", instead)
 
-    def _as_number(self, node: ast.expr, value: tree.Expr) -> tree.Expr:
-        if isinstance(value.type, (IntType, FloatType)):
-            return value
-        self._refuse_nothing(node, value)
-        self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
-
     def condition(self, node: ast.expr) -> tree.Expr:
         """Read an expression as a truth value; an integer counts as `!= 0`, and so does one beside `and` or `or`."""
         result = self._joined(node, self.condition) if isinstance(node, ast.BoolOp) else self.expression(node)
         if isinstance(result.type, IntType):
             zero = tree.Const(0, result.type, result.line)
             return tree.Compare("!=", result, zero, BOOL, result.line)
-        self._refuse_nothing(node, result)
+        refuse_nothing(self.source, node, result)
         if isinstance(result.type, FloatType):
             self.source.refuse(node, "an f32 is no truth value", "write `x != 0.0`")
         return result
-
-    def _refuse_nothing(self, node: ast.expr, value: tree.Expr) -> None:
-        if value.type is PAIR:
-            self.source.refuse(
-                node, "this intrinsic has two results", "assign them first: `upper, lower = ...`"
-            )
-        if value.type is None:
-            self.source.refuse(node, "this kernel returns nothing", "call it on a line of its own")
-
-    def _as_type(self, node: ast.expr, value: tree.Expr, wanted: IntType | None) -> tree.Expr:
-        if wanted is None or value.type is wanted:
-            return value
-        if isinstance(value, tree.Const) and isinstance(value.value, int):
-            low, high = wanted.bounds
-            if not low <= value.value <= high:
-                self.source.refuse(
-                    node,
-                    f"{value.value} does not fit in {wanted}",
-                    f"use a value in {low}..{high} or another type",
-                )
-            return replace(value, type=wanted)
-        if isinstance(value, tree.Choose) and _is_of_source(value):
-            yes, no = (self._as_type(node, each, wanted) for each in (value.yes, value.no))
-            return replace(value, yes=yes, no=no, type=wanted)
-        self.source.refuse(
-            node,
-            f"{wanted} is needed here, not {value.type}",
-            f"write {wanted}(...) around it if that is meant",
-        )
 
     def _binop(self, node: ast.BinOp) -> tree.Expr:
         op = BINARY.get(type(node.op))
@@ -141,8 +104,11 @@ class Expressions(Names):
             self.source.refuse(right_node, "the division is by zero", "divide by something else")
         if _are_ints(left, right):
             return self._folded(node, op, left, right)
-        kind = self._common_type(right_node, left, right)
-        left, right = self._as_type(left_node, left, kind), self._as_type(right_node, right, kind)
+        kind = common_type(self.source, right_node, left, right)
+        left, right = (
+            as_type(self.source, left_node, left, kind),
+            as_type(self.source, right_node, right, kind),
+        )
         return tree.Binary(op, left, right, kind, node.lineno)
 
     def _folded(self, node: ast.expr, op: str, left: tree.Expr, right: tree.Expr) -> tree.Expr:
@@ -172,28 +138,17 @@ class Expressions(Names):
         self, left_node: ast.expr, left: tree.Expr, right_node: ast.expr, right: tree.Expr
     ) -> tuple[tree.Expr, tree.Expr, Number]:
         """Both sides of a comparison or a choice in one type."""
-        left, right = self._as_number(left_node, left), self._as_number(right_node, right)
+        left, right = as_number(self.source, left_node, left), as_number(self.source, right_node, right)
         if f32 in (left.type, right.type):
             if left.type is not right.type:
                 self._float_arithmetic(right_node, "", left, right)
             return left, right, f32
-        kind = self._common_type(right_node, left, right)
-        return self._as_type(left_node, left, kind), self._as_type(right_node, right, kind), kind
-
-    def _common_type(self, right_node: ast.expr, left: tree.Expr, right: tree.Expr) -> IntType:
-        assert isinstance(left.type, IntType)
-        assert isinstance(right.type, IntType)
-        if _is_of_source(left) and _is_of_source(right):
-            return u32 if u32 in (left.type, right.type) else i32
-        if _is_of_source(left):
-            return right.type
-        if not _is_of_source(right) and left.type is not right.type:
-            self.source.refuse(
-                right_node,
-                f"the two sides are {left.type} and {right.type}",
-                "write i32(...) or u32(...) around one of them",
-            )
-        return left.type
+        kind = common_type(self.source, right_node, left, right)
+        return (
+            as_type(self.source, left_node, left, kind),
+            as_type(self.source, right_node, right, kind),
+            kind,
+        )
 
     def _unaryop(self, node: ast.UnaryOp) -> tree.Expr:
         if isinstance(node.op, ast.Not):
@@ -258,7 +213,7 @@ class Expressions(Names):
     def _truth_value(self, node: ast.expr) -> tree.Expr:
         result = self.expression(node)
         if result.type is not BOOL:
-            self._refuse_nothing(node, result)
+            refuse_nothing(self.source, node, result)
             self.source.refuse(
                 node,
                 "`and` and `or` give truth values, not numbers, outside of a condition",
@@ -318,13 +273,6 @@ class Expressions(Names):
                 f"write {name}[len({name}) - {-index.value}] for the end",
             )
         return index
-
-
-def _is_of_source(value: tree.Expr) -> bool:
-    """Whether a value is an integer of the source, or a choice of two: it takes the type that is wanted."""
-    if isinstance(value, tree.Choose):
-        return _is_of_source(value.yes) and _is_of_source(value.no)
-    return isinstance(value, tree.Const) and isinstance(value.value, int)
 
 
 def _are_ints(*values: tree.Expr) -> bool:

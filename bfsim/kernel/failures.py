@@ -8,7 +8,7 @@ from bfsim.errors import KernelError
 from bfsim.kernel import tree
 from bfsim.kernel.emit import Sites, sites_of
 from bfsim.kernel.function import Function
-from bfsim.kernel.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, Place
+from bfsim.kernel.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, SourcePlace
 from bfsim.kernel.types import i32, u32
 
 _, HIGHEST = i32.bounds
@@ -31,7 +31,7 @@ def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> Kernel
     )
 
 
-def _way(guarded: Guarded, guard: Guard, note: Sequence[int]) -> Iterator[Place]:
+def _way(guarded: Guarded, guard: Guard, note: Sequence[int]) -> Iterator[SourcePlace]:
     """Yield the place of `guard`, and of each call on the way to it, the last one first."""
     yield from guard.places
     while number := note[CALLS + guarded.routines.index(guard.routine)]:

@@ -103,7 +103,7 @@ right:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class SourcePlace:
     """A place in the source. `site` is the number of an access or division in `routine` (see `emit.sites_of`).
 
     It is 0 where there is none, or where LLVM has merged several; `line` is 0 where it has merged several lines.
@@ -123,7 +123,7 @@ class Guard:
 
     node: Node
     routine: str
-    places: tuple[Place, ...]
+    places: tuple[SourcePlace, ...]
     array: str | None
 
 
@@ -229,18 +229,18 @@ class Guarded:
 
     def _number(self, row: str, node: Node, array: str | None = None) -> int:
         debug = DEBUG.search(row)
-        places = self._places.get(debug[1] if debug else "", (Place(self._routine, 0, 0),))
+        places = self._places.get(debug[1] if debug else "", (SourcePlace(self._routine, 0, 0),))
         self.guards.append(Guard(node, self._routine, places, array))
         return len(self.guards)
 
 
-def _places(rows: list[str]) -> dict[str, tuple[Place, ...]]:
+def _places(rows: list[str]) -> dict[str, tuple[SourcePlace, ...]]:
     """Return what each debug location of a module means, by its number."""
     scopes = {found[1]: found[2] for found in map(SCOPE.match, rows) if found}
     locations = {found[1]: dict(FIELD.findall(found[2])) for found in map(LOCATION.match, rows) if found}
 
-    def place(fields: dict[str, str]) -> Place:
-        return Place(scopes[fields["scope"]], int(fields["line"]), int(fields.get("column", 0)))
+    def place(fields: dict[str, str]) -> SourcePlace:
+        return SourcePlace(scopes[fields["scope"]], int(fields["line"]), int(fields.get("column", 0)))
 
     found = {}
     for number, fields in locations.items():

@@ -9,7 +9,7 @@ from bfsim.kernel.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
 from bfsim.kernel.work import Work
-from bfsim.machine_code.caller import Kind
+from bfsim.machine_code.caller import NumberKind
 from bfsim.machine_code.calling import Log, Taken
 from bfsim.machine_code.left import NO_ROOM, WORD_BITS, Left, Result
 
@@ -25,9 +25,9 @@ def words_of(function: Function, arrays: Iterable[Sequence[int]]) -> list[int | 
         if isinstance(each.type, ArrayType):
             words += next(following)
         elif isinstance(each.type, FloatType):
-            words.append(Taken(position, Kind.FLOAT, *u32.bounds))
+            words.append(Taken(position, NumberKind.FLOAT, *u32.bounds))
         else:
-            words.append(Taken(position, Kind.INTEGER, *each.type.bounds))
+            words.append(Taken(position, NumberKind.INTEGER, *each.type.bounds))
     return words
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import NoReturn
 
 from bfsim.kernel import tree
+from bfsim.kernel.conversions import as_type
 from bfsim.kernel.expressions import Expressions
 from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.intrinsics import INTRINSICS, TO_THE_RIGHT, Intrinsic
@@ -136,7 +137,7 @@ class KernelScope(Expressions):
         operand = self.number(node.args[0])
         if isinstance(operand.type, FloatType):
             return tree.Unary("abs", operand, f32, node.lineno)
-        operand = self._as_type(node.args[0], operand, i32)
+        operand = as_type(self.source, node.args[0], operand, i32)
         if isinstance(operand, tree.Const):
             return self._literal(node, abs(int(operand.value)))
         return tree.Unary("abs", operand, i32, node.lineno)

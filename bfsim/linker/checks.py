@@ -9,7 +9,7 @@ from bfsim.chip.memory_map import Region, regions_under
 from bfsim.errors import ConfigError, LinkError
 from bfsim.linker.link_map import LinkMap, Symbol
 from bfsim.linker.script import LinkerScript, OutputSection, Segment
-from bfsim.linker.source import Place
+from bfsim.linker.source import LdfLine
 
 
 def check_chip(script: LinkerScript, chip: str) -> None:
@@ -114,7 +114,7 @@ def region_under(segment: Segment, regions: Sequence[Region]) -> Region:
         raise LinkError(f"{segment.place}: segment '{segment.name}': {error}; {advice}") from None
 
 
-def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: str, place: Place) -> None:
+def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: str, place: LdfLine) -> None:
     """Check that the memory under a segment is shared, or belongs to the core that is to use it."""
     if region.owner not in ("shared", script.core_of_processor.get(user)):
         raise LinkError(

@@ -22,7 +22,7 @@ from bfsim.linker.script import (
     Segment,
     memory_function,
 )
-from bfsim.linker.source import Place, Source
+from bfsim.linker.source import LdfLine, Source
 
 Files = frozenset[str]
 _start = attrgetter("start")
@@ -61,7 +61,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
     def _error(self, token: Token, problem: str) -> LinkError:
         return self._source.error_at(token.start_pos or 0, problem)
 
-    def _place(self, token: Token) -> Place:
+    def _place(self, token: Token) -> LdfLine:
         return self._source.place_of(token.start_pos or 0)
 
     def _known_segment(self, name: str, offset: int) -> Segment:

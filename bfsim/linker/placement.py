@@ -29,7 +29,7 @@ from bfsim.linker.script import (
     Reserve,
     Statement,
 )
-from bfsim.linker.source import Place
+from bfsim.linker.source import LdfLine
 from bfsim.linker.values import Key, Values
 
 PLACE_IT = "`bfsim place --ldf` with this LDF writes one in which it lies elsewhere, if there is room"
@@ -40,7 +40,7 @@ class Refusal:
     """An output section without room for a symbol: the statement's place, and how full the segment was."""
 
     output_section: str
-    place: Place
+    place: LdfLine
     align: int
     usage: SegmentUsage
 
@@ -212,7 +212,7 @@ class _Linker:
         """
         for statement, source in self._inputs_for(symbol):
             if source.files and source.takes_section(symbol) and not source.takes_file(symbol):
-                where = statement.place.beside(Place(self._script.path, 0))
+                where = statement.place.beside(LdfLine(self._script.path, 0))
                 return (
                     f"; {where} takes {symbol.section} only of {cut(', '.join(sorted(source.files)))}: add {symbol.object_file} to "
                     f"its files, or {COMMAND_LINE_OBJECTS}, which is all of the firmware, the code with it"
@@ -238,7 +238,7 @@ def _fullness(usage: SegmentUsage) -> str:
     return f"{usage.name}: {usage.free_bytes} of {usage.nbytes} bytes free"
 
 
-def _out_of_memory(place: Place, output_section: str, what: str, usage: SegmentUsage) -> str:
+def _out_of_memory(place: LdfLine, output_section: str, what: str, usage: SegmentUsage) -> str:
     return (
         f"{place}: Out of memory in output section '{output_section}' [li1040]: "
         f"{what} does not fit in {_fullness(usage)}"

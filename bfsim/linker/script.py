@@ -11,7 +11,7 @@ from pathlib import Path
 
 from bfsim.linker.expressions import Expression
 from bfsim.linker.link_map import Symbol
-from bfsim.linker.source import Place, Source
+from bfsim.linker.source import LdfLine, Source
 
 CORE_OF_PROCESSOR = {"p0": "A", "p1": "B"}  # the names that the default LDFs of the BF561 give the cores
 DUAL_CORE_CHIPS = ("ADSP-BF561",)
@@ -23,7 +23,7 @@ COMMAND_LINE_OBJECTS = "$COMMAND_LINE_OBJECTS"
 class Statement:
     """Something that stands in a certain `place` of the LDF."""
 
-    place: Place
+    place: LdfLine
 
     @property
     def line(self) -> int:

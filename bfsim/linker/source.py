@@ -14,7 +14,7 @@ _LONGEST_EXCERPT = 100  # characters of the source line that an error shows on e
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class LdfLine:
     """A line, from 1, of an LDF or of a file that it includes."""
 
     path: Path
@@ -24,7 +24,7 @@ class Place:
         """Name the place as the start of an error message."""
         return f"{self.path}:{self.line}"
 
-    def beside(self, other: Place) -> str:
+    def beside(self, other: LdfLine) -> str:
         """Name this place in an error message about the place `other`."""
         return f"line {self.line}" if self.path == other.path else str(self)
 
@@ -42,11 +42,11 @@ class File:
 
     path: Path
     written: str
-    included_at: Place | None = None
+    included_at: LdfLine | None = None
 
-    def place_of(self, offset: int) -> Place:
+    def place_of(self, offset: int) -> LdfLine:
         """Return the line of the character `offset`."""
-        return Place(self.path, bisect_left(self._line_ends, offset) + 1)
+        return LdfLine(self.path, bisect_left(self._line_ends, offset) + 1)
 
     @cached_property
     def _line_ends(self) -> list[int]:
@@ -84,7 +84,7 @@ class Source:
     pieces: tuple[Fragment, ...]
     warnings: tuple[str, ...]
 
-    def place_of(self, offset: int) -> Place:
+    def place_of(self, offset: int) -> LdfLine:
         """Return the line on which the expanded text's character `offset` was written."""
         file, written_at = self._written_at(offset)
         return file.place_of(written_at)

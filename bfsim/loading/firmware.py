@@ -9,10 +9,10 @@ from bfsim import shipped
 from bfsim.loading.importing import OwnModules
 from bfsim.loading.kernels import entries_of, kernels_of
 from bfsim.loading.modules import SHIPPED, import_own, path_of
-from bfsim.loading.named import Kind, load_named
+from bfsim.loading.named import NamedKind, load_named
 from bfsim.machine.program import Firmware
 
-FIRMWARE = Kind("firmware", "--firmware", Firmware, "bfsim.api", shipped.FIRMWARE)
+FIRMWARE = NamedKind("firmware", "--firmware", Firmware, "bfsim.api", shipped.FIRMWARE)
 
 
 @dataclass(frozen=True, slots=True)

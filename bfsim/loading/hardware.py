@@ -17,11 +17,11 @@ from bfsim.fields import leaves, require_types
 from bfsim.kernel import CompilerProfile, profile_named
 from bfsim.kernel.profile import PROFILES
 from bfsim.loading.importing import OwnModules
-from bfsim.loading.named import Kind, Loaded, Wanted, load_named
+from bfsim.loading.named import Loaded, NamedKind, Wanted, load_named
 from bfsim.process.once import once
 
-BOARD = Kind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS))
-PROFILE = Kind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))
+BOARD = NamedKind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS))
+PROFILE = NamedKind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))
 
 NAMES = {"name", "title"}
 """Fields that say what something is called, and not what it is."""
@@ -88,7 +88,7 @@ def find_profile(name: str) -> Found[CompilerProfile]:
     return _found(profile, found.own, PROFILES)
 
 
-def _load(name: str, kind: Kind[Wanted], shipped: Mapping[str, Wanted]) -> Loaded[Wanted]:
+def _load(name: str, kind: NamedKind[Wanted], shipped: Mapping[str, Wanted]) -> Loaded[Wanted]:
     try:
         return load_named(name, kind, shipped.values())
     except FirmwareError as error:

@@ -16,7 +16,7 @@ Wanted = TypeVar("Wanted")
 
 
 @dataclass(frozen=True, slots=True)
-class Kind(Generic[Wanted]):
+class NamedKind(Generic[Wanted]):
     """What an option takes by name: things of one type, which users import from `module`; some are `built_in`."""
 
     noun: str
@@ -48,7 +48,7 @@ class Loaded(Generic[Wanted]):
     own: OwnModules
 
 
-def load_named(name: str, kind: Kind[Wanted], apart: Collection[Wanted] = ()) -> Loaded[Wanted]:
+def load_named(name: str, kind: NamedKind[Wanted], apart: Collection[Wanted] = ()) -> Loaded[Wanted]:
     """Import what is called FILE.py:NAME or PACKAGE:NAME, as `load_firmware` does.
 
     :NAME may be left out where the module has one thing of that kind; those in `apart` are not counted.
@@ -66,7 +66,7 @@ def load_named(name: str, kind: Kind[Wanted], apart: Collection[Wanted] = ()) ->
     return Loaded(f"{module.__name__}:{attribute}", value, module, own)
 
 
-def _only_one(module: ModuleType, name: str, kind: Kind[Wanted], apart: Collection[Wanted]) -> str:
+def _only_one(module: ModuleType, name: str, kind: NamedKind[Wanted], apart: Collection[Wanted]) -> str:
     names = [
         each
         for each, value in vars(module).items()

@@ -26,7 +26,7 @@ HEAD = 14
 ENTRY, BOUND = "bfsim_call", "bfsim_call_bound"
 
 
-class Kind(IntEnum):
+class NumberKind(IntEnum):
     """What number is taken from an argument of Python: an integer, or the bits of a float."""
 
     INTEGER = 0
@@ -78,7 +78,7 @@ TAKE = f"""\
   %largest = load i64, ptr %largest.at
   %object.at = getelementptr ptr, ptr %arguments, i64 %position
   %object = load ptr, ptr %object.at
-  %is.float = icmp eq i64 %kind, {Kind.FLOAT:d}
+  %is.float = icmp eq i64 %kind, {NumberKind.FLOAT:d}
   br i1 %is.float, label %float, label %integer
 integer:
   %integer.value = call i64 @PyLong_AsLongLong(ptr %object)

@@ -34,7 +34,7 @@ class Taken(NamedTuple):
     """A number that is taken from the argument at a position."""
 
     position: int
-    kind: w.Kind
+    kind: w.NumberKind
     least: int
     largest: int
 

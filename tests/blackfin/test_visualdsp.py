@@ -18,7 +18,7 @@ from bfsim.blackfin.decode import decode
 from bfsim.blackfin.image import Image, Use
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import RELOCATION, VISUALDSP, ObjectFile, Relocation, read_object
-from bfsim.blackfin.relocations import HALF_BYTES, PUSH, PUSH_CONSTANT, SECOND_HALF, Kind
+from bfsim.blackfin.relocations import HALF_BYTES, PUSH, PUSH_CONSTANT, SECOND_HALF, RelocationKind
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.errors import KernelError
 from bfsim.kernel.objects.sources import SourceFiles
@@ -148,8 +148,8 @@ def test_loops_are_relocated() -> None:
         symbols=(*file.symbols, *symbols),
     )
     relocated = (
-        Relocation(number, at, Kind.LOOP_BEGIN, count, 0),
-        Relocation(number, at + 2, Kind.LOOP_END, count + 1, 0),
+        Relocation(number, at, RelocationKind.LOOP_BEGIN, count, 0),
+        Relocation(number, at + 2, RelocationKind.LOOP_END, count + 1, 0),
     )
     assert octets_of(link(bare), Use.CODE) != octets_of(link(file), Use.CODE)
     made = link(replace(bare, relocations=(*bare.relocations, *relocated)))
@@ -169,18 +169,18 @@ def test_what_is_relocated_may_be_computed() -> None:
     """By a stack: the address of `other` and 4, which is shifted by 33 bits in all."""
     image = link(returning())
     other = image.symbols["_other"]
-    assert table_of([(Kind.WORD, 0)]) == table_of([(KEEP, 0), (Kind.WORD, 0)]) == other
-    assert table_of([(PUSH, 0), (PUSH_CONSTANT, 4), (ADD, 0), (Kind.WORD, 0)]) == other + 4
-    shifted = [(PUSH, 0), (PUSH_CONSTANT, 1), (SHIFT_LEFT, 0), (Kind.WORD, 0)]
+    assert table_of([(RelocationKind.WORD, 0)]) == table_of([(KEEP, 0), (RelocationKind.WORD, 0)]) == other
+    assert table_of([(PUSH, 0), (PUSH_CONSTANT, 4), (ADD, 0), (RelocationKind.WORD, 0)]) == other + 4
+    shifted = [(PUSH, 0), (PUSH_CONSTANT, 1), (SHIFT_LEFT, 0), (RelocationKind.WORD, 0)]
     assert table_of(shifted) == 2 * other % 2**32
-    huge = [(PUSH_CONSTANT, 1), (PUSH_CONSTANT, 2**31 - 1), (SHIFT_LEFT, 0), (Kind.WORD, 0)]
+    huge = [(PUSH_CONSTANT, 1), (PUSH_CONSTANT, 2**31 - 1), (SHIFT_LEFT, 0), (RelocationKind.WORD, 0)]
     assert table_of(huge) == 0
 
 
 def test_what_cannot_be_computed_is_refused() -> None:
     """Its number is told."""
     with pytest.raises(KernelError, match="relocations of the type 0xEE are not for plain programs"):
-        table_of([(LENGTH, 0), (Kind.WORD, 0)])
+        table_of([(LENGTH, 0), (RelocationKind.WORD, 0)])
 
 
 @pytest.mark.parametrize("kind", [0x14, 0x17, 0x41])

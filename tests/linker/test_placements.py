@@ -10,7 +10,7 @@ import pytest
 from bfsim.kernel.profile import DEFAULT
 from bfsim.mapping import map_memory
 from bfsim.report.ldf.lint import lint
-from bfsim.report.ldf.map import Kind, MemoryMap
+from bfsim.report.ldf.map import ContentKind, MemoryMap
 from bfsim.shipped import LDF_FOLDER
 
 SIZES = [(160, 120), (320, 240), (640, 480)]
@@ -33,7 +33,7 @@ def placed(name: str, width_px: int = 320, height_px: int = 240, profile: str = 
     )  # fmt: skip
 
 
-def memories(memory_map: MemoryMap, *kinds: Kind) -> dict[str, set[str]]:
+def memories(memory_map: MemoryMap, *kinds: ContentKind) -> dict[str, set[str]]:
     """The memories of what is of these kinds, by name."""
     found: dict[str, set[str]] = {}
     for segment in memory_map.segments:
@@ -66,10 +66,10 @@ def test_images_of_each_stream_have_a_bank(name: str) -> None:
     """Cameras in banks 0 and 1, working images in 2 and 3; nothing of another owner beside them."""
     banks = {(each.kind, each.owner): each.banks for each in placed(name).symbols if each.name in ("camera", "colour_image")}  # fmt: skip
     assert banks == {
-        (Kind.CAMERA, "A"): (0,),
-        (Kind.CAMERA, "B"): (1,),
-        (Kind.LINES, "A"): (2,),
-        (Kind.LINES, "B"): (3,),
+        (ContentKind.CAMERA, "A"): (0,),
+        (ContentKind.CAMERA, "B"): (1,),
+        (ContentKind.LINES, "A"): (2,),
+        (ContentKind.LINES, "B"): (3,),
     }
     assert "streams share a bank" not in {each.rule for each in lint(placed(name))}
 
@@ -78,28 +78,28 @@ def test_images_of_each_stream_have_a_bank(name: str) -> None:
 @pytest.mark.parametrize("name", ["thesis", "sdram", "l2"])
 def test_all_code_of_visualdsp_is_in_l1(name: str) -> None:
     """What the code memory has no room for is in the code cache, which is off."""
-    found = memories(placed(name, profile="vdsp-O2"), Kind.CODE)
+    found = memories(placed(name, profile="vdsp-O2"), ContentKind.CODE)
     assert all("_L1_CODE" in each for where in found.values() for each in where)
 
 
 @pytest.mark.parametrize("name", ["sdram", "l2"])
 def test_placements_differ_in_data_only(name: str) -> None:
     """Code of GCC, which is larger, fills L1 in each of them, and what is left is in L2."""
-    found = memories(placed(name), Kind.CODE)
-    assert found == memories(placed("thesis"), Kind.CODE)
+    found = memories(placed(name), ContentKind.CODE)
+    assert found == memories(placed("thesis"), ContentKind.CODE)
     assert {each for where in found.values() for each in where if "_L1_CODE" not in each} == {"L2"}
 
 
 def test_code_that_the_cache_leaves_no_room_for_is_in_sdram() -> None:
     """It is fetched through the cache; the rest is in L1."""
-    found = memories(placed("cache"), Kind.CODE)
+    found = memories(placed("cache"), ContentKind.CODE)
     outside = {memory for where in found.values() for memory in where if "_L1_CODE" not in memory}
     assert outside == {"SDRAM"}
 
 
 def test_thesis_keeps_lines_and_tables_in_l1() -> None:
     """Rings, tables and edge store are in L1, images in SDRAM, and what the cores share in L2."""
-    found = memories(placed("thesis"), Kind.LINES, Kind.ROW, Kind.TABLE)
+    found = memories(placed("thesis"), ContentKind.LINES, ContentKind.ROW, ContentKind.TABLE)
     assert all("L1_DATA" in each for name in CLOSE for each in found[name])
     assert {name for name, where in found.items() if where == {"SDRAM"}} >= IMAGES
     assert found["right_edges"] == {"L2"}
@@ -107,7 +107,7 @@ def test_thesis_keeps_lines_and_tables_in_l1() -> None:
 
 def test_sdram_has_all_data() -> None:
     """Rings, tables and edge store, too: L1 data banks keep heap and stack alone."""
-    found = memories(placed("sdram"), *Kind)
+    found = memories(placed("sdram"), *ContentKind)
     data = {name: where for name, where in found.items() if where & {"SDRAM"}}
     assert {"camera_ring", "atan", "edge_data", "gx"} <= set(data)
     assert all(where == {"SDRAM"} for where in data.values())
@@ -146,7 +146,7 @@ def test_cache_gives_half_of_each_bank_away() -> None:
         ("COREB_L1_CODE_CACHE", "0xff610000", CACHE_BYTES),
     ]
     assert not any("cached half" in each.rule for each in lint(memory_map))
-    assert memories(memory_map, Kind.ROW)["edge_data"] == {"SDRAM"}
+    assert memories(memory_map, ContentKind.ROW)["edge_data"] == {"SDRAM"}
 
 
 @pytest.mark.parametrize("name", ["thesis", "sdram", "l2"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bfsim.report.ldf.map import (
     SHARED,
     CacheRange,
-    Kind,
+    ContentKind,
     MapPiece,
     MapSection,
     MapSegment,
@@ -17,7 +17,7 @@ BANK_BYTES = 8 * 1024**2
 DATA_A = 0xFF800000
 
 
-def a_symbol(name: str, kind: Kind, owner: str, address: int, nbytes: int = 1000) -> MapSymbol:
+def a_symbol(name: str, kind: ContentKind, owner: str, address: int, nbytes: int = 1000) -> MapSymbol:
     """A symbol at an address; below the four banks' end it is in SDRAM."""
     last = address + nbytes - 1
     banks = tuple(range(address // BANK_BYTES, last // BANK_BYTES + 1)) if address < 4 * BANK_BYTES else ()
@@ -54,7 +54,7 @@ def a_segment(
 
 
 def _free(start: int, end: int) -> MapPiece:
-    return MapPiece(name="free", kind=Kind.FREE, owner=SHARED, start=start, nbytes=max(0, end - start))
+    return MapPiece(name="free", kind=ContentKind.FREE, owner=SHARED, start=start, nbytes=max(0, end - start))
 
 
 def a_map(*segments: MapSegment, caches: tuple[CacheRange, ...] = ()) -> MemoryMap:

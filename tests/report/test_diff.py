@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.report.diff.compare import difference_of
-from bfsim.report.diff.difference import Kind
+from bfsim.report.diff.difference import ContributionKind
 from bfsim.report.diff.markdown import diff_markdown
 from bfsim.report.diff.rows import shown
 from bfsim.report.diff.sentences import reason, verdict, work
@@ -110,8 +110,8 @@ def test_waits_for_others_only_follow() -> None:
     found = difference_of(before, after)
     check_sums(found.stages, 20 + 850 + 90)
     assert [(each.name, each.kind, each.cclk) for each in found.stages] == [
-        ("Blur", Kind.STAGE, 20),
-        ("waits for the other core and the cameras", Kind.FOLLOWS, 850 + 90),
+        ("Blur", ContributionKind.STAGE, 20),
+        ("waits for the other core and the cameras", ContributionKind.FOLLOWS, 850 + 90),
     ]
     assert work(found).endswith("the cores take 0.01 → 0.03 ms a frame together.")
     assert "line 12 +20" in reason(found)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from bfsim.report.diff.alignment import LinePair, aligned, with_moved
 from bfsim.report.diff.compare import difference_of
-from bfsim.report.diff.difference import Kind
+from bfsim.report.diff.difference import ContributionKind
 from bfsim.report.diff.library import with_callers
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.side import Line, Owner, Source, Stall
@@ -59,7 +59,7 @@ def test_a_routine_of_the_library_is_part_of_the_lines_that_call_it() -> None:
     )
     found = difference_of(before, after)
     check_sums(found.stages, found.cclk)
-    (stage,) = (each for each in found.stages if each.kind is Kind.STAGE)
+    (stage,) = (each for each in found.stages if each.kind is ContributionKind.STAGE)
     (blur,) = stage.parts
     assert (blur.name, blur.cclk, found.cclk) == ("blur", 46, 46)
     told = {each.place: [(cause.name, cause.cclk) for cause in each.parts] for each in blur.parts}

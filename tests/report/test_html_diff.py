@@ -5,14 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bfsim.report.diff.contributions import walk
-from bfsim.report.diff.difference import Change, Contribution, Difference, FrameChange, Kind, SeenChange
+from bfsim.report.diff.difference import (
+    Change,
+    Contribution,
+    ContributionKind,
+    Difference,
+    FrameChange,
+    SeenChange,
+)
 from bfsim.report.html.diff_page import FRAMES, DiffPage, PagedSide
 from bfsim.report.html.pictures import Pictures
 from tests.report.evil import EVIL, Elements
 from tests.seen_frames import frame as seen_frame
 
 
-def contribution(kind: Kind, name: str, cclk: int, *parts: Contribution) -> Contribution:
+def contribution(kind: ContributionKind, name: str, cclk: int, *parts: Contribution) -> Contribution:
     """A part of a difference, of 1000 cycles before."""
     return Contribution(
         kind=kind,
@@ -25,11 +32,17 @@ def contribution(kind: Kind, name: str, cclk: int, *parts: Contribution) -> Cont
     )
 
 
-CAUSE = replace(contribution(Kind.CAUSE, "stall: L2 port", 700), before_cclk=None, after_cclk=None)
-LINE = contribution(Kind.LINE, "row[x] += by", 700, CAUSE)
+CAUSE = replace(
+    contribution(ContributionKind.CAUSE, "stall: L2 port", 700), before_cclk=None, after_cclk=None
+)
+LINE = contribution(ContributionKind.LINE, "row[x] += by", 700, CAUSE)
 STAGES = (
-    contribution(Kind.STAGE, "Edges", 700, contribution(Kind.KERNEL, "blur", 700, LINE)),
-    contribution(Kind.STAGE, "Lines", -350, contribution(Kind.FOLLOWS, "waits", -350)),
+    contribution(
+        ContributionKind.STAGE, "Edges", 700, contribution(ContributionKind.KERNEL, "blur", 700, LINE)
+    ),
+    contribution(
+        ContributionKind.STAGE, "Lines", -350, contribution(ContributionKind.FOLLOWS, "waits", -350)
+    ),
 )
 DIFFERENCE = Difference(
     configuration=(Change(what="ldf", before="l2.ldf", after="thesis.ldf"),),
@@ -95,7 +108,7 @@ def test_what_is_not_there_has_no_part_of_the_page() -> None:
 
 def test_names_are_words_and_no_markup() -> None:
     """Of firmware, lines, numbers, objects and of the runs themselves; the page has no script at all."""
-    evil = contribution(Kind.STAGE, EVIL, 5, replace(LINE, name=EVIL, place=EVIL))
+    evil = contribution(ContributionKind.STAGE, EVIL, 5, replace(LINE, name=EVIL, place=EVIL))
     change = Change(what=EVIL, before=EVIL, after=EVIL)
     seen = SeenChange(name=EVIL, gone=False, frames=1, first=0)
     found = page(

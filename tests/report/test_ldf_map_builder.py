@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from bfsim.chip.memory_map import CM_BF561_REGIONS
 from bfsim.errors import LinkError
 from bfsim.linker import LinkerScript, Symbol, link, parse_ldf
-from bfsim.report.ldf.map import SHARED, Kind, MemoryMap
+from bfsim.report.ldf.map import SHARED, ContentKind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 
 TEXT = """
@@ -56,7 +56,7 @@ def parsed(text: str) -> LinkerScript:
 
 def mapped(
     symbols: list[Symbol],
-    kinds: dict[tuple[str | None, str], Kind],
+    kinds: dict[tuple[str | None, str], ContentKind],
     *,
     linked: bool = True,
     text: str = TEXT,
@@ -90,14 +90,14 @@ def test_pieces_fill_each_segment(sizes: list[tuple[str, int]]) -> None:
             assert piece.nbytes > 0
             here += piece.nbytes
         assert here == segment.start + segment.nbytes
-        free = sum(each.nbytes for each in segment.pieces if each.kind is Kind.FREE)
+        free = sum(each.nbytes for each in segment.pieces if each.kind is ContentKind.FREE)
         assert free == segment.free_bytes
 
 
 def test_reserves_and_gaps_show_where_they_are() -> None:
     """Heap before the first symbol, a gap of alignment, the stack behind the last one, and what is free."""
     symbols = [Symbol("odd", "fast", 3, 4, "p0"), Symbol("even", "fast", 8, 4, "p0")]
-    kinds = {("p0", "odd"): Kind.ROW, ("p0", "even"): Kind.LINES}
+    kinds = {("p0", "odd"): ContentKind.ROW, ("p0", "even"): ContentKind.LINES}
     (segment,) = (each for each in mapped(symbols, kinds).segments if each.name == "L1")
     assert [(each.name, each.start - segment.start, each.nbytes) for each in segment.pieces] == [
         ("heap", 0, 100),
@@ -114,7 +114,7 @@ def test_code_side_by_side_is_one_piece_of_each_core() -> None:
     symbols = [Symbol(f"f{number}", "program", 40, 4, "p0") for number in range(3)]
     symbols.append(Symbol("g", "program", 16, 4, "p1"))
     segment = mapped(symbols, {}).segments[0]
-    code = [each for each in segment.pieces if each.kind is Kind.CODE]
+    code = [each for each in segment.pieces if each.kind is ContentKind.CODE]
     assert [(each.name, each.owner, each.nbytes) for each in code] == [
         ("3 kernels", "A", 120),
         ("g", "B", 16),
@@ -126,7 +126,9 @@ def test_code_around_a_reserve_is_two_pieces() -> None:
     """Neither swallows the reserve in the middle."""
     symbols = [Symbol(f"f{number}", "program", 0x180, 4, "p0") for number in range(3)]
     segment = mapped(symbols, {}).segments[0]
-    assert [(each.name, each.start & 0xFFF) for each in segment.pieces if each.kind is not Kind.FREE] == [
+    assert [
+        (each.name, each.start & 0xFFF) for each in segment.pieces if each.kind is not ContentKind.FREE
+    ] == [
         ("f0", 0),
         ("gap", 0x180),
         ("hole", 0x200),
@@ -139,10 +141,12 @@ def test_symbols_know_their_banks_owner_and_line() -> None:
     symbols = [Symbol("image", "image", 512, 4, "p0"), Symbol("row", "fast", 8, 4, "p0")]
     found = {
         each.name: each
-        for each in mapped(symbols, {("p0", "image"): Kind.LINES, ("p0", "row"): Kind.ROW}).symbols
+        for each in mapped(
+            symbols, {("p0", "image"): ContentKind.LINES, ("p0", "row"): ContentKind.ROW}
+        ).symbols
     }
     image, row = found["image"], found["row"]
-    assert (image.banks, image.owner, image.kind, image.section) == ((1, 2), "A", Kind.LINES, "image")
+    assert (image.banks, image.owner, image.kind, image.section) == ((1, 2), "A", ContentKind.LINES, "image")
     assert (row.banks, row.output_section, row.line) == ((), "near", 19)
 
 

@@ -13,13 +13,13 @@ from PIL import Image
 from bfsim.errors import ConfigError
 from bfsim.report.ldf.colours import HUES, colours_of
 from bfsim.report.ldf.drawing import BAR_HEIGHT, LETTER_WIDTH, PANEL_WIDTH, drawing_of
-from bfsim.report.ldf.map import Kind
+from bfsim.report.ldf.map import ContentKind
 from bfsim.report.ldf.picture import PIXELS, picture_bytes, png_of, svg_of
 from tests.report.ldf_maps import BANK_BYTES, a_map, a_segment, a_symbol
 
-CAMERA = a_symbol("camera", Kind.CAMERA, "A", 0, BANK_BYTES // 4)
-ODD = a_symbol("<odd> & even", Kind.LINES, "B", BANK_BYTES // 2, BANK_BYTES // 2)
-KERNELS = a_symbol("13 kernels", Kind.CODE, "A", 0xFEB00000, 1000)
+CAMERA = a_symbol("camera", ContentKind.CAMERA, "A", 0, BANK_BYTES // 4)
+ODD = a_symbol("<odd> & even", ContentKind.LINES, "B", BANK_BYTES // 2, BANK_BYTES // 2)
+KERNELS = a_symbol("13 kernels", ContentKind.CODE, "A", 0xFEB00000, 1000)
 MAP = a_map(a_segment("SDRAM", CAMERA, ODD), a_segment("L2", KERNELS, start=0xFEB00000, nbytes=128 * 1024))
 COLOURS = colours_of(MAP)
 SVG = "{http://www.w3.org/2000/svg}"
@@ -27,8 +27,8 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 def test_names_have_colours_of_their_own() -> None:
     """Forty buffers, forty colours; a name has one colour wherever it is."""
-    buffers = [a_symbol(f"b{number}", Kind.LINES, "A", number * 1000) for number in range(40)]
-    again = [a_symbol(f"b{number}", Kind.LINES, "B", number * 1000) for number in range(40)]
+    buffers = [a_symbol(f"b{number}", ContentKind.LINES, "A", number * 1000) for number in range(40)]
+    again = [a_symbol(f"b{number}", ContentKind.LINES, "B", number * 1000) for number in range(40)]
     colours = colours_of(a_map(a_segment("SDRAM", *buffers), a_segment("SDRAM", *again)))
     assert len(colours) == len(set(colours.values())) == 40
 
@@ -48,7 +48,7 @@ def test_a_kind_has_a_hue() -> None:
 def test_labels_do_not_overprint() -> None:
     """No two texts of the sheet meet, by the width that is taken for each letter; long names have fewer columns."""
     long = [
-        a_symbol(f"a_name_of_more_than_thirty_letters_{number}", Kind.ROW, "A", 1000 * number, 900)
+        a_symbol(f"a_name_of_more_than_thirty_letters_{number}", ContentKind.ROW, "A", 1000 * number, 900)
         for number in range(5)
     ]
     for made in (MAP, a_map(a_segment("SDRAM", *long))):

@@ -9,13 +9,13 @@ from rich.console import Console, RenderableType
 
 from bfsim.report.ldf.bars import CELLS, bars, cells_of
 from bfsim.report.ldf.lint import lint
-from bfsim.report.ldf.map import Kind
+from bfsim.report.ldf.map import ContentKind
 from bfsim.report.ldf.tables import SCHEMA, ldf_json, ldf_report
 from tests.report.ldf_maps import BANK_BYTES, a_map, a_segment, a_symbol
 
-CAMERA = a_symbol("camera", Kind.CAMERA, "A", 0, BANK_BYTES // 4)
-IMAGE = a_symbol("image", Kind.LINES, "B", BANK_BYTES // 2, BANK_BYTES // 2)
-DOT = a_symbol("dot", Kind.ROW, "A", BANK_BYTES // 4, 16)
+CAMERA = a_symbol("camera", ContentKind.CAMERA, "A", 0, BANK_BYTES // 4)
+IMAGE = a_symbol("image", ContentKind.LINES, "B", BANK_BYTES // 2, BANK_BYTES // 2)
+DOT = a_symbol("dot", ContentKind.ROW, "A", BANK_BYTES // 4, 16)
 SDRAM = a_segment("SDRAM", CAMERA, DOT, IMAGE, used_bytes=3 * BANK_BYTES // 4, takes=("bank0", "bank1"))
 MAP = a_map(SDRAM)
 

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from bfsim.report.diff.alignment import LinePair, aligned, with_moved
-from bfsim.report.diff.difference import Contribution, Kind
+from bfsim.report.diff.difference import Contribution, ContributionKind
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.pairs import SMALL, pairs_of, with_stages_alike
 from bfsim.report.diff.side import Line, Owner, Side, Source
@@ -26,12 +26,14 @@ def contributions_of(before: Side, after: Side) -> tuple[Contribution, ...]:
         owner = new or old
         assert owner is not None
         parts[owner.stage].append(_of_owner(old, new, before, after))
-    stages = _by_size(_sum(Kind.STAGE, stage, each) for stage, each in parts.items())
+    stages = _by_size(_sum(ContributionKind.STAGE, stage, each) for stage, each in parts.items())
     waits = [
-        _contribution(Kind.FOLLOWS, stage, "", before.waits.get(stage, 0), after.waits.get(stage, 0))
+        _contribution(
+            ContributionKind.FOLLOWS, stage, "", before.waits.get(stage, 0), after.waits.get(stage, 0)
+        )
         for stage in dict.fromkeys([*before.waits, *after.waits])
     ]
-    return (*stages, _sum(Kind.FOLLOWS, WAITS, waits))
+    return (*stages, _sum(ContributionKind.FOLLOWS, WAITS, waits))
 
 
 def walk(contributions: Iterable[Contribution], depth: int = 0) -> Iterator[tuple[int, Contribution]]:
@@ -52,10 +54,13 @@ def _of_owner(old: Owner | None, new: Owner | None, before: Side, after: Side) -
         is_cut = before.least_cclk or after.least_cclk
         lines = (
             *lines,
-            _contribution(Kind.OTHER, SMALL if is_cut else NO_LINE, "", None, None, cclk=missing),
+            _contribution(ContributionKind.OTHER, SMALL if is_cut else NO_LINE, "", None, None, cclk=missing),
         )
     name = f"{old.name} → {new.name}" if old and new and old.name != new.name else shown.name
-    kind, place = Kind.KERNEL if shown.symbol else Kind.OTHER, source.place if source else ""
+    kind, place = (
+        ContributionKind.KERNEL if shown.symbol else ContributionKind.OTHER,
+        source.place if source else "",
+    )
     return _contribution(kind, name, place, was, now, _by_size(lines))
 
 
@@ -76,7 +81,7 @@ def _lines(old: Source | None, new: Source | None, before: Side, after: Side) ->
             file = (new or old).place.rpartition(":")[0]  # type: ignore[union-attr]  # one of them is there
             place = f"{file}:{shown.number}" if shown.number else file
             cclks = was.cclk if was else 0, now.cclk if now else 0
-            yield _contribution(Kind.LINE, shown.text, place, *cclks, causes)
+            yield _contribution(ContributionKind.LINE, shown.text, place, *cclks, causes)
 
 
 def _at(pair: LinePair, olds: Sequence[Line], news: Sequence[Line]) -> tuple[Line | None, Line | None]:
@@ -86,7 +91,7 @@ def _at(pair: LinePair, olds: Sequence[Line], news: Sequence[Line]) -> tuple[Lin
     )
 
 
-def _sum(kind: Kind, name: str, parts: Sequence[Contribution]) -> Contribution:
+def _sum(kind: ContributionKind, name: str, parts: Sequence[Contribution]) -> Contribution:
     before = sum(each.before_cclk or 0 for each in parts)
     after = sum(each.after_cclk or 0 for each in parts)
     return _contribution(kind, name, "", before, after, _by_size(each for each in parts if each.cclk))
@@ -97,7 +102,7 @@ def _by_size(parts: Iterable[Contribution]) -> tuple[Contribution, ...]:
 
 
 def _contribution(
-    kind: Kind,
+    kind: ContributionKind,
     name: str,
     place: str,
     before_cclk: int | None,

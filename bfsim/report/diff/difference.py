@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Kind(StrEnum):
+class ContributionKind(StrEnum):
     """What a contribution is of."""
 
     STAGE = "stage"
@@ -26,7 +26,7 @@ class Contribution:
     in as parts: they grow and shrink with what the rest of the firmware takes, which is without them.
     """
 
-    kind: Kind
+    kind: ContributionKind
     name: str
     place: str
     before_cclk: int | None

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.report.diff.difference import Contribution, Kind
+from bfsim.report.diff.difference import Contribution, ContributionKind
 from bfsim.report.diff.side import Line, Operations, Stall
 from bfsim.report.operations import words
 from bfsim.report.units import counted
@@ -140,4 +140,6 @@ def _each(cclk: int, times: int) -> str:
 
 
 def _cause(text: str, cclk: int) -> Contribution:
-    return Contribution(kind=Kind.CAUSE, name=text, place="", before_cclk=None, after_cclk=None, cclk=cclk)
+    return Contribution(
+        kind=ContributionKind.CAUSE, name=text, place="", before_cclk=None, after_cclk=None, cclk=cclk
+    )

@@ -14,7 +14,7 @@ from bfsim.report.result_file import Result
 from bfsim.report.seen_json import name_of_object
 from bfsim.trace import FrameRecord, Identity, KernelRecord, RunRecord
 
-Place = tuple[str, str, int]
+CostedLine = tuple[str, str, int]
 """Stage, symbol and line."""
 
 
@@ -73,9 +73,9 @@ def _sources(run: RunRecord) -> Mapping[Owner, Source]:
     return {owner: _source(owner, same, stalls) for owner, same in records.items()}
 
 
-def _stalls(run: RunRecord) -> Mapping[Place, Counter[Stall]]:
+def _stalls(run: RunRecord) -> Mapping[CostedLine, Counter[Stall]]:
     """Return what lines waited for that is in a buffer."""
-    found: defaultdict[Place, Counter[Stall]] = defaultdict(Counter)
+    found: defaultdict[CostedLine, Counter[Stall]] = defaultdict(Counter)
     for each in run.accesses:
         for reason, cclk in each.stall_cclk.items():
             if each.buffer:
@@ -83,7 +83,9 @@ def _stalls(run: RunRecord) -> Mapping[Place, Counter[Stall]]:
     return found
 
 
-def _source(owner: Owner, records: Sequence[KernelRecord], stalls: Mapping[Place, Counter[Stall]]) -> Source:
+def _source(
+    owner: Owner, records: Sequence[KernelRecord], stalls: Mapping[CostedLine, Counter[Stall]]
+) -> Source:
     lines = (
         _line(each, stalls.get((owner.stage, owner.symbol, each.line), Counter()))
         for each in lines_of(records)

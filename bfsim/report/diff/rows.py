@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 
 from bfsim.report.diff.contributions import walk
-from bfsim.report.diff.difference import Contribution, Difference, Kind
+from bfsim.report.diff.difference import Contribution, ContributionKind, Difference
 from bfsim.report.diff.sentences import largest
 from bfsim.report.units import others_row
 
@@ -17,12 +17,12 @@ def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
     Before all others comes the one that is told in words, for it is the largest part of the largest. Of stages, kernels and lines those
     that are not shown are one row, so that what is shown sums to what it is part of. Waits that follow from the rest are the last row.
     """
-    rows = list(walk(each for each in difference.stages if each.kind is not Kind.FOLLOWS))
+    rows = list(walk(each for each in difference.stages if each.kind is not ContributionKind.FOLLOWS))
     leaves = [each for _, each in rows if not each.parts and each.cclk]
     told = [id(each) for each in largest(difference.stages)]
     leaves.sort(key=lambda each: (id(each) not in told, -abs(each.cclk)))
     wanted = {id(each) for each in leaves[:top]}
-    own, waits = _apart(difference.stages, lambda each: each.kind is not Kind.FOLLOWS)
+    own, waits = _apart(difference.stages, lambda each: each.kind is not ContributionKind.FOLLOWS)
     return [*_chosen(own, wanted, 0), *((0, each) for each in waits)]
 
 
@@ -34,7 +34,7 @@ def _chosen(
     for each in found:
         yield depth, each
         yield from _chosen(each.parts, wanted, depth + 1)
-    if any(each.cclk for each in others) and all(each.kind is not Kind.CAUSE for each in parts):
+    if any(each.cclk for each in others) and all(each.kind is not ContributionKind.CAUSE for each in parts):
         yield depth, others[0] if len(others) == 1 else _together(others)
 
 
@@ -51,7 +51,7 @@ def _apart(
 def _together(others: Sequence[Contribution]) -> Contribution:
     """Return several contributions as one."""
     return Contribution(
-        kind=Kind.OTHER,
+        kind=ContributionKind.OTHER,
         name=others_row(len(others)),
         place="",
         before_cclk=sum(each.before_cclk or 0 for each in others),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from bfsim.report.diff.contributions import walk
-from bfsim.report.diff.difference import NOTHING, Contribution, Difference, Kind
+from bfsim.report.diff.difference import NOTHING, Contribution, ContributionKind, Difference
 from bfsim.report.diff.pairs import SMALL
 from bfsim.report.units import counted, mhz
 
@@ -56,7 +56,7 @@ def code(difference: Difference) -> str:
 
 def work(difference: Difference) -> str:
     """Say what the cores do beside waiting for each other and for the cameras; nothing where that is as before."""
-    waits = next((each for each in difference.stages if each.kind is Kind.FOLLOWS), None)
+    waits = next((each for each in difference.stages if each.kind is ContributionKind.FOLLOWS), None)
     if waits is None:
         return ""
     frames = len(difference.frames)
@@ -78,7 +78,7 @@ def work(difference: Difference) -> str:
 def reason(difference: Difference) -> str:
     """Say where the largest contribution is, from the stage down to the cause; nothing where there is no difference."""
     parts = [*largest(difference.stages)]
-    places = [each for each in parts if each.kind is not Kind.CAUSE]
+    places = [each for each in parts if each.kind is not ContributionKind.CAUSE]
     if not places:
         return ""
     told = "; in it ".join(f"{_named(each)} {counted(each.cclk, sign=True)}" for each in places)
@@ -89,14 +89,18 @@ def reason(difference: Difference) -> str:
 
 
 def _named(contribution: Contribution) -> str:
-    if contribution.kind is Kind.LINE:
+    if contribution.kind is ContributionKind.LINE:
         return f"line {contribution.place.rpartition(':')[2]}"
     return f"{contribution.name} ({contribution.place})" if contribution.place else contribution.name
 
 
 def largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
     """Yield the largest contribution that follows from no other and has a name, and in it the largest again."""
-    own = [each for each in parts if each.kind is not Kind.FOLLOWS and each.name != SMALL and each.cclk]
+    own = [
+        each
+        for each in parts
+        if each.kind is not ContributionKind.FOLLOWS and each.name != SMALL and each.cclk
+    ]
     if own:
         most = max(own, key=lambda each: abs(each.cclk))
         yield most

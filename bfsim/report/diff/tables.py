@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
+from bfsim.report.diff.difference import Change, Contribution, ContributionKind, Difference
 from bfsim.report.diff.rows import shown
 from bfsim.report.diff.sentences import verdict, why
 from bfsim.report.diff.side import SEPARATOR
@@ -98,7 +98,13 @@ def contribution_table(difference: Difference, top: int) -> Iterator[Table]:
     title = f"Cycles of both cores in {frames_compared(difference)}, the largest difference first"
     table = new_table(title, "Stage / kernel / line / cause", "before", "after", "difference")
     for depth, each in rows:
-        bold = "bold" if each.kind is Kind.STAGE else "dim" if each.kind is Kind.FOLLOWS else None
+        bold = (
+            "bold"
+            if each.kind is ContributionKind.STAGE
+            else "dim"
+            if each.kind is ContributionKind.FOLLOWS
+            else None
+        )
         table.add_row("  " * depth + labelled(each), *cells(each), style=bold)
     table.add_section()
     table.add_row(*all_row(difference), style="bold")
@@ -121,7 +127,7 @@ def frames_compared(difference: Difference) -> str:
 
 def labelled(contribution: Contribution) -> str:
     """Return what a contribution is called, with its place."""
-    if contribution.kind is Kind.LINE:
+    if contribution.kind is ContributionKind.LINE:
         return f"{contribution.place.rpartition(':')[2]}  {contribution.name}"
     return f"{contribution.name} ({contribution.place})" if contribution.place else contribution.name
 

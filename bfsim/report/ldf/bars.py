@@ -10,7 +10,7 @@ from rich.style import Style
 from rich.text import Text
 
 from bfsim.report.ldf.colours import colours_of
-from bfsim.report.ldf.map import Kind, MapPiece, MapSegment, MemoryMap
+from bfsim.report.ldf.map import ContentKind, MapPiece, MapSegment, MemoryMap
 from bfsim.report.units import size
 
 CELLS = 64
@@ -72,7 +72,7 @@ def _letters() -> Iterator[str]:
 
 
 def _sign(piece: MapPiece, letters: dict[MapPiece, str]) -> str:
-    if piece.kind is Kind.FREE:
+    if piece.kind is ContentKind.FREE:
         return FREE
     return letters.get(piece, RESERVED)
 

@@ -6,11 +6,16 @@ import colorsys
 from collections import Counter
 from collections.abc import Mapping
 
-from bfsim.report.ldf.map import Kind, MemoryMap
+from bfsim.report.ldf.map import ContentKind, MemoryMap
 
 CODE_COLOUR = "#8c96a8"
 
-HUES: Mapping[Kind, float] = {Kind.CAMERA: 0.36, Kind.LINES: 0.58, Kind.ROW: 0.10, Kind.TABLE: 0.83}
+HUES: Mapping[ContentKind, float] = {
+    ContentKind.CAMERA: 0.36,
+    ContentKind.LINES: 0.58,
+    ContentKind.ROW: 0.10,
+    ContentKind.TABLE: 0.83,
+}
 """Of a turn: green, blue, orange, magenta."""
 
 HUE_RANGE = 0.10
@@ -27,10 +32,10 @@ and its like for two [Roberts 2018, the R2 sequence]."""
 def colours_of(memory_map: MemoryMap) -> dict[str, str]:
     """Return a colour, #rrggbb, for the name of every piece that is not free or reserved."""
     colours: dict[str, str] = {}
-    known: Counter[Kind] = Counter()
+    known: Counter[ContentKind] = Counter()
     for segment in memory_map.segments:
         for piece in segment.pieces:
-            if piece.kind is Kind.CODE:
+            if piece.kind is ContentKind.CODE:
                 colours[piece.name] = CODE_COLOUR
             elif piece.is_named and piece.name not in colours:
                 colours[piece.name] = _shade(piece.kind, known[piece.kind])
@@ -38,12 +43,12 @@ def colours_of(memory_map: MemoryMap) -> dict[str, str]:
     return colours
 
 
-def kind_colour(kind: Kind) -> str:
+def kind_colour(kind: ContentKind) -> str:
     """Return the colour that stands for a kind: that of its first buffer, or the one of all code."""
-    return CODE_COLOUR if kind is Kind.CODE else _shade(kind, 0)
+    return CODE_COLOUR if kind is ContentKind.CODE else _shade(kind, 0)
 
 
-def _shade(kind: Kind, number: int) -> str:
+def _shade(kind: ContentKind, number: int) -> str:
     """Return the colour of the buffer `number` of its kind."""
     light, full, turn = ((0.5 + number * step) % 1 for step in STEPS)
     lightness, saturation = (

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import groupby
 
 from bfsim.report.ldf.colours import colours_of, kind_colour
-from bfsim.report.ldf.map import SHARED, Kind, MapPiece, MapSegment, MemoryMap
+from bfsim.report.ldf.map import SHARED, ContentKind, MapPiece, MapSegment, MemoryMap
 from bfsim.report.units import size
 
 # lengths in px
@@ -25,11 +25,11 @@ MOST_LEGEND_COLUMNS = 3
 SEAM_WIDTH = 4  # of a piece that is wide enough for one
 
 KINDS = {
-    Kind.CODE: "code",
-    Kind.CAMERA: "filled by a camera",
-    Kind.LINES: "images and rings",
-    Kind.ROW: "rows",
-    Kind.TABLE: "tables",
+    ContentKind.CODE: "code",
+    ContentKind.CAMERA: "filled by a camera",
+    ContentKind.LINES: "images and rings",
+    ContentKind.ROW: "rows",
+    ContentKind.TABLE: "tables",
 }
 """What the hues stand for."""
 
@@ -166,9 +166,9 @@ class _Pen:
         return x + SWATCH + 6 + _width(label, SMALL_FONT) + 24
 
     def _fill(self, piece: MapPiece) -> str:
-        if piece.kind is Kind.FREE:
+        if piece.kind is ContentKind.FREE:
             return FREE_COLOUR
-        return RESERVED_COLOUR if piece.kind is Kind.RESERVED else self.colours[piece.name]
+        return RESERVED_COLOUR if piece.kind is ContentKind.RESERVED else self.colours[piece.name]
 
     def _box(self, x: float, y: float, width: float, height: float, fill: str, outline: str = "") -> None:
         self.sheet.boxes.append(FilledBox(x=x, y=y, width=width, height=height, fill=fill, outline=outline))

@@ -9,13 +9,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from bfsim.report.ldf.map import SHARED, Kind, MapSegment, MapSymbol, MemoryMap
+from bfsim.report.ldf.map import SHARED, ContentKind, MapSegment, MapSymbol, MemoryMap
 
 FULL_SHARE = 0.95
 """A segment that is used beyond this share is nearly full."""
 
 NAMES_LISTED = 4
-STREAMED = (Kind.CAMERA, Kind.LINES)
+STREAMED = (ContentKind.CAMERA, ContentKind.LINES)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +56,7 @@ def streams_of(symbols: Iterable[MapSymbol]) -> list[Stream]:
 
 
 def _master(symbol: MapSymbol) -> str:
-    if symbol.kind is Kind.CAMERA:
+    if symbol.kind is ContentKind.CAMERA:
         return f"camera {symbol.owner}"
     return "both cores" if symbol.owner == SHARED else f"core {symbol.owner}"
 
@@ -122,7 +122,9 @@ def _hot_code(memory_map: MemoryMap) -> Iterator[Finding]:
     """Find kernels outside L1 on a core whose code cache is off."""
     cached = {each.owner for each in memory_map.caches if each.memory.endswith("L1_CODE_CACHE")}
     for segment in memory_map.segments:
-        code = [each for each in segment.symbols if each.kind is Kind.CODE and each.owner not in cached]
+        code = [
+            each for each in segment.symbols if each.kind is ContentKind.CODE and each.owner not in cached
+        ]
         if code and "L1_CODE" not in segment.memory:
             yield Finding(
                 rule="hot code outside L1",
@@ -199,7 +201,9 @@ def _tables(memory_map: MemoryMap) -> Iterator[Finding]:
     """Find tables in SDRAM that no data cache holds."""
     cached = {each.owner for each in memory_map.caches if "L1_DATA" in each.memory}
     for segment in memory_map.segments:
-        tables = [each for each in segment.symbols if each.kind is Kind.TABLE and each.owner not in cached]
+        tables = [
+            each for each in segment.symbols if each.kind is ContentKind.TABLE and each.owner not in cached
+        ]
         if tables and segment.memory == "SDRAM":
             yield Finding(
                 rule="table in SDRAM",

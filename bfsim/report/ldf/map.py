@@ -12,7 +12,7 @@ SHARED = "shared"
 """Owner of what every core reaches."""
 
 
-class Kind(StrEnum):
+class ContentKind(StrEnum):
     """What is in a stretch of memory, as far as it can be told without a run."""
 
     CODE = "code"
@@ -32,7 +32,7 @@ class MapSymbol:
     """
 
     name: str
-    kind: Kind
+    kind: ContentKind
     owner: str
     section: str
     nbytes: int
@@ -47,7 +47,7 @@ class MapPiece:
     """A stretch of a segment: one buffer, one core's code that lies side by side, a reserve, or what is free."""
 
     name: str
-    kind: Kind
+    kind: ContentKind
     owner: str
     start: int
     nbytes: int
@@ -55,7 +55,7 @@ class MapPiece:
     @property
     def is_named(self) -> bool:
         """Whether a symbol is in it."""
-        return self.kind not in (Kind.FREE, Kind.RESERVED)
+        return self.kind not in (ContentKind.FREE, ContentKind.RESERVED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,7 +15,7 @@ from bfsim.linker.script import Block, FixedReserve, InputSections, OutputSectio
 from bfsim.report.ldf.map import (
     SHARED,
     CacheRange,
-    Kind,
+    ContentKind,
     MapPiece,
     MapSection,
     MapSegment,
@@ -47,7 +47,7 @@ def memory_map(
     script: LinkerScript,
     link_map: LinkMap | None,
     memories: BoardMemories,
-    kinds: Mapping[tuple[str | None, str], Kind],
+    kinds: Mapping[tuple[str | None, str], ContentKind],
     *,
     firmware: str,
     width_px: int,
@@ -79,7 +79,7 @@ class _Builder:
         script: LinkerScript,
         link_map: LinkMap | None,
         memories: BoardMemories,
-        kinds: Mapping[tuple[str | None, str], Kind],
+        kinds: Mapping[tuple[str | None, str], ContentKind],
     ) -> None:
         self.script = script
         self.memories = memories
@@ -135,7 +135,7 @@ class _Builder:
         in_sdram = memory == "SDRAM"
         return MapSymbol(
             name=symbol.name,
-            kind=self.kinds.get((symbol.processor, symbol.name), Kind.CODE),
+            kind=self.kinds.get((symbol.processor, symbol.name), ContentKind.CODE),
             owner=self.script.core_of_processor[symbol.processor] if symbol.processor else SHARED,
             section=symbol.section,
             nbytes=symbol.nbytes,
@@ -168,7 +168,7 @@ class _Builder:
         inside = {each.start: each for each in self._reserved[first:last]}
         for each in inside.values():
             yield MapPiece(
-                name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes
+                name=each.name, kind=ContentKind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes
             )
 
 
@@ -187,22 +187,26 @@ def _pieces(
     last = max((each.start + each.nbytes for each in placed), default=segment.start)
     gaps = max(0, used_bytes - sum(each.nbytes for each in named))
     here = segment.start
-    for piece in [*named, _unnamed(Kind.FREE, segment.end + 1, 0)]:
+    for piece in [*named, _unnamed(ContentKind.FREE, segment.end + 1, 0)]:
         space = piece.start - here
         gap = space if here < last else min(space, gaps)
         gaps -= gap
         if gap:
-            yield _unnamed(Kind.RESERVED, here, gap)
+            yield _unnamed(ContentKind.RESERVED, here, gap)
         if space > gap:
-            yield _unnamed(Kind.FREE, here + gap, space - gap)
+            yield _unnamed(ContentKind.FREE, here + gap, space - gap)
         if piece.nbytes:
             yield piece
         here = max(here, piece.start + piece.nbytes)
 
 
-def _unnamed(kind: Kind, start: int, nbytes: int) -> MapPiece:
+def _unnamed(kind: ContentKind, start: int, nbytes: int) -> MapPiece:
     return MapPiece(
-        name="free" if kind is Kind.FREE else "gap", kind=kind, owner=SHARED, start=start, nbytes=nbytes
+        name="free" if kind is ContentKind.FREE else "gap",
+        kind=kind,
+        owner=SHARED,
+        start=start,
+        nbytes=nbytes,
     )
 
 
@@ -218,7 +222,7 @@ def _merged(pieces: Iterable[MapPiece]) -> list[MapPiece]:
     ordered = sorted(pieces, key=lambda piece: piece.start)
     for (kind, _), group in groupby(ordered, key=lambda piece: (piece.kind, piece.owner)):
         run = list(group)
-        if kind is Kind.CODE and len(run) > 1:
+        if kind is ContentKind.CODE and len(run) > 1:
             nbytes = run[-1].start + run[-1].nbytes - run[0].start
             run = [replace(run[0], name=f"{len(run)} kernels", nbytes=nbytes)]
         merged.extend(run)
