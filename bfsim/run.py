@@ -27,7 +27,7 @@ from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import require_cores
 from bfsim.recording import RecordingReader
-from bfsim.recording.stereo_check import StereoCheck
+from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.result import Run
 from bfsim.running.arguments import one_of, path_of, require_kinds
 from bfsim.running.assumptions import (

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 from bfsim.errors import RecordingError, cut
-from bfsim.recording.sources import Skipped
+from bfsim.recording.importing.sources import Skipped
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bfsim.recording.calibration_report import CalibrationReport
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.importer import Progress
+from bfsim.recording.importing.importer import Progress
 from bfsim.recording.reader import RecordingReader
 
 

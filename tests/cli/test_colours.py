@@ -11,7 +11,7 @@ from PIL import Image
 
 from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
-from bfsim.recording.images import picture_of_file
+from bfsim.recording.importing.images import picture_of_file
 from bfsim.shipped import RECORDING
 
 OTHER = """

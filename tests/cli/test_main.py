@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 from bfsim import __version__
 from bfsim.cli.main import main
 from bfsim.cli.record.import_pictures import SOURCE_FORMATS
-from bfsim.recording import sources
+from bfsim.recording.importing import sources
 from tests.tiers import exhaustive
 
 
@@ -78,7 +78,7 @@ def test_a_run_imports_only_what_it_needs() -> None:
         "PIL",
         "bfsim.kernel.costing",
         "bfsim.kernel.emit",
-        "bfsim.recording.importer",
+        "bfsim.recording.importing.importer",
         "numba",
         "pydantic",
     }

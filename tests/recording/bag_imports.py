@@ -9,7 +9,7 @@ from click.testing import CliRunner, Result
 
 from bfsim.cli.record import record
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.recording.importer import import_recording
+from bfsim.recording.importing.importer import import_recording
 from tests.recording.bags import (
     KINDS,
 )

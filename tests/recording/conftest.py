@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from bfsim.recording import boards
+from bfsim.recording.calibrating import boards
 from bfsim.recording.planes import Plane
 from bfsim.recording.scenes.chessboard import write_chessboards
 from tests.recording.chessboards import GEOMETRY, MISFIT

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import RecordingError
-from bfsim.recording.calibration import calibrate
+from bfsim.recording.calibrating.calibration import calibrate
 from tests.recording.chessboards import CORNERS, SIZE, SQUARE_MM
 
 

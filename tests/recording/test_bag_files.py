@@ -13,7 +13,7 @@ from PIL import Image
 
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RecordingWriter
-from bfsim.recording.importer import import_recording
+from bfsim.recording.importing.importer import import_recording
 from tests.recording.bag_imports import each_kind, imported
 from tests.recording.bags import (
     Ros,

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importer import import_recording
-from bfsim.recording.time_pairs import nearest_pairs, rising
+from bfsim.recording.importing.importer import import_recording
+from bfsim.recording.importing.time_pairs import nearest_pairs, rising
 from tests.recording.bag_imports import IMAGE, each_kind, greys, imported, run
 from tests.recording.bags import (
     EPOCH_NS,

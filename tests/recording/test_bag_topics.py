@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importer import import_recording
+from bfsim.recording.importing.importer import import_recording
 from tests.recording.bag_imports import IMAGE, each_kind, greys, imported, run
 from tests.recording.bags import (
     EPOCH_NS,

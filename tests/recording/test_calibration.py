@@ -15,16 +15,16 @@ from PIL import Image, ImageFilter
 from bfsim.cli.record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables, StereoGeometry
-from bfsim.recording.boards import BoardView
-from bfsim.recording.calibration import (
+from bfsim.recording.calibrating.boards import BoardView
+from bfsim.recording.calibrating.calibration import (
     StereoCalibration,
     _fit_without_outliers,
     calibrate,
     calibrate_recording,
 )
+from bfsim.recording.calibrating.residual_plot import draw_residuals
 from bfsim.recording.calibration_report import CalibrationReport, ViewError, mean_focal_px
-from bfsim.recording.camera_models import Fisheye
-from bfsim.recording.residual_plot import draw_residuals
+from bfsim.recording.cameras.camera_models import Fisheye
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.lens import rectified
 from bfsim.recording.scenes.pinhole import Pinhole, Vector

@@ -14,7 +14,7 @@ from bfsim.recording import (
     RectificationTables,
     StereoGeometry,
 )
-from bfsim.recording.importer import ImportSummary, import_recording
+from bfsim.recording.importing.importer import ImportSummary, import_recording
 from bfsim.recording.planes import YuvPlanes, fit_matrix
 from tests.recording.bags import EPOCH_NS, KINDS, LEFT, RIGHT, Message, Ros, grey_pair
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bfsim.errors import RecordingError
-from bfsim.recording.camera_models import CameraModel, Fisheye, FittedCamera, Pinhole
+from bfsim.recording.cameras.camera_models import CameraModel, Fisheye, FittedCamera, Pinhole
 
 SIZE = (640, 480)
 BOARD = np.zeros((54, 3))

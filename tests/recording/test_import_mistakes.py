@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importer import import_recording
+from bfsim.recording.importing.importer import import_recording
 from tests.recording.pictures import noise, save_grey
 
 

@@ -13,7 +13,7 @@ from bfsim.recording import (
     RecordingReader,
     StereoGeometry,
 )
-from bfsim.recording.importer import SAME_PICTURES, import_recording
+from bfsim.recording.importing.importer import SAME_PICTURES, import_recording
 from tests.recording.pictures import animation, frames_of, save_grey
 
 

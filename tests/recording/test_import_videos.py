@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importer import import_recording
-from bfsim.recording.sources import guess_format
+from bfsim.recording.importing.importer import import_recording
+from bfsim.recording.importing.sources import guess_format
 from tests.recording.pictures import animation, frames_of, noise
 
 

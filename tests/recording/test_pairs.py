@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import RecordingError
-from bfsim.recording.pairs import pairs_of, side_of
+from bfsim.recording.importing.pairs import pairs_of, side_of
 
 
 def paths(folder: str, *names: object) -> list[Path]:

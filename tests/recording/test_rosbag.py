@@ -11,9 +11,9 @@ from PIL import Image
 
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader
-from bfsim.recording.importer import import_recording
+from bfsim.recording.importing.importer import import_recording
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.ros_images import ENCODINGS
+from bfsim.recording.ros.ros_images import ENCODINGS
 from tests.recording.bag_imports import COMPRESSED, IMAGE, each_kind, greys, imported
 from tests.recording.bags import (
     EPOCH_NS,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bfsim.recording.importer import import_recording
-from bfsim.recording.row_count import wrong_row_count
+from bfsim.recording.importing.importer import import_recording
+from bfsim.recording.importing.row_count import wrong_row_count
 from tests.recording.pictures import noise
 
 WIDTH, HEIGHT = 320, 240

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.recording import RecordingReader
-from bfsim.recording.importer import import_recording
-from bfsim.recording.row_length import other_row_length
+from bfsim.recording.importing.importer import import_recording
+from bfsim.recording.importing.row_length import other_row_length
 from bfsim.shipped import RECORDING
 from tests.recording.pictures import noise
 

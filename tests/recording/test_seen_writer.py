@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingWriter
-from bfsim.recording.seen_writer import SeenWriter
+from bfsim.recording.foxglove.seen_writer import SeenWriter
 from tests import seen_frames as made
 
 SCHEMAS = {

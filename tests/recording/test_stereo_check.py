@@ -13,7 +13,7 @@ from PIL import Image, ImageFilter
 
 from bfsim.cli.record import record
 from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables
-from bfsim.recording.stereo_check import StereoCheck
+from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.run import simulate
 from bfsim.shipped import RECORDING
 from bfsim.trace import WarningKind

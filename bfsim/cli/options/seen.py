@@ -19,7 +19,7 @@ from bfsim.errors import ConfigError, shown
 from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
-    from bfsim.recording.seen_writer import SeenWriter
+    from bfsim.recording.foxglove.seen_writer import SeenWriter
     from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
@@ -158,7 +158,7 @@ def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
 
 
 def _seen_writer(path: Path) -> SeenWriter:
-    from bfsim.recording.seen_writer import SeenWriter
+    from bfsim.recording.foxglove.seen_writer import SeenWriter
     from bfsim.report.save import require_place
 
     require_place(path)

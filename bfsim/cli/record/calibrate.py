@@ -63,7 +63,7 @@ def calibrate_command(
       bfsim record calibrate boards/ phone.mcap --mono
     """
     from bfsim.recording import RecordingReader
-    from bfsim.recording.calibration import calibrate_recording
+    from bfsim.recording.calibrating.calibration import calibrate_recording
 
     found = calibrate_recording(
         chessboards,

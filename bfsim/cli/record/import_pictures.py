@@ -12,7 +12,7 @@ from bfsim.cli.record.imported import fitted_text, skipped_texts
 from bfsim.process.terminal import progress_bar
 
 if TYPE_CHECKING:
-    from bfsim.recording.sources import SourceFormat
+    from bfsim.recording.importing.sources import SourceFormat
 
 SOURCE_FORMATS = (
     "images", "uyvy", "i420", "yuyv", "nv12", "grey", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8",
@@ -115,7 +115,7 @@ def import_command(
       bfsim record import run.mcap "match/*.jpg" --mono --resize 320x240 --geometry 260 0 480 12
     """
     from bfsim.recording import StereoGeometry
-    from bfsim.recording.importer import import_recording, load_rectification
+    from bfsim.recording.importing.importer import import_recording, load_rectification
 
     with progress_bar("Importing") as progress:
         summary = import_recording(

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from bfsim.errors import listed
 
 if TYPE_CHECKING:
-    from bfsim.recording.importer import ImportSummary
-    from bfsim.recording.sources import Skipped
+    from bfsim.recording.importing.importer import ImportSummary
+    from bfsim.recording.importing.sources import Skipped
 
 MOST_LISTED = 10
 """Sizes and names in a list; the others are counted."""

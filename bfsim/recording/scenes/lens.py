@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.rectifying import rectified_rotation
+from bfsim.recording.cameras.rectifying import rectified_rotation
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
 
 Light = NDArray[np.float32]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from bfsim.errors import RecordingError
 from bfsim.recording.frames import StereoGeometry
-from bfsim.recording.importer import Progress
+from bfsim.recording.importing.importer import Progress
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Misfit
 from bfsim.recording.scenes.scene import Scene, SceneAtDistances, Scenes

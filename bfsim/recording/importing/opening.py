@@ -7,11 +7,19 @@ from functools import partial
 from pathlib import Path
 
 from bfsim.errors import RecordingError
-from bfsim.recording.bayer import BAYER_PATTERNS
-from bfsim.recording.images import open_image_pair, open_images
-from bfsim.recording.raw import open_bayer, open_grey, open_i420, open_nv12, open_uyvy, open_y4m, open_yuyv
-from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, SourceFormat, guess_format
-from bfsim.recording.video import open_video
+from bfsim.recording.importing.bayer import BAYER_PATTERNS
+from bfsim.recording.importing.images import open_image_pair, open_images
+from bfsim.recording.importing.raw import (
+    open_bayer,
+    open_grey,
+    open_i420,
+    open_nv12,
+    open_uyvy,
+    open_y4m,
+    open_yuyv,
+)
+from bfsim.recording.importing.sources import SOURCE_FORMATS, PictureSource, SourceFormat, guess_format
+from bfsim.recording.importing.video import open_video
 
 _FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
 _RAW_OPENERS: dict[SourceFormat, Callable[[str, tuple[int, int]], PictureSource]] = {

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.recording.importing.sources import PictureSource
 from bfsim.recording.planes import Plane, YuvPlanes
-from bfsim.recording.sources import PictureSource
 
 MOST_PIXELS = 200_000
 """Of a picture, that are compared."""

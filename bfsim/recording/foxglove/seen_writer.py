@@ -20,16 +20,16 @@ from bfsim import __version__
 from bfsim.errors import RecordingError
 from bfsim.recording import layout
 from bfsim.recording.container import McapContainer
-from bfsim.recording.growing_file import growing_file, writing
-from bfsim.recording.number_messages import NumberMessages
-from bfsim.recording.seen_pictures import features_message, heat_message, image_message
-from bfsim.recording.seen_space import (
+from bfsim.recording.foxglove.number_messages import NumberMessages
+from bfsim.recording.foxglove.seen_pictures import features_message, heat_message, image_message
+from bfsim.recording.foxglove.seen_space import (
     calibration_message,
     edges_message,
     lines_message,
     objects_message,
     transforms_message,
 )
+from bfsim.recording.growing_file import growing_file, writing
 from bfsim.seen import SeenFrame
 from bfsim.seen.heat import hottest_row_us
 

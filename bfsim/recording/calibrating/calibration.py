@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.boards import BoardView, find_views
+from bfsim.recording.calibrating.boards import BoardView, find_views
+from bfsim.recording.calibrating.residual_plot import draw_residuals
 from bfsim.recording.calibration_report import (
     CalibrationReport,
     LensFit,
@@ -23,12 +24,11 @@ from bfsim.recording.calibration_report import (
     ViewError,
     mean_focal_px,
 )
-from bfsim.recording.camera_models import CameraModel, Fisheye, Fit, FittedCamera, Floats, Pinhole
+from bfsim.recording.cameras.camera_models import CameraModel, Fisheye, Fit, FittedCamera, Floats, Pinhole
+from bfsim.recording.cameras.rectifying import nearest_table, rectified_rotation
 from bfsim.recording.frames import RectificationTables, StereoGeometry
+from bfsim.recording.importing.sources import Skipped
 from bfsim.recording.reader import RecordingReader
-from bfsim.recording.rectifying import nearest_table, rectified_rotation
-from bfsim.recording.residual_plot import draw_residuals
-from bfsim.recording.sources import Skipped
 from bfsim.recording.writer import RecordingWriter
 
 # Fewer views than this leave the distortion to chance. [assumed]

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from bfsim.errors import RecordingError, shown
-from bfsim.recording.camera_models import Fisheye, FittedCamera, Floats, Pinhole
+from bfsim.recording.cameras.camera_models import Fisheye, FittedCamera, Floats, Pinhole
+from bfsim.recording.cameras.rectifying import nearest_table
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.rectifying import nearest_table
 
 CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 

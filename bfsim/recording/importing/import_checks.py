@@ -9,8 +9,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from bfsim.errors import RecordingError
-from bfsim.recording.deep_pixels import check_bits
-from bfsim.recording.sources import DEEP_FORMATS, RAW_FORMATS, PictureSource, SourceFormat, guess_format
+from bfsim.recording.importing.deep_pixels import check_bits
+from bfsim.recording.importing.sources import (
+    DEEP_FORMATS,
+    RAW_FORMATS,
+    PictureSource,
+    SourceFormat,
+    guess_format,
+)
 
 _PATTERN = '"left*.jpg"'
 

@@ -13,11 +13,11 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError, cut
-from bfsim.recording.deep_pixels import MOST_BITS, upper_bits
 from bfsim.recording.frames import UyvyImage
-from bfsim.recording.pairs import pairs_of
+from bfsim.recording.importing.deep_pixels import MOST_BITS, upper_bits
+from bfsim.recording.importing.pairs import pairs_of
+from bfsim.recording.importing.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 
 _DEEP = ";16"
 """In Pillow's names of what pixels of 16 bits are like: `I;16`, `RGB;16B`."""

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.recording.sources import PictureSource
+from bfsim.recording.importing.sources import PictureSource
 
 MOST_FRAMES = 30
 """Of a file, that are looked at."""

@@ -12,19 +12,19 @@ import numpy as np
 
 from bfsim.errors import RecordingError
 from bfsim.files.content import read_bounded
-from bfsim.recording.camera_info import Rig, rig_of
+from bfsim.recording.cameras.camera_info import Rig, rig_of
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.import_checks import camera_size, check_call, check_options, check_pair
+from bfsim.recording.importing.import_checks import camera_size, check_call, check_options, check_pair
+from bfsim.recording.importing.opening import open_sources
+from bfsim.recording.importing.picture_pairs import PicturePairs
+from bfsim.recording.importing.row_count import row_count_warnings
+from bfsim.recording.importing.row_length import row_length_warnings
+from bfsim.recording.importing.sources import Skipped, SourceFormat, guess_format
+from bfsim.recording.importing.stamps import Stamps, frame_rate
 from bfsim.recording.layout import table_from_npy
-from bfsim.recording.opening import open_sources
-from bfsim.recording.picture_pairs import PicturePairs
 from bfsim.recording.planes import fit_matrix
-from bfsim.recording.rosbag import BagPictures, open_bag
-from bfsim.recording.row_count import row_count_warnings
-from bfsim.recording.row_length import row_length_warnings
-from bfsim.recording.sources import Skipped, SourceFormat, guess_format
-from bfsim.recording.stamps import Stamps, frame_rate
-from bfsim.recording.stereo_check import StereoCheck
+from bfsim.recording.ros.rosbag import BagPictures, open_bag
+from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.recording.writer import RecordingWriter
 
 LARGEST_TABLE_MB = 256

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from bfsim.errors import RecordingError
-from bfsim.recording.sources import PictureSource
+from bfsim.recording.importing.sources import PictureSource
 
 DEFAULT_FPS = Fraction(30)
 """Of sources that do not say: the VGA rate of the OmniVision sensors."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bfsim.errors import RecordingError
-from bfsim.recording.sources import Skipped
+from bfsim.recording.importing.sources import Skipped
 
 SIDES = ("left", "right")
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.images import images_among, images_and_others, load_image
-from bfsim.recording.pairs import SIDES, pairs_of, side_of
+from bfsim.recording.importing.images import images_among, images_and_others, load_image
+from bfsim.recording.importing.pairs import SIDES, pairs_of, side_of
+from bfsim.recording.importing.sources import Skipped
 from bfsim.recording.planes import Plane, YuvPlanes, fit_matrix
-from bfsim.recording.sources import Skipped
 
 Corners = NDArray[np.float32]
 

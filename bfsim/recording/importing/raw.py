@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.bayer import BayerPattern, planes_of_bayer
-from bfsim.recording.deep_pixels import upper_bits, words
+from bfsim.recording.importing.bayer import BayerPattern, planes_of_bayer
+from bfsim.recording.importing.deep_pixels import upper_bits, words
+from bfsim.recording.importing.sources import PictureSource
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.sources import PictureSource
 
 _Y4M_MAGIC = b"YUV4MPEG2"
 _LONGEST_LINE_BYTES = 1024

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from bfsim.errors import RecordingError, cut
-from bfsim.recording.bag_file import Topic
-from bfsim.recording.ros_images import IMAGE_TYPES
+from bfsim.recording.ros.bag_file import Topic
+from bfsim.recording.ros.ros_images import IMAGE_TYPES
 
 _SIDES = re.compile(r"(?<![a-z])(left|right)(?![a-z])", re.IGNORECASE)
 _OTHER_SIDE = {"left": "right", "right": "left"}

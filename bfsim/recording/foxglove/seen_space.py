@@ -29,7 +29,7 @@ from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 
-from bfsim.recording.seen_pictures import color
+from bfsim.recording.foxglove.seen_pictures import color
 from bfsim.seen import PointMm, SeenEdges3D, SeenGeometry, SeenLine3D, SeenObject, Solid
 from bfsim.seen.colours import ROOM
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from itertools import zip_longest
 
 from bfsim.errors import RecordingError
-from bfsim.recording.import_checks import check_halves
+from bfsim.recording.importing.import_checks import check_halves
+from bfsim.recording.importing.sources import PictureSource, Skipped
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.sources import PictureSource, Skipped
 
 
 @dataclass(slots=True)

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from bfsim.errors import RecordingError
+from bfsim.recording.importing.sources import PictureSource
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.sources import PictureSource
 
 LARGEST_JITTER_S = Fraction(1, 1000)
 """Pictures of an even rate may be off by less than this, or than a tick of the video's clock."""

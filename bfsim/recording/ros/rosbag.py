@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from bfsim.errors import RecordingError
-from bfsim.recording.bag_file import BagFile, Topic
-from bfsim.recording.bag_topics import pair_of_topics, single_topic
-from bfsim.recording.camera_info import CAMERA_INFO, CameraInfo
+from bfsim.recording.cameras.camera_info import CAMERA_INFO, CameraInfo
+from bfsim.recording.importing.sources import PictureSource, Skipped
+from bfsim.recording.importing.time_pairs import Times, nearest_pairs, period_ns, rising
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.ros_images import IMAGE_TYPES, planes_of
-from bfsim.recording.sources import PictureSource, Skipped
-from bfsim.recording.time_pairs import Times, nearest_pairs, period_ns, rising
+from bfsim.recording.ros.bag_file import BagFile, Topic
+from bfsim.recording.ros.bag_topics import pair_of_topics, single_topic
+from bfsim.recording.ros.ros_images import IMAGE_TYPES, planes_of
 
 DEFAULT_PERIOD_NS = 1e9 / 30
 """Of bags with a single picture: the rate of the sensors that bfsim knows."""

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.recording.exchange import EXCHANGED, exchanged_places
 from bfsim.recording.frames import RectificationTables, StereoFrame, UyvyImage
-from bfsim.recording.row_offsets import NOWHERE, OTHER_ROWS, places_in_other_rows, places_nowhere
+from bfsim.recording.stereo.exchange import EXCHANGED, exchanged_places
+from bfsim.recording.stereo.row_offsets import NOWHERE, OTHER_ROWS, places_in_other_rows, places_nowhere
 
 if TYPE_CHECKING:
     from bfsim.recording.planes import Plane

@@ -1,0 +1,1 @@
+"""From pictures of a chessboard to cameras whose lenses are known."""

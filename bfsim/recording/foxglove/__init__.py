@@ -1,0 +1,1 @@
+"""What was seen, as an MCAP file that Foxglove and rerun draw."""

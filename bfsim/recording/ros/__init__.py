@@ -1,0 +1,1 @@
+"""Pictures from bags of ROS, through the optional package rosbags."""
