@@ -16,7 +16,7 @@ import zstandard
 
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RecordingWriter
-from bfsim.recording.importing.importer import load_rectification
+from bfsim.recording.importing.rectification_files import load_rectification
 from tests.recording.attacks import (
     FIRST_CHUNK_AT,
     IMAGE,

@@ -13,7 +13,8 @@ from bfsim.recording import (
     RecordingReader,
     RectificationTables,
 )
-from bfsim.recording.importing.importer import import_recording, load_rectification
+from bfsim.recording.importing.importer import import_recording
+from bfsim.recording.importing.rectification_files import load_rectification
 from bfsim.recording.planes import YuvPlanes
 from tests.recording.pictures import frames_of, noise, save_grey
 
@@ -207,7 +208,9 @@ def test_rectification_tables_of_other_kinds(tmp_path: Path, monkeypatch: pytest
             RecordingError, match=rf"{name}\.npy: .* must hold integers of shape .*, not {found}"
         ):
             load_rectification(tmp_path / f"{name}.npy", tmp_path / f"{name}.npy")
-    monkeypatch.setattr("bfsim.recording.importing.importer.LARGEST_TABLE_MB", 0)  # a device never ends
+    monkeypatch.setattr(
+        "bfsim.recording.importing.rectification_files.LARGEST_TABLE_MB", 0
+    )  # a device never ends
     with pytest.raises(RecordingError, match=r"far\.npy: .* must be a readable file: it has more than 0 MB"):
         load_rectification(tmp_path / "far.npy", tmp_path / "far.npy")
     monkeypatch.undo()

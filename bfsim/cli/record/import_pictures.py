@@ -115,7 +115,8 @@ def import_command(
       bfsim record import run.mcap "match/*.jpg" --mono --resize 320x240 --geometry 260 0 480 12
     """
     from bfsim.recording import StereoGeometry
-    from bfsim.recording.importing.importer import import_recording, load_rectification
+    from bfsim.recording.importing.importer import import_recording
+    from bfsim.recording.importing.rectification_files import load_rectification
 
     with progress_bar("Importing") as progress:
         summary = import_recording(

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from bfsim.errors import RecordingError
-from bfsim.files.content import read_bounded
 from bfsim.recording.cameras.camera_info import Rig, rig_of
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.importing.import_checks import camera_size, check_call, check_options, check_pair
@@ -19,16 +18,12 @@ from bfsim.recording.importing.opening import open_sources
 from bfsim.recording.importing.picture_pairs import PicturePairs
 from bfsim.recording.importing.row_count import row_count_warnings
 from bfsim.recording.importing.row_length import row_length_warnings
-from bfsim.recording.importing.sources import Skipped, SourceFormat, guess_format
+from bfsim.recording.importing.sources import PictureSource, Skipped, SourceFormat, guess_format
 from bfsim.recording.importing.stamps import Stamps, frame_rate
-from bfsim.recording.layout import table_from_npy
 from bfsim.recording.planes import fit_matrix
 from bfsim.recording.ros.rosbag import BagPictures, open_bag
 from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.recording.writer import RecordingWriter
-
-LARGEST_TABLE_MB = 256
-"""Of a rectification table: 16 bytes a pixel at most."""
 
 SAME_PICTURES = "Warning: both cameras have the same pictures, byte for byte, so that nothing has a depth; `--mono` is for one camera"
 
@@ -112,14 +107,10 @@ def import_recording(
     rig = Rig(geometry, rectification, ())
     if bag and (geometry is None or rectification is None):
         rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
-    size_doubts: tuple[str, ...] = ()
-    if size is not None:
-        lengths = () if side_by_side else tuple(row_length_warnings(opened))
-        size_doubts = lengths or tuple(row_count_warnings(opened))
+    size_doubts = _size_doubts(opened, side_by_side=side_by_side) if size is not None else ()
     stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
     check = StereoCheck(rig.tables)
     pairs = PicturePairs(opened, side_by_side, resize, crop)
-    is_one_camera = not is_single
     with RecordingWriter(
         output,
         width=picture_size[0],
@@ -128,14 +119,7 @@ def import_recording(
         rectification=rig.tables,
         description=description,
     ) as writer:
-        for index, left, right in pairs:
-            stamps_ns = stamps.of(index, writer.frame_count)
-            coded = left.to_uyvy(), right.to_uyvy()
-            check.look_at(*coded)
-            is_one_camera = is_one_camera and np.array_equal(*coded)
-            writer.add(*coded, *stamps_ns)
-            if progress is not None:
-                progress(index + 1, count)
+        are_same = _write(writer, pairs, stamps, check, count, progress)
         if not writer.frame_count and pairs.skipped:
             last = pairs.skipped[-1]
             raise RecordingError(f"{names[0]}: {last.name}: {last.reason}, and no picture is left")
@@ -154,9 +138,36 @@ def import_recording(
             *rig.notes,
             *size_doubts,
             *(f"Warning: {each}" for each in check.warnings),
-            *((SAME_PICTURES,) if is_one_camera else ()),
+            *((SAME_PICTURES,) if are_same and not is_single else ()),
         ),
     )
+
+
+def _write(
+    writer: RecordingWriter,
+    pairs: PicturePairs,
+    stamps: Stamps,
+    check: StereoCheck,
+    count: int | None,
+    progress: Progress | None,
+) -> bool:
+    """Write pair after pair, which are checked as they pass, and return whether both pictures of each are the same."""
+    are_same = True
+    for index, left, right in pairs:
+        stamps_ns = stamps.of(index, writer.frame_count)
+        coded = left.to_uyvy(), right.to_uyvy()
+        check.look_at(*coded)
+        are_same = are_same and np.array_equal(*coded)
+        writer.add(*coded, *stamps_ns)
+        if progress is not None:
+            progress(index + 1, count)
+    return are_same
+
+
+def _size_doubts(opened: list[PictureSource], *, side_by_side: bool) -> tuple[str, ...]:
+    """Return why raw frames may be of another size than was said: the length of their rows first."""
+    lengths = () if side_by_side else tuple(row_length_warnings(opened))
+    return lengths or tuple(row_count_warnings(opened))
 
 
 def _rig(
@@ -176,25 +187,3 @@ def _rig(
     sizes = tuple(each.size for each in bag.sources)
     fits = tuple(fit_matrix(each, resize, crop) for each in sizes)
     return rig_of(bag.cameras, sizes, fits, size, given)
-
-
-def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[str]) -> RectificationTables:
-    """Rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing."""
-    tables = []
-    for path in (left, right):
-        try:
-            table = table_from_npy(read_bounded(Path(path), most_mb=LARGEST_TABLE_MB))
-        except OSError as error:
-            raise RecordingError(
-                f"{path}: rectification table must be a readable file: {error.strerror}"
-            ) from None
-        except RecordingError as error:
-            raise RecordingError(f"{path}: {error}") from None
-        if table.dtype.kind not in "iu" or table.ndim != 3:
-            raise RecordingError(
-                f"{path}: rectification table must hold integers of shape (2, height, width), "
-                f"not {table.dtype} of shape {table.shape}"
-            )
-        bounds = np.iinfo(np.int32)
-        tables.append(np.clip(table, bounds.min, bounds.max).astype(np.int32))
-    return RectificationTables(*tables)
