@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import shutil
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -85,6 +86,20 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "given_recording" in metafunc.fixturenames:
         given = metafunc.config.getoption("recording")
         metafunc.parametrize("given_recording", given, ids=[path.stem for path in given])
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], Path]:
+    """Write a file of a name and a text into the current folder, which is a new one."""
+    monkeypatch.chdir(tmp_path)
+
+    def write_file(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    return write_file
 
 
 @pytest.fixture(scope="session", autouse=True)

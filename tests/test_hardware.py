@@ -33,20 +33,6 @@ PLAIN = replace(VDSP_O2, parallel_issue=False)
 Write = Callable[[str, str], Path]
 
 
-@pytest.fixture
-def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Write a file into the current folder."""
-    monkeypatch.chdir(tmp_path)
-
-    def write_file(name: str, text: str) -> Path:
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        return path
-
-    return write_file
-
-
 def test_a_board_in_a_file_or_package_is_found(write: Write) -> None:
     """By its name, or alone where the module has one of its own; what it imports of the shipped ones is not counted."""
     write("mine.py", MINE)

@@ -32,20 +32,6 @@ fw = Firmware(mains={"A": main, "B": main}, buffers=lambda size: {}, camera="cam
 Write = Callable[[str, str], Path]
 
 
-@pytest.fixture
-def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Write a file of a firmware into the current folder."""
-    monkeypatch.chdir(tmp_path)
-
-    def write_file(name: str, text: str) -> Path:
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        return path
-
-    return write_file
-
-
 @pytest.fixture(autouse=True)
 def untouched() -> Iterator[None]:
     """Whatever is loaded, Python's path and modules are afterwards as they were."""

@@ -25,6 +25,17 @@ def sub_banks(address: int, nbytes: int) -> range:
     return range(address // SUBBANK, (address + nbytes - 1) // SUBBANK + 1)
 
 
+def begin_moving(core: Core, address: int, words: int) -> Play:
+    """Have DMA write so many words to an address in L1."""
+    dma = core.memory_dma("MDMA1_0")
+    registers = {"X_COUNT": words, "X_MODIFY": 4}
+    dma.program(
+        source={"START_ADDR": core.array("large").address, **registers},
+        destination={"START_ADDR": address, **registers},
+    )
+    yield from dma.start(DmaConfig(), DmaConfig(WNR=True))
+
+
 def loading(*, moved_words: int, calls: int, at_bank: int) -> tuple[BoardRecord, dict[str, int]]:
     """Let DMA write a sub-bank of L1 while the core sums up a row of three; return the run and what is known of it."""
     known: dict[str, int] = {}
@@ -35,16 +46,11 @@ def loading(*, moved_words: int, calls: int, at_bank: int) -> tuple[BoardRecord,
         target = -(-target // SUBBANK) * SUBBANK + (SUBBANK if at_bank % 4 == 2 else 0)
         shared = [each for each in sub_banks(row.address, row.nbytes) if each == target // SUBBANK]
         known["banks"], known["shared"] = len(sub_banks(row.address, row.nbytes)), len(shared)
-        dma = core.memory_dma("MDMA1_0")
         if moved_words:
-            dma.program(
-                source={"START_ADDR": core.array("large").address, "X_COUNT": moved_words, "X_MODIFY": 4},
-                destination={"START_ADDR": target, "X_COUNT": moved_words, "X_MODIFY": 4},
-            )
-            yield from dma.start(DmaConfig(), DmaConfig(WNR=True))
+            yield from begin_moving(core, target, moved_words)
         for _ in range(calls):
             yield core.run(total, row)
-        yield from dma.wait()
+        yield from core.memory_dma("MDMA1_0").wait()
 
     outcome = play(in_work(work), more=(BANKS, LARGE))
     assert_accounted(outcome)
@@ -88,15 +94,10 @@ def test_work_without_memory_meets_no_dma() -> None:
     """The core computes in registers while the words come."""
 
     def work(core: Core, frame: Frame) -> Play:
-        dma, row = core.memory_dma("MDMA1_0"), core.rows("banks")[0]
-        registers = {"X_COUNT": WORDS, "X_MODIFY": 4}
-        dma.program(
-            source={"START_ADDR": core.array("large").address, **registers},
-            destination={"START_ADDR": row.address, **registers},
-        )
-        yield from dma.start(DmaConfig(), DmaConfig(WNR=True))
+        row = core.rows("banks")[0]
+        yield from begin_moving(core, row.address, WORDS)
         yield core.run(spin, 3000)
-        yield from dma.wait()
+        yield from core.memory_dma("MDMA1_0").wait()
 
     assert conflicts(play(in_work(work), more=(BANKS, LARGE)))[0] == 0
 
@@ -105,15 +106,10 @@ def test_each_stage_pays_for_its_own_dma() -> None:
     """DMA that ended before a stage began costs that one nothing."""
 
     def move(core: Core) -> Play:
-        dma, row = core.memory_dma("MDMA1_0"), core.rows("banks")[0]
-        registers = {"X_COUNT": WORDS, "X_MODIFY": 4}
-        dma.program(
-            source={"START_ADDR": core.array("large").address, **registers},
-            destination={"START_ADDR": row.address, **registers},
-        )
-        yield from dma.start(DmaConfig(), DmaConfig(WNR=True))
+        row = core.rows("banks")[0]
+        yield from begin_moving(core, row.address, WORDS)
         yield core.run(total, row)
-        yield from dma.wait()
+        yield from core.memory_dma("MDMA1_0").wait()
 
     def read(core: Core) -> Play:
         yield core.run(total, core.rows("banks")[0])
@@ -137,13 +133,8 @@ def test_a_stage_that_ends_ahead_of_time_pays_too() -> None:
     """The words came while its kernels ran, though nobody has looked at the bus since."""
 
     def work(core: Core, frame: Frame) -> Play:
-        dma, row = core.memory_dma("MDMA1_0"), core.rows("banks")[0]
-        registers = {"X_COUNT": WORDS, "X_MODIFY": 4}
-        dma.program(
-            source={"START_ADDR": core.array("large").address, **registers},
-            destination={"START_ADDR": row.address, **registers},
-        )
-        yield from dma.start(DmaConfig(), DmaConfig(WNR=True))
+        row = core.rows("banks")[0]
+        yield from begin_moving(core, row.address, WORDS)
         for _ in range(3):
             yield core.run(total, row)
 
