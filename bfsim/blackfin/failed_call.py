@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
+from bfsim.blackfin.convention import KEPT, STACK, STACK_BYTES
 from bfsim.blackfin.event import ENDS, Event
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.image import LINKED_WITH, REGISTERS
+from bfsim.blackfin.image import LINKED_WITH, REGISTERS, Image
 from bfsim.blackfin.lines import lines_of
-from bfsim.blackfin.subroutines import KEPT, STACK, STACK_BYTES, Subroutine
+from bfsim.blackfin.processor import Processor
 from bfsim.blackfin.ways import Ways
 from bfsim.errors import cut
 
@@ -25,12 +26,11 @@ SYSTEM = {
 
 
 class FailedCall:
-    """A call of `subroutine` that an event has ended, with what the registers are by then."""
+    """A call of the function `symbol` of an image that an event has ended; the registers of the processor are as they were then."""
 
-    def __init__(self, subroutine: Subroutine, event: Event) -> None:
-        self._image, self._processor, self._event = subroutine.image, subroutine.processor, event
-        self._address = subroutine.processor.state["PC"]
-        self._symbol = subroutine.symbol
+    def __init__(self, image: Image, processor: Processor, symbol: str, event: Event) -> None:
+        self._image, self._processor, self._symbol, self._event = image, processor, symbol, event
+        self._address = processor.state["PC"]
 
     @cached_property
     def _ways(self) -> Ways:

@@ -8,11 +8,11 @@ from __future__ import annotations
 from functools import cache
 
 from bfsim import machine_code
+from bfsim.blackfin.convention import KEPT, REGISTERS
+from bfsim.blackfin.convention import RESULT as RESULT_REGISTER
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.processor import OUTSIDE
 from bfsim.blackfin.registers import SLOTS
-from bfsim.blackfin.subroutines import KEPT, REGISTERS
-from bfsim.blackfin.subroutines import RESULT as RESULT_REGISTER
 from bfsim.machine_code.caller import field, loop
 from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 from bfsim.machine_code.native_code import native_code

@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin import object_caller as w
+from bfsim.blackfin.convention import REGISTERS, STACK, STACK_BYTES, WORD_BYTES
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.subroutines import REGISTERS, STACK, STACK_BYTES, WORD_BYTES, Placed, Subroutine
+from bfsim.blackfin.placed import Placed
+from bfsim.blackfin.subroutines import Subroutine
 from bfsim.machine_code.calling import Called, Log, Taken, bound_call
 from bfsim.machine_code.left import Left
 

@@ -13,9 +13,9 @@ from heapq import heappop, heappush
 from itertools import groupby
 
 from bfsim.blackfin.blocks import CALLS, Code, does
+from bfsim.blackfin.convention import KEPT, REGISTERS, WORD_BYTES
 from bfsim.blackfin.flow import Way, edges
 from bfsim.blackfin.origins import Made, Origin, made_by
-from bfsim.blackfin.subroutines import KEPT, REGISTERS, WORD_BYTES
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,24 +1,22 @@
-"""Functions of an image, called as GCC's code calls them: arguments in R0 to R2 and on the stack, the result in R0.
+"""Functions of an image, called as GCC's code calls them (`convention`).
 
-[GCC] The caller leaves room for the three registers below the arguments on the stack. All functions of an image share its memory:
-what one leaves in its static variables another one finds.
+All functions of an image share its memory: what one leaves in its static variables another one finds.
 """
 
 from __future__ import annotations
 
 import mmap
-from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bfsim.blackfin.address_space import AddressSpace
+from bfsim.blackfin.convention import KEPT, RESULT, STACK, STACK_BYTES
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.image import Image
+from bfsim.blackfin.placed import ARRAYS, ARRAYS_BYTES, joined_ranges
 from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.errors import KernelError
@@ -26,18 +24,6 @@ from bfsim.errors import KernelError
 if TYPE_CHECKING:
     from bfsim.blackfin.blocks import Code
     from bfsim.blackfin.counters import Counted
-
-STACK, STACK_BYTES = 0xFFB00000, 4096
-"""[HRM] The scratchpad memory of a core."""
-ARRAYS, ARRAYS_BYTES = 0x20000000, 64 << 20
-"""[HRM] Asynchronous memory, which programs are not linked to: where arrays are laid."""
-ARRAY_ALIGN = 16
-"""As numpy's own arrays are aligned on the host, so that where they lie there does not matter."""
-WORD_BYTES = 4
-REGISTERS = ("R0", "R1", "R2")
-RESULT = "R0"
-KEPT = ("R4", "R5", "R6", "R7", "P3", "P4", "P5", "FP", "SP")
-"""[GCC] Registers that a function leaves as they were."""
 
 
 @dataclass(eq=False)
@@ -53,7 +39,7 @@ class LoadedImage:
         used = [(each.address, each.end) for each in self.image.segments]
         used += [(STACK, STACK + STACK_BYTES), (ARRAYS, ARRAYS + ARRAYS_BYTES)]
         pages = ((low & -mmap.PAGESIZE, -(-high // mmap.PAGESIZE) * mmap.PAGESIZE) for low, high in used)
-        for first, end in _joined(pages):
+        for first, end in joined_ranges(pages):
             self.space.add(first, end - first)
         for each in self.image.segments:
             self.space.at(each.address, len(each.octets))[:] = np.frombuffer(each.octets, np.uint8)
@@ -131,65 +117,6 @@ class Subroutine:
         """Raise KernelError for an event for which a call was left without returning. The next call begins anew."""
         from bfsim.blackfin.failed_call import FailedCall  # few calls fail
 
-        what = FailedCall(self, event).told()
+        what = FailedCall(self.image, self.processor, self.symbol, event).told()
         self.processor.state.slots[:] = 0
         raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
-
-
-@dataclass(frozen=True, slots=True)
-class Placed:
-    """Memory at an address of the host that has a copy at another one, in the Blackfin's, while a function runs.
-
-    What is not written is not copied back.
-    """
-
-    address: int
-    copy: int
-    nbytes: int
-    is_written: bool
-
-
-def placed(
-    arrays: Sequence[NDArray[Any]], written: Sequence[bool], space: AddressSpace
-) -> tuple[list[Placed], list[int]]:
-    """Give arrays places in the Blackfin's memory; return those and the address of each array. What overlaps here does so there.
-
-    `written`: whether an array may be stored into.
-
-    They lie there in the order of the arguments, wherever they are here: code may compare addresses, and its cycles must not depend
-    on the host's. Raises KernelError if there is no room for them.
-    """
-    ranges = [(first := each.ctypes.data, first + each.nbytes) for each in arrays]
-    joined = list(_joined(ranges))
-    starts = [low for low, _ in joined]
-    parts: list[Placed] = []
-    place_of: dict[int, int] = {}
-    address, addresses = ARRAYS, []
-    for first, _ in ranges:
-        number = bisect_right(starts, first) - 1
-        low, high = joined[number]
-        if number not in place_of:
-            place_of[number] = address = -(-address // ARRAY_ALIGN) * ARRAY_ALIGN + low % ARRAY_ALIGN
-            nbytes = high - low
-            if address + nbytes > ARRAYS + ARRAYS_BYTES:
-                raise KernelError(f"the arrays of a call must fit into {ARRAYS_BYTES:,} bytes, but do not")
-            stores = zip(written, ranges, strict=True)
-            is_written = any(each and low <= begin < high for each, (begin, _) in stores)
-            parts.append(Placed(low, space.origin + address, nbytes, is_written))
-            address += nbytes
-        addresses.append(place_of[number] + first - low)
-    return parts, addresses
-
-
-def _joined(ranges: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Ranges in their order, those that overlap or meet as one."""
-    first, end = None, 0
-    for low, high in sorted(ranges):
-        if first is not None and low <= end:
-            end = max(end, high)
-            continue
-        if first is not None:
-            yield first, end
-        first, end = low, high
-    if first is not None:
-        yield first, end

@@ -10,10 +10,12 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.blackfin.convention import STACK, STACK_BYTES
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import catch_always
 from bfsim.blackfin.object_calls import Counts, subroutine_call
-from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, Subroutine, placed
+from bfsim.blackfin.placed import Placed, placed
+from bfsim.blackfin.subroutines import Subroutine
 from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.errors import KernelError
 from bfsim.kernel import crashes
