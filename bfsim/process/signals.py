@@ -10,7 +10,8 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Event, Timer, current_thread, main_thread
+from threading import Event, Lock, Thread, current_thread, main_thread
+from time import sleep
 from types import FrameType
 
 BY_SIGNAL = 128
@@ -40,13 +41,20 @@ def hear_signals() -> None:
 
 
 def _hear_again(dropped: sys.UnraisableHookArgs) -> None:
-    """Send the signal again a moment later whose KeyboardInterrupt Python has dropped: it came in a callback of a weak reference."""
+    """Have the signal sent again whose KeyboardInterrupt Python has dropped: it came in a callback of a weak reference."""
     if isinstance(dropped.exc_value, KeyboardInterrupt) and _heard.is_set():
-        again = Timer(AGAIN_S, signal.pthread_kill, (main_thread().ident, _heard.number))
-        again.daemon = True
-        again.start()
+        here = Lock()
+        with here:
+            Thread(target=_send_again, args=(_heard.number, here), daemon=True).start()
     else:
         sys.__unraisablehook__(dropped)
+
+
+def _send_again(number: int, hook: Lock) -> None:
+    """Send a signal to the main thread a moment after it has left the hook, where Python would drop it, too."""
+    with hook:
+        sleep(AGAIN_S)
+    signal.pthread_kill(main_thread().ident, number)  # type: ignore[arg-type]  # it has been started
 
 
 def interrupted_code() -> int:
