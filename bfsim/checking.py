@@ -11,7 +11,8 @@ from bfsim import shipped
 from bfsim.errors import BfsimError, ConfigError, cut, shown
 from bfsim.loading.firmware import load_firmware
 from bfsim.planning import identified
-from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on, update_command
+from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
+from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.judge import require_stages
 from bfsim.run import Feed, Fidelity
 from bfsim.running.identifying import recording_digest

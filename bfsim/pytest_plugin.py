@@ -76,7 +76,7 @@ def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]
     The file lies beside the test. Returns the runs by their names: all of the file, or the one of that name.
     """
     from bfsim.checking import arguments_of, require_comparable, require_held
-    from bfsim.report.check.baseline import read_baseline
+    from bfsim.report.check.baseline_file import read_baseline
     from bfsim.report.check.choice import chosen
     from bfsim.report.check.judge import judge
     from bfsim.report.check.tables import verdict_line

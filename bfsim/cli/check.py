@@ -132,7 +132,8 @@ def _given(what: dict[str, Any], folder: Path) -> Configuration | None:
 
 def _cases(path: Path, given: Configuration | None, name: str | None, *, update: bool) -> list[Case]:
     from bfsim.checking import name_of
-    from bfsim.report.check.baseline import Baseline, Configuration, read_baseline
+    from bfsim.report.check.baseline import Baseline, Configuration
+    from bfsim.report.check.baseline_file import read_baseline
     from bfsim.report.check.choice import chosen
 
     baseline = Baseline() if update and not path.exists() else read_baseline(path)

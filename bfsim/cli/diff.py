@@ -125,7 +125,7 @@ def _difference(before: Result | Case, after: Result | Case) -> Difference:
 
 def _asked(text: str) -> Result | Case | dict[str, Any]:
     """Read a result or a run of a baseline, or what to run."""
-    from bfsim.report.check.baseline import measured_case
+    from bfsim.report.check.baseline_file import measured_case
     from bfsim.report.result_file import read_result
 
     file, name = _named(text)

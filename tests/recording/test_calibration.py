@@ -24,7 +24,7 @@ from bfsim.recording.calibrating.calibration import (
 )
 from bfsim.recording.calibrating.residual_plot import draw_residuals
 from bfsim.recording.calibration_report import CalibrationReport, ViewError, mean_focal_px
-from bfsim.recording.cameras.camera_models import Fisheye
+from bfsim.recording.cameras.fisheye_model import FisheyeModel
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.lens import rectified
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
@@ -178,7 +178,7 @@ def test_pairs_that_fit_no_other_are_left_out(
 def test_a_grossly_wrong_pair_does_not_end_a_fisheye_calibration() -> None:
     """OpenCV fits no fisheyes at all then: such pairs are left out, those that are a little off as with ordinary lenses."""
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
-    model = Fisheye()
+    model = FisheyeModel()
     lefts, rights = corners_of(model)
     rights[3] = rights[9]  # a picture of another board
     lefts[5] = lefts[5].reshape(6, 9, 2)[:, ::-1].reshape(-1, 2)  # corners counted from the other end

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from bfsim.errors import RecordingError
-from bfsim.recording.cameras.camera_models import CameraModel, Fisheye, FittedCamera, Pinhole
+from bfsim.recording.cameras.camera_model import CameraModel, FittedCamera
+from bfsim.recording.cameras.fisheye_model import FisheyeModel
+from bfsim.recording.cameras.pinhole_model import PinholeModel
 
 SIZE = (640, 480)
 BOARD = np.zeros((54, 3))
@@ -14,10 +16,10 @@ BOARD[:, :2] = np.mgrid[:9, :6].T.reshape(-1, 2) * 25.0
 
 LENSES = {
     # 130 degrees across, and an ordinary one
-    Fisheye: FittedCamera(
+    FisheyeModel: FittedCamera(
         np.array([[280.0, 0, 322], [0, 281, 236], [0, 0, 1]]), np.array([[0.03, -0.01, 0.004, -0.001]]).T
     ),
-    Pinhole: FittedCamera(
+    PinholeModel: FittedCamera(
         np.array([[530.0, 0, 322], [0, 531, 236], [0, 0, 1]]), np.array([[-0.25, 0.08, 0.001, -0.001, 0]])
     ),
 }
@@ -90,14 +92,14 @@ def test_corners_that_no_camera_shows_are_refused() -> None:
     """Corners in one point: OpenCV's own error is told in words."""
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
     with pytest.raises(RecordingError, match="nothing fits these; take them at other angles"):
-        Fisheye().fit(BOARD, [[np.full((54, 2), 100.0)] * 5], SIZE)
+        FisheyeModel().fit(BOARD, [[np.full((54, 2), 100.0)] * 5], SIZE)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_fisheye_is_found_from_boards_at_the_rim(seed: int) -> None:
     """Boards held near, up to 72 degrees off the axis: OpenCV's own start failed on all of these."""
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
-    model, rng = Fisheye(), np.random.default_rng(seed)
+    model, rng = FisheyeModel(), np.random.default_rng(seed)
     lens = FittedCamera(
         np.array([[91.0, 0, 157], [0, 91, 122], [0, 0, 1]]), np.array([[0.02, -0.02, 0.015, -0.005]]).T
     )

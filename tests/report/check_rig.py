@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from bfsim.report.check.baseline import Case, read_baseline
+from bfsim.report.check.baseline import Case
+from bfsim.report.check.baseline_file import read_baseline
 from bfsim.report.check.judge import Outcome, judge
 from bfsim.report.check.update import updated, write_cases
 from bfsim.report.result_file import Result, result_of

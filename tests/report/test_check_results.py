@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from bfsim.report.check.baseline import read_baseline
+from bfsim.report.check.baseline_file import read_baseline
 from bfsim.report.check.cause import explanation
 from bfsim.report.check.outputs import broken_lines, check_json, markdown
 from bfsim.report.result_file import Result, result_of

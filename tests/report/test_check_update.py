@@ -10,7 +10,8 @@ from time import sleep
 import pytest
 
 from bfsim.errors import ConfigError
-from bfsim.report.check.baseline import Case, read_baseline
+from bfsim.report.check.baseline import Case
+from bfsim.report.check.baseline_file import read_baseline
 from bfsim.report.check.kept import kept_side
 from bfsim.report.check.update import loosened, write_cases
 from bfsim.report.save import write_text

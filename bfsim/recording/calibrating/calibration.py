@@ -24,7 +24,9 @@ from bfsim.recording.calibration_report import (
     ViewError,
     mean_focal_px,
 )
-from bfsim.recording.cameras.camera_models import CameraModel, Fisheye, Fit, FittedCamera, Floats, Pinhole
+from bfsim.recording.cameras.camera_model import CameraModel, Fit, FittedCamera, Floats
+from bfsim.recording.cameras.fisheye_model import FisheyeModel
+from bfsim.recording.cameras.pinhole_model import PinholeModel
 from bfsim.recording.cameras.rectifying import nearest_table, rectified_rotation
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.importing.sources import Skipped
@@ -40,7 +42,7 @@ good pictures. [assumed]"""
 
 _SKIPPED_LISTED = 5
 
-_MODELS: dict[LensName, type[CameraModel]] = {"pinhole": Pinhole, "fisheye": Fisheye}
+_MODELS: dict[LensName, type[CameraModel]] = {"pinhole": PinholeModel, "fisheye": FisheyeModel}
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,7 +230,7 @@ def _fit_what_can_be(
     except RecordingError:
         if len(views) <= FEWEST_VIEWS:
             raise
-    errors_px = Pinhole().fit(board, sides, size).errors_px
+    errors_px = PinholeModel().fit(board, sides, size).errors_px
     worst = int(np.square(errors_px).mean(axis=0).argmax())
     fit, used, outliers = _fit_what_can_be(model, board, [*views[:worst], *views[worst + 1 :]], size)
     errors = tuple(map(float, errors_px[:, worst]))

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 
 from bfsim.errors import RecordingError, shown
-from bfsim.recording.cameras.camera_models import Fisheye, FittedCamera, Floats, Pinhole
+from bfsim.recording.cameras.camera_model import FittedCamera, Floats
+from bfsim.recording.cameras.fisheye_model import FisheyeModel
+from bfsim.recording.cameras.pinhole_model import PinholeModel
 from bfsim.recording.cameras.rectifying import nearest_table
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 
@@ -183,7 +185,7 @@ def _tables(
         return None
     tables = [
         nearest_table(
-            Fisheye() if each.model in _FISHEYES and not each.is_rectified else Pinhole(),
+            FisheyeModel() if each.model in _FISHEYES and not each.is_rectified else PinholeModel(),
             lens,
             each.rotation,
             target,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.recording.cameras.camera_models import CameraModel, FittedCamera, Floats
+from bfsim.recording.cameras.camera_model import CameraModel, FittedCamera, Floats
 
 
 def rectified_rotation(baseline: NDArray[np.float64], forward: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from typing import Literal, get_args
 import numpy as np
 from PIL import Image
 
-from bfsim.recording.cameras.camera_models import load_opencv
+from bfsim.recording.cameras.camera_model import load_opencv
 from bfsim.recording.planes import Plane, YuvPlanes
 
 BayerPattern = Literal["bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8"]

@@ -9,7 +9,8 @@ from itertools import chain, product
 from pathlib import Path
 
 from bfsim.errors import ConfigError
-from bfsim.report.check.baseline import Case, requirements_of
+from bfsim.report.check.baseline import Case
+from bfsim.report.check.baseline_file import requirements_of
 from bfsim.report.check.figures import (
     COUNTS,
     OBJECTS,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from bfsim.report.check.baseline import update_command
+from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each

@@ -8,15 +8,8 @@ from pathlib import Path
 import tomlkit
 from tomlkit.items import AoT, Table
 
-from bfsim.report.check.baseline import (
-    COMPARABLE,
-    Case,
-    MeasuredOn,
-    measured_on,
-    parsed,
-    requirements_of,
-    validated,
-)
+from bfsim.report.check.baseline import COMPARABLE, Case, MeasuredOn, measured_on
+from bfsim.report.check.baseline_file import parsed, requirements_of, validated
 from bfsim.report.check.figures import COUNTS, MISSED, SEEN, STATISTICS, Name, Unit, figures_of, statistic
 from bfsim.report.check.judge import Outcome, Verdict, judge, worst_of_each
 from bfsim.report.check.kept import kept_costs, whole_side
