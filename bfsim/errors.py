@@ -35,6 +35,11 @@ def printable(text: str) -> str:
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
+def legible(text: str) -> str:
+    """Return text that can be written as UTF-8: of names of files that are none, each wrong byte is replaced."""
+    return text.encode(errors="surrogateescape").decode(errors="replace")
+
+
 def listed(words: Sequence[str], most: int) -> str:
     """Return words as a list of as many as `most`, and how many more there are."""
     more = len(words) - most

@@ -97,7 +97,7 @@ def watch(running: int, function: Function) -> None:
 
 def _push(running: int, text: str) -> None:
     first = _first()
-    told = text.encode()
+    told = text.encode(errors="surrogateescape")
     each = _Watched(first.value, running, told, len(told))
     _kept.append(each)
     first.value = ctypes.addressof(each)

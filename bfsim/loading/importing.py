@@ -86,7 +86,9 @@ class OwnModules(MetaPathFinder):
     def digest(self) -> str:
         """Digest of the source files and their relative names: the same wherever they lie."""
         lines = sorted(f"{each.relative} {each.sha256}\n" for each in self.sources.values())
-        return hashlib.sha256("".join(lines).encode()).hexdigest()
+        return hashlib.sha256(
+            "".join(lines).encode(errors="surrogateescape")
+        ).hexdigest()  # a name may be no text
 
     @property
     def changed(self) -> bool:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import IO
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, legible
 from bfsim.files.drafts import growing_draft
 
 if sys.platform != "win32":
@@ -37,7 +37,8 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
 
 def write_text(path: Path, text: str | Iterable[str]) -> None:
     """Write `text`, or its parts one after the other, to `path` as `write_bytes` does."""
-    write_bytes(path, [text.encode()] if isinstance(text, str) else (each.encode() for each in text))
+    parts = [text] if isinstance(text, str) else text
+    write_bytes(path, (legible(each).encode() for each in parts))
 
 
 def write_bytes(path: Path, content: Iterable[bytes]) -> None:

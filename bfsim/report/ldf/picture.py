@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 from PIL import Image, ImageDraw, ImageFont
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, legible
 from bfsim.report.ldf.drawing import PAPER, FilledBox, Sheet, Words, drawing_of
 from bfsim.report.ldf.map import MemoryMap
 
@@ -61,7 +61,7 @@ def svg_of(sheet: Sheet) -> bytes:
         *_svg_lines(sheet),
         "</svg>",
     ]
-    return ("\n".join(lines) + "\n").encode()
+    return legible("\n".join(lines) + "\n").encode()
 
 
 def _svg_lines(sheet: Sheet) -> Iterator[str]:

@@ -7,6 +7,7 @@ import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from bfsim.errors import legible
 from bfsim.report.save import growing_file, writing
 
 Cell = str | int | float | None
@@ -30,7 +31,7 @@ def _of_one_type(cells: list[Cell]) -> list[Cell]:
     if any(isinstance(each, int) and each.bit_length() > MOST_BITS for each in there):
         kinds.add(str)
     if str in kinds:
-        return [None if each is None else str(each) for each in cells]
+        return [None if each is None else legible(str(each)) for each in cells]
     return [None if each is None else float(each) for each in cells] if float in kinds else cells
 
 
