@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 from io import StringIO
 from pathlib import Path
 
@@ -63,6 +64,19 @@ def test_a_plot_takes_any_text() -> None:
     svg = plot_svg(rows, ("point", "missed"))
     assert r"a\x1b[31m" in svg
     assert "Straße ⚽" in svg
+
+
+def test_a_legend_has_room_in_the_widest_font() -> None:
+    """Digits are 6.4 px wide in DejaVu, which Linux looks with, at the 10 px of a legend: `cclk_hz=600000000` ended behind 6000."""
+    pytest.importorskip("vl_convert")
+
+    def width(name: str) -> int:
+        svg = plot_svg([(f"{each}{name}", {"x": each, "y": each}) for each in (1, 2)], ("x", "y"))
+        found = re.search(r' width="(\d+)"', svg)
+        assert found
+        return int(found[1])
+
+    assert width("600000000" * 5) - width("") >= 6.4 * 45
 
 
 def test_a_table_on_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

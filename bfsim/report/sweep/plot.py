@@ -19,6 +19,9 @@ PARETO: Axes = (ON_CHIP, FRAME_TIME)
 MOST_COLOURS = 10
 """As many settings can be told apart by colour."""
 WIDTH_PX, HEIGHT_PX = 560, 360
+EDGE_PX = 5
+WIDER_PX = 2
+"""A character of the legend may be so much wider in the font of whoever looks than in that the plot was measured with."""
 _INK = "#555555"
 
 
@@ -71,7 +74,10 @@ def plot_svg(points: Sequence[tuple[str, Row]], axes: Axes) -> str:
             color=_INK, strokeDash=[4, 3], interpolate="step-after"
         )
         chart = line.encode(x="x:Q", y="y:Q", order="place:Q") + chart
-    svg: str = vl_convert.vegalite_to_svg(chart.properties(width=WIDTH_PX, height=HEIGHT_PX).to_dict())
+    right = EDGE_PX + WIDER_PX * max(map(len, settings))
+    edges = {"left": EDGE_PX, "top": EDGE_PX, "right": right, "bottom": EDGE_PX}
+    sized = chart.properties(width=WIDTH_PX, height=HEIGHT_PX, padding=edges)
+    svg: str = vl_convert.vegalite_to_svg(sized.to_dict())
     return svg
 
 
