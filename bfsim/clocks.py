@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, shown, with_article
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,12 @@ class Clocks:
     sclk_ticks: int = field(init=False)
 
     def __post_init__(self) -> None:
+        for name, hz in (("cclk_hz", self.cclk_hz), ("sclk_hz", self.sclk_hz)):
+            if not isinstance(hz, int | Fraction):
+                raise ConfigError(
+                    f"clocks.{name} must be of the type Fraction, such as Fraction({shown(hz)}), "
+                    f"not {shown(hz)}, {with_article(type(hz).__name__)}"
+                )
         if min(self.cclk_hz, self.sclk_hz) <= 0:
             raise ConfigError(
                 f"a clock must be faster than 0 Hz, not {float(min(self.cclk_hz, self.sclk_hz)):g} Hz"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil, gcd
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.clocks import Clocks, PeriodicEdges
+from bfsim.errors import ConfigError
 
 MHZ = 1_000_000
 RATES_HZ = st.fractions(min_value=1, max_value=10**9, max_denominator=1000)
@@ -27,6 +29,15 @@ def test_ticks_of_known_clocks(sclk_hz: Fraction, tick_hz: int, cclk_ticks: int,
     """Worked out by hand for a CCLK of 600 MHz."""
     clocks = Clocks(Fraction(600 * MHZ), sclk_hz)
     assert (clocks.tick_hz, clocks.cclk_ticks, clocks.sclk_ticks) == (tick_hz, cclk_ticks, sclk_ticks)
+
+
+@pytest.mark.parametrize("hz", [600e6, "600e6", None])
+def test_a_clock_is_exact(hz: Any) -> None:
+    """A float was told as an AttributeError of its denominator, in the line 5 of a <string>, when a board's file was read."""
+    with pytest.raises(
+        ConfigError, match=r"clocks\.sclk_hz must be of the type Fraction, such as Fraction\("
+    ):
+        Clocks(Fraction(600 * MHZ), hz)
 
 
 @given(RATES_HZ, RATES_HZ)

@@ -13,6 +13,7 @@ from bfsim.chip.sensors import LEFT_CAMERA, MHZ, OV9650, RIGHT_CAMERA
 from bfsim.chip.spec import BoardSpec, ChipSpec, Pll, SdramSpec
 from bfsim.clocks import Clocks
 from bfsim.errors import ConfigError, shown
+from bfsim.fields import require_types
 
 CM_CLKIN_HZ = Fraction(25 * MHZ)  # CONFIG_CLKIN_HZ of u-boot's cm-bf561.h and cm-bf533.h
 EZKIT_CLKIN_HZ = Fraction(30 * MHZ)  # CONFIG_CLKIN_HZ of u-boot's bf561-ezkit.h
@@ -29,6 +30,7 @@ def new_board(
     deb_period_transfers: int = 0,
 ) -> BoardSpec:
     """Return a board: the SDRAM in the chip's memory map, a camera on every PPI, and the clocks that the PLL makes."""
+    require_types(pll, "pll")
     return BoardSpec(
         name=name,
         title=title,

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip import checks
-from bfsim.chip.boards import BOARDS, CM_BF533, CM_BF561, CM_BF561_RATINGS
+from bfsim.chip.bf561 import BF561
+from bfsim.chip.boards import BOARDS, CM_BF533, CM_BF561, CM_BF561_RATINGS, new_board
 from bfsim.chip.checks import require_sound
 from bfsim.chip.settings import with_settings
 from bfsim.chip.spec import BoardSpec, Pll
@@ -194,6 +195,21 @@ def test_a_part_that_a_board_does_not_have_is_told() -> None:
         set_to("pll.ssel", 5, CM_BF561_RATINGS)
     with pytest.raises(ConfigError, match="chip.l2 is none, so that there is nothing below it"):
         set_to("chip.l2.read_cclk", 5, CM_BF533)
+
+
+def test_a_new_boards_pll_is_exact() -> None:
+    """Told of its own field, not of the clocks that follow from it."""
+    with pytest.raises(
+        ConfigError, match=r"pll.clkin_hz must be of the type Fraction, such as Fraction\(25000000.0\)"
+    ):
+        new_board(
+            "x",
+            "x",
+            BF561,
+            Pll(clkin_hz=25e6, vco_multiplier=20, csel=1, ssel=5),
+            CM_BF561.sdram,
+            dma_over_core=True,
+        )  # type: ignore[arg-type]
 
 
 def test_a_boards_own_fields_are_of_their_types() -> None:

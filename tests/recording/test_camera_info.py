@@ -7,6 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from PIL import Image
 
 from bfsim.errors import RecordingError
 from bfsim.recording import (
@@ -16,6 +17,7 @@ from bfsim.recording import (
 )
 from bfsim.recording.importing.importer import ImportSummary, import_recording
 from bfsim.recording.planes import YuvPlanes, fit_matrix
+from tests.recording.bag_imports import COMPRESSED
 from tests.recording.bags import EPOCH_NS, KINDS, LEFT, RIGHT, Message, Ros, grey_pair
 
 SIZE = (16, 8)
@@ -83,6 +85,19 @@ def test_an_ideal_pair_has_geometry_and_no_tables(kind: str, tmp_path: Path) -> 
         "unknown, tilt unknown."
     )
     assert summary.notes[1] == "The pictures are rectified already."
+
+
+@pytest.mark.parametrize("transport", ["", "/compressed", "/jpeg"])
+def test_it_is_beside_compressed_pictures_of_any_name(transport: str, tmp_path: Path) -> None:
+    """Below the picture's name, as image_transport publishes them, or under it: it was sought a step too high, as /camera_info."""
+    ros, picture = Ros("mcap"), Image.new("RGB", SIZE)
+    infos = [each for each in made(ros) if each[1] == INFO]
+    pictures = [
+        (f"{topic}{transport}", COMPRESSED, EPOCH_NS, ros.compressed(EPOCH_NS, picture, "png"))
+        for topic in (LEFT, RIGHT)
+    ]
+    geometry, _, _ = imported(ros.write(tmp_path, [*infos, *pictures]))
+    assert is_ideal(geometry)
 
 
 @pytest.mark.parametrize(

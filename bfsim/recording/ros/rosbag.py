@@ -22,6 +22,8 @@ from bfsim.recording.ros.ros_images import IMAGE_TYPES, planes_of
 DEFAULT_PERIOD_NS = 1e9 / 30
 """Of bags with a single picture: the rate of the sensors that bfsim knows."""
 _FPS_PARTS = 1_000
+TRANSPORT = "compressed"
+"""The name of a compressed topic below that of the picture, as image_transport has it; drivers may have it without."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,11 +176,20 @@ def _source(
     )
 
 
+def _info_of(base: list[str]) -> str:
+    """Return the topic of the camera_info in a name space."""
+    return "/".join([*base, "camera_info"])
+
+
 def _camera_info(bag: BagFile, topic: Topic, found: dict[str, Topic]) -> tuple[CameraInfo | None, str]:
     """Return what the camera_info beside a topic says first, and a note where it says more than one thing, or nothing."""
-    parts = topic.name.split("/")
-    base = parts[:-1] if topic.kind == IMAGE_TYPES[0] else parts[:-2]
-    name = "/".join([*base, "camera_info"])
+    *beside, own = parts = topic.name.split("/")
+    above = (
+        beside[:-1] if topic.kind != IMAGE_TYPES[0] and len(beside) > 1 else beside
+    )  # of image_raw/compressed
+    bases = [above, beside] if own == TRANSPORT else [beside, above]
+    base = next((each for each in bases if _info_of(each) in found), bases[0])
+    name = _info_of(base)
     if name not in found or found[name].kind != CAMERA_INFO or not found[name].count:
         return None, f"There is no {name}: neither geometry nor rectification is known."
     is_rectified = parts[len(base)].startswith("image_rect")
