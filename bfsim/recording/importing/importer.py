@@ -16,6 +16,7 @@ from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.importing.import_checks import camera_size, check_call, check_options, check_pair
 from bfsim.recording.importing.opening import open_sources
 from bfsim.recording.importing.picture_pairs import PicturePairs
+from bfsim.recording.importing.pixel_bytes import pixel_bytes_warnings
 from bfsim.recording.importing.row_count import row_count_warnings
 from bfsim.recording.importing.row_length import row_length_warnings
 from bfsim.recording.importing.sources import PictureSource, Skipped, SourceFormat, guess_format
@@ -165,9 +166,12 @@ def _write(
 
 
 def _size_doubts(opened: list[PictureSource], *, side_by_side: bool) -> tuple[str, ...]:
-    """Return why raw frames may be of another size than was said: the length of their rows first."""
-    lengths = () if side_by_side else tuple(row_length_warnings(opened))
-    return lengths or tuple(row_count_warnings(opened))
+    """Return why raw frames may be of another size than was said: the bytes of their pixels first, then the length of their rows."""
+    return (
+        tuple(pixel_bytes_warnings(opened))
+        or (() if side_by_side else tuple(row_length_warnings(opened)))
+        or tuple(row_count_warnings(opened))
+    )
 
 
 def _rig(

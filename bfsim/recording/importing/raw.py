@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 from bfsim.errors import RecordingError
 from bfsim.recording.importing.bayer import BayerPattern, planes_of_bayer
 from bfsim.recording.importing.deep_pixels import upper_bits, words
-from bfsim.recording.importing.sources import PictureSource
+from bfsim.recording.importing.sources import PictureSource, Skipped
 from bfsim.recording.planes import YuvPlanes
 
 _Y4M_MAGIC = b"YUV4MPEG2"
 _LONGEST_LINE_BYTES = 1024
+SWAPPED = "; they would with their bytes the other way round: swap them, as `dd conv=swab` does"
 
 # How far the colour planes are divided, in columns and rows; (0, 0): there are none.
 _Y4M_SUBSAMPLING = {
@@ -127,7 +128,11 @@ def _open_sensor(
     def planes(data: bytes) -> YuvPlanes:
         if bits is None:
             return planes_of(np.frombuffer(data, np.uint8).reshape(height, width))
-        return planes_of(upper_bits(words(data, (height, width)), bits))
+        try:
+            return planes_of(upper_bits(words(data, (height, width)), bits))
+        except RecordingError as error:
+            is_swapped = not words(data, (height, width), is_big_endian=True).max() >> bits
+            raise RecordingError(f"{error}{SWAPPED if is_swapped else ''}") from None
 
     return _open_raw(source, name, size, width * height * (1 if bits is None else 2), planes)
 
@@ -154,10 +159,14 @@ def _open_raw(
             "is `--size` right?"
         )
 
-    def pictures() -> Iterator[YuvPlanes]:
+    def pictures() -> Iterator[YuvPlanes | Skipped]:
         with _open(source) as stream:
             for index in range(size_bytes // frame_bytes):
-                yield planes(_read_frame(stream, frame_bytes, source, index))
+                data = _read_frame(stream, frame_bytes, source, index)
+                try:
+                    yield planes(data)
+                except RecordingError as error:
+                    yield Skipped(f"{source} {index}", str(error))
 
     return PictureSource(name=source, size=size, count=size_bytes // frame_bytes, fps=None, pictures=pictures)
 
