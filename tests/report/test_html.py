@@ -16,6 +16,7 @@ from bfsim.report.html import charts, frames
 from bfsim.report.html.frames import facts_of, told_of, worst_of
 from bfsim.report.html.gantt import SLICES, Gantts
 from bfsim.report.html.pictures import Pictures, webp_of
+from bfsim.report.html.rendering import with_code
 from bfsim.report.html.sources import dearest_sources
 from bfsim.report.target import Target
 from bfsim.spans import Span, SpanKind
@@ -185,6 +186,11 @@ def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.Mo
         text = page_of(run, pictures, Target(1), gantts)
     assert 7_000_000 < len(text.encode()) < 8_000_000
     assert text.count("data:image/webp") == 2 * frames.MOST
+
+
+def test_a_command_in_a_sentence_is_code() -> None:
+    """Between backticks, as a terminal shows it; what is in it is words, and one that stands alone stays."""
+    assert with_code("a; `bfsim run <b>` does, or `") == "a; <code>bfsim run &lt;b&gt;</code> does, or `"
 
 
 def test_names_are_words_and_no_markup() -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from bfsim.report.units import counted, size
 
@@ -22,7 +23,12 @@ def rendered(template: str, content: Mapping[str, Any]) -> Iterator[str]:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"size": size, "counted": counted, "share": lambda part: f"{100 * part:.1f}"}
+    environment.filters |= {
+        "size": size,
+        "counted": counted,
+        "share": lambda part: f"{100 * part:.1f}",
+        "with_code": with_code,
+    }
     environment.globals["file"] = lambda name: _file(environment, name)
     return environment.get_template(template).generate(content)
 
@@ -31,6 +37,11 @@ def html_of(markdown: str) -> Markup:
     """Return Markdown as HTML without links: a page that stands by itself has nowhere to go."""
     html: str = MarkdownIt("commonmark", {"html": False}).disable("link").render(markdown)
     return Markup(html)  # noqa: S704 - without HTML of its own
+
+
+def with_code(sentence: str) -> Markup:
+    """Return a sentence with its commands, which stand between backticks in a terminal, as code."""
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(sentence))))  # noqa: S704 - escaped
 
 
 def data_of(value: object) -> Markup:
