@@ -17,6 +17,7 @@ import pytest
 import tinyphoon
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
 from bfsim.loading.firmware import load_firmware
+from bfsim.planning import planned
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.run import Feed, Fidelity, simulate
 from bfsim.shipped import LDF_FOLDER, RECORDING
@@ -255,3 +256,16 @@ def test_names_stand_for_files_and_choices() -> None:
         with pytest.raises(ConfigError, match=f"frames must be a whole number, not {type(number).__name__}"):
             simulate(frames=number)  # type: ignore[arg-type]
     assert simulate(frames=np.int64(1)).identity == simulate(frames=1).identity
+
+
+def test_a_camera_that_is_too_fast_is_told_before_anything_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As by `bfsim sweep --dry-run`, which listed such a point as one to run."""
+    monkeypatch.chdir(tmp_path)
+    Path("fw_eyes.py").write_text(FIRMWARE)
+    recording = record(tmp_path / "large.mcap", 1, width=640, height=480)
+    with pytest.raises(
+        ConfigError, match="pictures of 640x480 are too large for a camera that sends 30 of them a second"
+    ):
+        planned(recording=recording, firmware="fw_eyes:eyes", settings={"clocks.sclk_hz": 40_000_000})

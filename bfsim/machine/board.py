@@ -24,7 +24,7 @@ from bfsim.machine.calls.fetch import CodeCache, CodeOutside
 from bfsim.machine.calls.ledger import Ledger
 from bfsim.machine.calls.records import object_share
 from bfsim.machine.cameras.capture import Capture, Feed, StereoPictures
-from bfsim.machine.cameras.ppi import Ppi
+from bfsim.machine.cameras.ppi import Ppi, require_pace
 from bfsim.machine.code import code_outside_l1, code_records
 from bfsim.machine.core.ahead import Ahead
 from bfsim.machine.core.core import Core
@@ -86,6 +86,8 @@ class Board:
 
     def __post_init__(self) -> None:
         chip, env = self.spec.chip, Simulation()
+        mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
+        require_pace(mode, self.size, self.spec.clocks.sclk_hz)
         self._env = env
         pictures_nbytes = 2 * 2 * self.size.width_px * self.size.height_px  # two at a time
         self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_NBYTES)

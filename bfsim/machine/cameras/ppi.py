@@ -78,7 +78,7 @@ class Ppi:
         """Program sensor and PPI for pictures of `size`."""
         self.size = size
         mode = self._sensor.mode(size.width_px, size.height_px)
-        _require_pace(mode, size, self._clocks.sclk_hz)
+        require_pace(mode, size, self._clocks.sclk_hz)
         self._oscillator = Oscillator(self._clocks, mode, self._camera)
         ppi_clk_ticks = self._clocks.tick_hz / self._oscillator.ppi_clk_hz
         self._word_ticks = ppi_clk_ticks * self._word_bytes
@@ -188,7 +188,7 @@ class Ppi:
             )
 
 
-def _require_pace(mode: SensorMode, size: FrameSize, sclk_hz: Fraction) -> None:
+def require_pace(mode: SensorMode, size: FrameSize, sclk_hz: Fraction) -> None:
     """Raise ConfigError, with what to do, if the camera sends pictures of `size` faster than a PPI takes them."""
     try:
         check_ppi_clk(mode.ppi_clk_hz, sclk_hz)
