@@ -125,8 +125,9 @@ def test_tables_reach_the_recording_and_nothing_else_changes(
     """In place: tables and the measured baseline are new; pictures, stamps, truth, description stay."""
     command = ["calibrate", str(chessboards), str(recording)]
     result = CliRunner().invoke(record, command, catch_exceptions=False)
-    assert "tables from 27 chessboard pairs, 0 left out, 0 pictures skipped" in result.output
+    assert "tables from 27 chessboard pairs, 0 left out, 0 skipped" in result.output
     assert f"Reprojection error: {found.report.reprojection_px:.3f} px RMS" in result.output
+    assert "; the baseline is by squares of 20 mm, as `--square` says" in result.output
     with RecordingReader(recording) as reader:
         assert isinstance(reader.rectification, RectificationTables)
         np.testing.assert_array_equal(reader.rectification.left, found.tables.left)
@@ -225,7 +226,7 @@ def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp
         assert reader.geometry.focal_px == mean_focal_px(reader.calibration.cameras[0].focal_px)
         assert reader.geometry.focal_px != geometry.focal_px
     shown = CliRunner().invoke(record, ["info", str(path)]).output
-    assert "6 chessboard pairs, 0 left out, 0 pictures skipped, fisheye lens" in shown
+    assert "6 chessboard pairs, 0 left out, 0 skipped, fisheye lens" in shown
     assert "left_05.png 0." in shown
     CliRunner().invoke(
         record, ["info", str(path), "--plot", str(tmp_path / "plot.png")], catch_exceptions=False

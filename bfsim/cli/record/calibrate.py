@@ -90,7 +90,12 @@ def calibrate_command(
             f"Vertical misalignment: {report.vertical_rms_px:.3f} px RMS, {report.vertical_worst_px:.3f} px at worst "
             f"(before: {report.vertical_before_px:.3f} px RMS)"
         )
-    click.echo(f"Geometry: {geometry}")
+    by = (
+        f"; the baseline is by squares of {square:g} mm, as `--square` says"
+        if len(report.cameras) > 1
+        else ""
+    )
+    click.echo(f"Geometry: {geometry}{by}")
     for view in report.outliers:
         click.echo(f"Left out: {view_text(view)}: does not fit the others")
     for each in report.skipped:

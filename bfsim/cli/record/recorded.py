@@ -67,9 +67,7 @@ def _calibration_text(report: CalibrationReport | None) -> str:
 def views_text(report: CalibrationReport) -> str:
     """Return how many views a calibration used, and what it did without."""
     what = "chessboard pairs" if len(report.cameras) > 1 else "chessboard pictures"
-    return (
-        f"{len(report.used)} {what}, {len(report.outliers)} left out, {len(report.skipped)} pictures skipped"
-    )
+    return f"{len(report.used)} {what}, {len(report.outliers)} left out, {len(report.skipped)} skipped"
 
 
 def view_text(view: ViewError) -> str:
