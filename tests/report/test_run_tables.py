@@ -222,6 +222,18 @@ def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:
     assert "--case drive --update" in " ".join(passed)  # in two lines where the path is long
 
 
+def test_limits_on_one_figure_are_a_row_and_the_others_are_counted(tmp_path: Path) -> None:
+    """The rows, with those that the last one counts, are as many as the first line says are broken: nobody knew where the rest was."""
+    path = tmp_path / "bfsim.toml"
+    measured(path, edge_run(950, 1050))
+    lines = [*map(squeezed, printed(check_report(hold(edge_run(1100, 1155), path), path)))]
+    first = lines.index("Broken limit Limit Measured %") + 2
+    *rows, others = lines[first : lines.index("", first)]
+    counts = re.search(r"(\d+) of \d+ limits broken", lines[0]), re.fullmatch(r"\((\d+) others\)", others)
+    broken, left_out = (int(each[1]) if each else 0 for each in counts)
+    assert broken == len(rows) + left_out > len(rows)
+
+
 def test_check_report_of_a_pass_is_short(tmp_path: Path) -> None:
     """The outcome, and which firmware it is of."""
     path, run = tmp_path / "bfsim.toml", edge_run(950)

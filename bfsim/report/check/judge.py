@@ -210,3 +210,8 @@ def worst_of_each(verdicts: Sequence[Verdict]) -> Iterator[Verdict]:
     for name in names:
         same = [each for each in verdicts if each.requirement.name == name]
         yield max(same, key=lambda each: (each.is_persons, abs(each.by_percent)))
+
+
+def left_out(verdicts: Sequence[Verdict]) -> int:
+    """Return how many of the limits `worst_of_each` leaves out."""
+    return len(verdicts) - len({each.requirement.name for each in verdicts})

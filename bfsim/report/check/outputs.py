@@ -11,7 +11,7 @@ from xml.etree import ElementTree as ET
 from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic
-from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
+from bfsim.report.check.judge import Outcome, Verdict, left_out, worst_of_each
 from bfsim.report.check.requirement import dotted
 from bfsim.report.check.tables import amount, changes, percent, verdict_line
 from bfsim.report.diff.as_json import diff_json
@@ -20,6 +20,7 @@ from bfsim.report.diff.sentences import why
 from bfsim.report.diff.tables import scope, seen_lines
 from bfsim.report.markdown import escaped
 from bfsim.report.start_up import of_one_frame
+from bfsim.report.units import others_row
 
 SCHEMA = "bfsim.check/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -105,6 +106,8 @@ def broken_lines(outcome: Outcome) -> Iterator[str]:
         once = of_one_frame(outcome.run) if each.unit is Unit.HZ else ""
         by = f" ({percent(each)} %)" if percent(each) else ""
         yield f"{each.label} must be {limit}, not {measured}{once}{by}"
+    if others := left_out(outcome.broken):
+        yield others_row(others)
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
@@ -133,6 +136,8 @@ def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
             limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
             measured = amount(each.measured, each.unit, hz)
             yield f"| {escaped(each.label)} {mark} | {limit} | {measured} | {percent(each)} |"
+        if others := left_out(outcome.broken):
+            yield f"| {others_row(others)} ❌ | | | |"
         yield ""
     yield from _why(outcome) if outcome.broken else ()
     if outcome.better and outcome.passed:

@@ -12,13 +12,13 @@ from rich.text import Text
 from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import Unit
-from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
+from bfsim.report.check.judge import Outcome, Verdict, left_out, worst_of_each
 from bfsim.report.diff.sentences import why
 from bfsim.report.diff.tables import contribution_table, scope, seen_lines
 from bfsim.report.run_tables import warning_table
 from bfsim.report.start_up import of_one_frame
 from bfsim.report.tables import new_table, stacked
-from bfsim.report.units import milliseconds_of, size
+from bfsim.report.units import milliseconds_of, others_row, size
 
 
 def check_report(outcome: Outcome, path: Path) -> RenderableType:
@@ -101,4 +101,6 @@ def _table(title: str, verdicts: Sequence[Verdict], outcome: Outcome) -> Table:
             amount(each.measured, each.unit, hz),
             percent(each),
         )
+    if others := left_out(verdicts):
+        table.add_row(others_row(others))
     return table
