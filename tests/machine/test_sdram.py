@@ -300,8 +300,9 @@ def test_a_stream_of_hits_is_what_its_words_are(offset: int, count: int, write: 
     one_by_one, at_once = Chip(), Chip()
     for chip in (one_by_one, at_once):
         chip.access(0, offset, write)
-    ahead = hits_ahead(at_once.state, offset + 4, 4)
+    ahead = hits_ahead(at_once.state, offset + 4, 4, 4096)
     assert ahead == (SDRAM.page_bytes - 4 - offset % SDRAM.page_bytes) // 4
+    assert hits_ahead(at_once.state, offset + 4, 4, count) == min(count, ahead)
     count = min(count, ahead)
     stream(at_once.state, count, write, offset)
     for word in range(count):

@@ -49,7 +49,7 @@ def hits_of(state: State, number: int) -> int:
         state[transfer + w.TO_X_LEFT],
         state[transfer + w.LINE_ELEMENTS] - state[transfer + w.PLACE],
     )
-    return min(hits_ahead(state, state[transfer + w.TO], WORD_BYTES), in_line - 1)
+    return hits_ahead(state, state[transfer + w.TO], WORD_BYTES, in_line - 1)
 
 
 @native

@@ -41,10 +41,10 @@ def charge_site(state: State, core: int, site: int, reason: int, cycles: int) ->
 def cycles_until(state: State, issued: int, done: int) -> int:
     """Return for how many cycles an access that was `issued` at a tick stalls a core if it is `done` at another: all but its own one."""
     ticks, cclk = done - issued, state[w.CCLK]
-    cycles = (
-        ticks if cclk == 1 else (ticks + cclk - 1) // cclk
-    )  # a division takes the host longer than all else here
-    return max(0, cycles - 1)
+    if ticks <= cclk:
+        return 0
+    # a division takes the host longer than all else here
+    return ticks - 1 if cclk == 1 else (ticks - 1) // cclk
 
 
 @native

@@ -147,12 +147,12 @@ def serve_dma(state: State, memory: Memory, number: int, at: int, until: int, qu
     """
     where = w.MASTERS_AT + number
     mode = state[w.TRANSFERS_AT + state[where + w.TRANSFER] * w.TRANSFER_WORDS + w.MODE]
+    if mode in (w.READ, w.WRITE):
+        return move_run(state, memory, number, at, until, quiet_until)
     if mode == w.BOTH:
         return exchange(state, memory, number, at)
     if mode == w.ON_CHIP:
         return copy_on_chip(state, memory, number, at)
     if mode == w.THROUGH_L2_PORT:
         return copy_through_l2_port(state, memory, number, at, until)
-    if mode in (w.PACED_IN, w.PACED_OUT):
-        return exchange_with_device(state, memory, number, at)
-    return move_run(state, memory, number, at, until, quiet_until)
+    return exchange_with_device(state, memory, number, at)

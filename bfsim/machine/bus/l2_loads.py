@@ -1,7 +1,6 @@
 """Loads of words of L2, compiled: those of both cores, in order, for as long as nobody else can come between.
 
-What they do is what `l2_requests` would do with each; what that keeps in the state is in local variables here. It saves the host's time
-only: where tables or buffers lie in L2, nearly all that the bus does is this.
+What they do is what `l2_words` would do with each: it saves the host's time only, where tables lie in L2 that both cores read.
 """
 
 from __future__ import annotations
@@ -13,7 +12,8 @@ from bfsim.machine.bus.core_jobs import cycles_until
 from bfsim.machine.bus.core_logs import kind_of, site_at
 from bfsim.machine.bus.fetch_requests import stall_of_word
 from bfsim.machine.bus.l2_port import has_turn, hold_l2
-from bfsim.machine.bus.l2_requests import is_eligible, is_followed
+from bfsim.machine.bus.l2_requests import is_eligible
+from bfsim.machine.bus.l2_words import is_followed
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.runs import buffers_quiet_until
 from bfsim.machine.bus.state import State

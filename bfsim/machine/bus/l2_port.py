@@ -15,8 +15,14 @@ from bfsim.machine.bus.traffic import count_traffic
 def hold_l2(state: State, core: int, at: int, nbytes: int) -> int:
     """Let a core have the port of L2 from tick `at` on for `nbytes`; return when it is free again."""
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
-    state[w.L2_FREE] = at + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+    state[w.L2_FREE] = at + hold_of(state, nbytes)
     return state[w.L2_FREE]
+
+
+@native
+def hold_of(state: State, nbytes: int) -> int:
+    """Return for how many ticks `nbytes` hold the port."""
+    return ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
 
 
 @native
@@ -55,8 +61,8 @@ def test_and_set(state: State, core: int, at: int) -> int:
 def try_lock(state: State, core: int, at: int, until: int) -> None:
     """Let a core that spins try its lock from tick `at` on, as often as nobody else wants the port until a tick."""
     locked = state[w.L2_READ] + state[w.L2_NEXT]
-    turn, room = locked + state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN], until - at - 1
-    tries = 1 + (room // turn if room >= turn else 0)  # a division takes the host longer than all else here
+    turn = locked + state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN]
+    tries = tries_before(at, turn, until)
     lock_l2(state, core, at + (tries - 1) * turn + locked, tries)
     state[w.MASTERS_AT + w.CORE_A + core + w.READY] = at + tries * turn
 
@@ -65,6 +71,19 @@ def try_lock(state: State, core: int, at: int, until: int) -> None:
 def lock_l2(state: State, core: int, free: int, times: int) -> None:
     """Let a core have the port of L2 until it is free again at a tick, and count what it has read and written so many times."""
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2], state[w.L2_FREE] = core, 0, free
+    count_tries(state, core, times)
+
+
+@native
+def tries_before(at: int, turn: int, until: int) -> int:
+    """How often a core that spins tries its lock from tick `at` on, every `turn` ticks, before another tick: once at least."""
+    room = until - at - 1
+    return 1 + (room // turn if room >= turn else 0)  # a division takes the host longer than all else here
+
+
+@native
+def count_tries(state: State, core: int, times: int) -> None:
+    """Count what a core has read and written that has tried a lock so many times."""
     for write in (False, True):
         count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, times * w.CORE_WORD_BYTES)
 

@@ -6,18 +6,18 @@ from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import access, hits_ahead, stream
 from bfsim.machine.bus.state import Memory, State
-from bfsim.machine.bus.traffic import count_access, count_traffic, traffic_at
-from bfsim.machine.bus.transfers import after_move, moved, soonest_wake
+from bfsim.machine.bus.traffic import count_access, count_subbanks, count_traffic
+from bfsim.machine.bus.transfers import after_move, soonest_wake
+from bfsim.machine.bus.walk import move
 
 
 @native
 def others_quiet_until(state: State, until: int) -> int:
     """Until when nobody but PPIs and memory DMAs asks for any bus, or does anything without one, and no refresh is due."""
-    limit = min(until, state[w.NEXT_REFRESH])
-    for other in range(w.PPI1 + 1, w.MASTERS):
-        if not w.MDMA1_0 <= other <= w.MDMA2_1:
-            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
-    return limit
+    limit = cores_quiet_until(state, w.NONE, min(until, state[w.NEXT_REFRESH]))
+    for other in range(w.PPI1 + 1, w.MDMA1_0):
+        limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    return min(limit, state[w.MASTERS_AT + w.IMDMA_0 + w.READY], state[w.MASTERS_AT + w.IMDMA_1 + w.READY])
 
 
 @native
@@ -41,9 +41,10 @@ def l2_left_until(state: State, number: int, until: int) -> int:
     """Until when the DMAs but `number` leave the port of L2 to others: none asks for it before, nor wakes anybody, to ask for it then."""
     limit = until
     for other in range(w.STORES_A):
-        if other != number:
-            master = w.MASTERS_AT + other
-            limit = min(limit, state[master + w.READY] if other >= w.IMDMA_0 else soonest_wake(state, master))
+        master = w.MASTERS_AT + other
+        ready = state[master + w.READY]
+        if ready < limit and other != number:
+            limit = ready if other >= w.IMDMA_0 else min(limit, soonest_wake(state, master))
     return limit
 
 
@@ -70,17 +71,20 @@ def buffers_quiet_until(state: State, until: int) -> int:
 
 
 @native
-def preferred_until(state: State, number: int, until: int, alone: int) -> int:
-    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap; `alone`: until when to itself."""
-    if alone > state[w.BEGAN]:
-        return alone  # nobody waits, which is most often so
-    limit = min(until, state[w.NEXT_REFRESH])
-    rank = state[w.MASTERS_AT + number + w.RANK]
-    for other in range(w.MASTERS):
+def preferred_until(state: State, number: int, until: int, quiet_until: int) -> int:
+    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap, others waiting for it.
+
+    `quiet_until`: see `others_quiet_until`.
+    """
+    began, rank = state[w.BEGAN], state[w.MASTERS_AT + number + w.RANK]
+    limit, masters = min(until, state[w.NEXT_REFRESH]), w.MASTERS
+    if quiet_until > began:  # only PPIs and memory DMAs wait
+        limit, masters = quiet_until, w.IMDMA_0
+    for other in range(masters):
         at = w.MASTERS_AT + other
         ready = state[at + w.READY]
-        if other != number and ready < limit:
-            waits = ready <= state[w.BEGAN] and state[at + w.USES] == w.SDRAM and state[at + w.RANK] > rank
+        if ready < limit and other != number:
+            waits = ready <= began and state[at + w.USES] == w.SDRAM and state[at + w.RANK] > rank
             waits = waits and other >= w.MDMA1_0  # a device that waits gets urgent
             if not waits:
                 limit = ready
@@ -94,14 +98,16 @@ def run_ahead(
     """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between; `quiet_until`: see `others_quiet_until`.
 
     Where nobody else wants the bus the pauses of a memory DMA that reads are part of the run; else a run ends with the first.
+    Each division is left out where it would change nothing, which is most often so: it takes the host longer than all else here.
     """
-    master = w.MASTERS_AT + number
-    if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
+    if ahead <= 0 or state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
         return 0
-    ahead = min(ahead, min(state[transfer + w.FROM_X_LEFT], state[transfer + w.TO_X_LEFT]) - 1)
+    master = w.MASTERS_AT + number
     free, alone = state[w.COMMAND_FREE], alone_until(state, quiet_until)
-    room = preferred_until(state, number, until, alone) - free
-    if ahead <= 0 or room <= 0:
+    room = alone - free
+    if alone <= state[w.BEGAN]:  # somebody waits
+        room = preferred_until(state, number, until, quiet_until) - free
+    if room <= 0:
         return 0
     numerator, parts = state[master + w.GAP_NUMERATOR], state[master + w.GAP_DENOMINATOR]
     if state[transfer + w.MODE] == w.READ and numerator > 0:
@@ -109,9 +115,10 @@ def run_ahead(
         longest = ticks * parts + pause * numerator
         with_pauses = (alone - free - pause) * parts
         if with_pauses >= longest:
-            return min(ahead, with_pauses // longest)
-        ahead = min(ahead, (parts - 1 - state[master + w.GAP]) // numerator)
-    return max(0, min(ahead, (room + ticks - 1) // ticks))
+            return ahead if ahead * longest <= with_pauses else with_pauses // longest
+        if state[master + w.GAP] + ahead * numerator >= parts:
+            ahead = (parts - 1 - state[master + w.GAP]) // numerator
+    return ahead if (ahead - 1) * ticks < room else (room + ticks - 1) // ticks
 
 
 @native
@@ -145,14 +152,17 @@ def move_run(state: State, memory: Memory, number: int, at: int, until: int, qui
     state[master + w.READY] = w.NEVER  # until the end of its run
     transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     write = state[transfer + w.MODE] == w.WRITE
-    offset, step = state[transfer + w.FROM], state[transfer + w.FROM_X_MODIFY]
+    in_sdram, on_chip = transfer + w.FROM, transfer + w.TO
+    owner, other = state[transfer + w.FROM_OWNER], state[transfer + w.TO_OWNER]
     if write:
-        offset, step = state[transfer + w.TO], state[transfer + w.TO_X_MODIFY]
-    beats = max(1, 1 << state[transfer + w.ELEMENT_BITS] >> state[w.WORD_BITS])
+        in_sdram, on_chip, owner, other = on_chip, in_sdram, other, owner
+    offset, step, bits = state[in_sdram], state[in_sdram + w.X_MODIFY], state[transfer + w.ELEMENT_BITS]
+    beats = max(1, 1 << bits >> state[w.WORD_BITS])
     through = access(state, at, offset, write)
     if beats > 1:
         through = stream(state, beats - 1, write, offset)
-    ahead = hits_ahead(state, offset + step, step)
+    in_line = min(state[in_sdram + w.X_LEFT], state[on_chip + w.X_LEFT])
+    ahead = hits_ahead(state, offset + step, step, in_line - 1)
     more = run_ahead(state, number, transfer, ahead, beats * state[w.SCLK], until, quiet_until)
     paused = 0
     if more:
@@ -161,15 +171,15 @@ def move_run(state: State, memory: Memory, number: int, at: int, until: int, qui
         state[w.DATA_FREE] += paused
         through = stream(state, more * beats, write, offset)
     state[master + w.READY] = state[w.COMMAND_FREE] + (0 if write else pause(state, master, 1))
-    source, target = state[transfer + w.FROM_OWNER], state[transfer + w.TO_OWNER]
-    owner, other = (target, source) if write else (source, target)
-    count_access(state, number, owner, 1 + more)
-    state[traffic_at(owner, number) + w.BUSY] -= paused
-    nbytes = (1 + more) << state[transfer + w.ELEMENT_BITS]
-    count_traffic(state, number, owner, write, nbytes)
-    on_chip = state[transfer + w.FROM] if write else state[transfer + w.TO]
-    if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
-        count_traffic(state, number, other, not write, nbytes)
-    moved(state, memory, transfer, 1 + more)
-    take_turn(state, master, 1 + more)
+    count = 1 + more
+    count_access(state, number, owner, count, paused)
+    count_traffic(state, number, owner, write, count << bits)
+    in_l1 = state[on_chip] >= state[w.L1_FIRST]
+    if in_l1 or state[w.L2_FIRST] <= state[on_chip] < state[w.L2_END]:
+        count_traffic(state, number, other, not write, count << bits)
+    if in_l1:
+        count_subbanks(state, on_chip, count)
+    move(state, memory, transfer, count)
+    if state[w.MDMA_PERIOD]:
+        take_turn(state, master, count)
     return after_move(state, master, transfer, through)

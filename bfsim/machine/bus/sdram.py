@@ -104,12 +104,15 @@ def access(state: State, now: int, offset: int, write: bool) -> int:
 
 
 @native
-def hits_ahead(state: State, offset: int, step: int) -> int:
-    """How many accesses from `offset`, `step` bytes apart, lie on its page and are sure to hit: 0 if it is not open."""
+def hits_ahead(state: State, offset: int, step: int, most: int) -> int:
+    """How many of `most` accesses from `offset`, `step` bytes apart, lie on its page and are sure to hit: 0 if it is not open."""
     page = offset >> state[w.PAGE_BITS]
     if state[w.OPEN_PAGE + (offset >> state[w.BANK_BITS])] != page or step <= 0:
         return 0
-    return (((page + 1) << state[w.PAGE_BITS]) - offset + step - 1) // step
+    on_page = ((page + 1) << state[w.PAGE_BITS]) - offset
+    if (most - 1) * step < on_page:
+        return most  # most often; a division takes the host longer
+    return (on_page + step - 1) // step
 
 
 @native

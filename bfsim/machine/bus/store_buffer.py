@@ -40,11 +40,16 @@ def store(state: State, core: int, at: int, entry: int) -> int:
 def put(state: State, core: int, at: int, entry: int, site: int) -> None:
     """Put a store of a site into the core's buffer, which has room for it, at tick `at`."""
     job = w.JOBS_AT + core * w.JOB_WORDS
-    place = (state[job + w.STORE_HEAD] + state[job + w.STORES]) % w.MAX_STORES
-    state[job + w.STORE_QUEUE + place] = site << log.STAMP_BIT | entry & WHAT_MASK
+    put_at(state, job, state[job + w.STORE_HEAD] + state[job + w.STORES], entry, site)
     state[job + w.STORES] += 1
     if state[job + w.STORES] == 1:
         prepare_drain(state, core, at)
+
+
+@native
+def put_at(state: State, job: int, place: int, entry: int, site: int) -> None:
+    """Write a store of a site to a place of the buffer's ring."""
+    state[job + w.STORE_QUEUE + place % w.MAX_STORES] = site << log.STAMP_BIT | entry & WHAT_MASK
 
 
 @native
@@ -97,8 +102,14 @@ def serve_stores(state: State, core: int, at: int) -> int:
 @native
 def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
     """Whether the store buffer has anything of the `nbytes` (a power of two) at `offset`, or a line that holds them."""
-    for number in range(state[job + w.STORES]):
-        entry = state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES]
+    return is_among(state, job, state[job + w.STORE_HEAD], state[job + w.STORES], offset, nbytes)
+
+
+@native
+def is_among(state: State, job: int, head: int, stores: int, offset: int, nbytes: int) -> bool:
+    """Whether so many stores from the place `head` of the buffer's ring on have anything of that."""
+    for number in range(stores):
+        entry = state[job + w.STORE_QUEUE + (head + number) % w.MAX_STORES]
         size = max(nbytes, bytes_of(state, kind_of(entry)))
         if ((entry ^ offset) & log.OFFSET_MASK) // size == 0:
             return True

@@ -59,12 +59,12 @@ def count_traffic(state: State, master: int, owner: int, write: bool, nbytes: in
 
 
 @native
-def count_access(state: State, master: int, owner: int, elements: int) -> None:
-    """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took."""
+def count_access(state: State, master: int, owner: int, elements: int, paused: int = 0) -> None:
+    """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took but for pauses among them."""
     at = traffic_at(owner, master)
     state[at + w.HITS + state[w.PAGE_CLASS]] += 1
     state[at + w.HITS] += elements - 1
-    state[at + w.BUSY] += state[w.COMMAND_FREE] - state[w.BEGAN] - state[w.REFRESH_WAIT]
+    state[at + w.BUSY] += state[w.COMMAND_FREE] - state[w.BEGAN] - state[w.REFRESH_WAIT] - paused
 
 
 @native
@@ -82,11 +82,11 @@ def count_in_l1(state: State, transfer: int, count: int) -> None:
 @native
 def count_subbanks(state: State, side: int, count: int) -> None:
     """Count what the next `count` elements of a side in L1 move to or from each of its sub-banks."""
-    first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]
-    at = state[side + w.POSITION] - first
-    if (at + (count - 1) * state[side + w.X_MODIFY]) >> bits == at >> bits:
-        state[w.SUBBANKS_AT + (at >> bits)] += count
-        return
-    for _ in range(count):
-        state[w.SUBBANKS_AT + (at >> bits)] += 1
-        at += state[side + w.X_MODIFY]
+    bits, step = state[w.SUBBANK_BITS], state[side + w.X_MODIFY]
+    at, left = state[side + w.POSITION] - state[w.L1_FIRST], count
+    while (at + (left - 1) * step) >> bits != at >> bits:
+        up_to, end = (at >> bits) << bits, ((at >> bits) + 1) << bits
+        here = (end - at + step - 1) // step if step > 0 else (at - up_to) // -step + 1
+        state[w.SUBBANKS_AT + (at >> bits)] += here
+        at, left = at + here * step, left - here
+    state[w.SUBBANKS_AT + (at >> bits)] += left

@@ -109,8 +109,10 @@ def serve_with_cameras(state: State, memory: Memory, number: int, at: int, until
     quiet_until = others_quiet_until(state, until)
     woken = serve_dma(state, memory, number, at, until, quiet_until)
     while woken == w.NONE:
-        take_hits(state, memory, copies_quiet_until(state, quiet_until))
         number, at = first_with_cameras(state, quiet_until)
+        if number in (w.PPI0, w.PPI1):
+            take_hits(state, memory, copies_quiet_until(state, quiet_until))
+            number, at = first_with_cameras(state, quiet_until)
         if number == w.NONE:
             break
         woken = serve_dma(state, memory, number, at, quiet_until, quiet_until)
@@ -175,7 +177,12 @@ def serve_cores(state: State, until: int) -> int:
 
 @native
 def go_ahead(state: State, core: int, at: int, until: int) -> bool:
-    """Do at once what a core does from tick `at` on, if that is of a kind; return whether it is. No DMA wants L2 before tick `until`."""
+    """Do at once what a core does from tick `at` on, if that is of a kind; return whether it is. No DMA wants L2 before tick `until`.
+
+    The tries of one that spins on a lock are among what the other one does.
+    """
+    if state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN]:
+        core = w.CORES - 1 - core
     return fetch_ahead(state, core, at, until) or load_ahead(state, until) or access_ahead(state, core, until)
 
 
