@@ -168,7 +168,7 @@ GCC: dict[Rule, str] = {
     Rule.ENDS_OF_RANGES: "simplify_using_ranges in vr-values.cc",
     Rule.COMPUTED_STARTS: "simplify_using_initial_values in loop-iv.cc",
     Rule.FIRST_ITERATIONS: "profitable_path_p in tree-ssa-threadbackward.cc",
-    Rule.EITHER_BANK: "setup_regno_cost_classes_by_aclass in ira-costs.cc",
+    Rule.EITHER_BANK: "find_costs_and_classes in ira-costs.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
     Rule.POINTER_DIFFERENCES: "determine_group_iv_cost_generic in tree-ssa-loop-ivopts.cc",
@@ -274,7 +274,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.COMPUTED_STARTS: (),  # from kernels that are not measured here: tests/kernel/test_computed_starts.py
     Rule.FIRST_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_first_iterations.py
     Rule.CROSS_JUMPS: (),  # tests/kernel/test_ends_of_loops.py
-    Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/test_register_classes.py
+    Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/test_either_bank.py
     Rule.SPILLED_SUMS: (),
     Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/test_field_addresses.py
     Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/test_pointer_differences.py

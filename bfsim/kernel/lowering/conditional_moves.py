@@ -77,7 +77,10 @@ def _stays_a_branch(flow: ControlFlow, phi: Instruction, values: tuple[str, str]
 
 
 def _is_stored_alike(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
-    """Whether one of the values is loaded with as many bits as are stored: the word that is made of it is in another register."""
+    """Whether one of the values is loaded with as many bits as are stored: the word that is made of it is in another register.
+
+    Signs are not asked [ours]: a u16 that is stored as an i16 is converted, and stays a branch in GCC's code.
+    """
     found = [flow.instruction(each) for each in values]
     bits = stored_bits(flow, phi)
     return any(each is not None and each.opcode == "load" and each.bits == bits for each in found)

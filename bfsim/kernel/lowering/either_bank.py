@@ -1,4 +1,4 @@
-"""Which values must be in their bank of registers, and which may be in either [setup_regno_cost_classes_by_aclass in ira-costs.cc of GCC 12]."""
+"""Which values must be in their bank of registers, and which may be in either [find_costs_and_classes in ira-costs.cc of GCC 12]."""
 
 from __future__ import annotations
 

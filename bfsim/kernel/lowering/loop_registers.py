@@ -1,4 +1,7 @@
-"""How many registers a loop takes already, and what more of them cost: as GCC guesses before it chooses variables [tree-ssa-loop-ivopts.cc of GCC 12]."""
+"""How many registers a loop takes already, and what more of them cost: as GCC guesses before it chooses variables [tree-ssa-loop-ivopts.cc of GCC 12].
+
+In a loop with calls GCC has fewer registers for this; here it has as many [ours].
+"""
 
 from __future__ import annotations
 
@@ -7,25 +10,22 @@ from bfsim.kernel.ir_text import Instruction, arms_of, is_number
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
-AVAILABLE = (
-    isa.DATA_REGISTERS + isa.POINTER_REGISTERS + 1
-)  # FP, too [target_avail_regs: those of GENERAL_REGS]
-CLOBBERED = isa.SCRATCH_DATA_REGISTERS + isa.SCRATCH_POINTER_REGISTERS
+AVAILABLE = isa.DATA_REGISTERS + isa.POINTER_REGISTERS + 1  # and FP [target_avail_regs]
 RESERVED = 3  # [target_res_regs]
 MOVE, SPILL = 4, 16  # [target_reg_cost, target_spill_cost]
 
 
-def pressure(used: int, fixed: int, variables: int, *, calls: bool = False) -> int:
+def cost_of_registers(used: int, fixed: int, variables: int) -> int:
     """Return what so many variables cost, and so much more that does not change, beside the registers that are used [ivopts_estimate_reg_pressure]."""
-    needed, room = used + fixed + variables, AVAILABLE - (CLOBBERED if calls else 0)
-    if needed + RESERVED < room:
+    needed = used + fixed + variables
+    if needed + RESERVED < AVAILABLE:
         cost = fixed + variables
-    elif needed <= room:
+    elif needed <= AVAILABLE:
         cost = MOVE * needed
-    elif variables <= room:
-        cost = MOVE * room + SPILL * (needed - room)
+    elif variables <= AVAILABLE:
+        cost = MOVE * AVAILABLE + SPILL * (needed - AVAILABLE)
     else:
-        cost = MOVE * room + 2 * SPILL * (variables - room) + SPILL * (needed - variables)
+        cost = MOVE * AVAILABLE + 2 * SPILL * (variables - AVAILABLE) + SPILL * (needed - variables)
     return cost + variables
 
 

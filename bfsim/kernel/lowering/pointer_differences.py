@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from bfsim.kernel.ir_text import Instruction, arms_of, each_arm, is_number, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.induction_variables import InductionVariable
-from bfsim.kernel.lowering.loop_registers import pressure, registers_used
+from bfsim.kernel.lowering.loop_registers import cost_of_registers, registers_used
 from bfsim.kernel.lowering.scalar_evolution import Affine, ScalarEvolution
 
 # The costs, in those of GCC's RTL: four is one instruction [rtx_cost, add_cost, force_var_cost].
@@ -224,7 +224,7 @@ class Choice:
         return 2 * STEP + uses + self._registers(1 + fixed, 2)
 
     def _registers(self, fixed: int, variables: int) -> int:
-        return pressure(registers_used(self.evolution, self.variable.loop), fixed, variables)
+        return cost_of_registers(registers_used(self.evolution, self.variable.loop), fixed, variables)
 
     def _from(self, variable: Affine) -> tuple[int, int]:
         """What the wanted values cost from a variable, and of how many does not change."""

@@ -44,10 +44,10 @@ class Pressure:
             for bank in (RegisterBank.DATA, RegisterBank.POINTER):
                 for _ in range(32):
                     crowded = self._crowded(loop, bank, spilled)
-                    if crowded and self._gives_way(crowded, bank):
-                        continue
                     if not crowded:
                         break
+                    if self._gives_way(crowded, bank):
+                        continue
                     victim = self._victim(loop, bank, spilled, crowded)
                     spilled.add(victim)
                     self._reload(victim, loop)
