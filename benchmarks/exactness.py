@@ -28,7 +28,7 @@ from benchmarks.twins.exported import calls_of
 from bfsim.compiling.object_code import ObjectCode, object_code
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import GCC_O0, GCC_O2, Kernel
-from bfsim.kernel.tree import first_float
+from bfsim.kernel.language.tree import first_float
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernels import kernels_of
 from bfsim.run import simulate

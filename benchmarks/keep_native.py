@@ -2,7 +2,7 @@
 
     python -m benchmarks.keep_native
 
-It takes half a minute, and writes to `bfsim/kernel/kept`; what is there and no longer used is removed. After a change
+It takes half a minute, and writes to `bfsim/kernel/native/kept`; what is there and no longer used is removed. After a change
 of a function with `@native` or `@native_entry`, or of a number that one uses, it must be run again, or every cold start
 takes that half minute.
 """
@@ -13,9 +13,9 @@ import argparse
 import zlib
 from pathlib import Path
 
-from bfsim import kernel
 from bfsim.files.store import KEPT
-from bfsim.kernel.traced_access import trace_access
+from bfsim.kernel import native
+from bfsim.kernel.calls.traced_access import trace_access
 from bfsim.machine.bus.tape import note, note_access, note_run
 from bfsim.machine.bus.tape_lines import note_copy, note_fetch, note_program, note_send, note_wait
 from bfsim.machine.bus.weave import advance
@@ -26,7 +26,7 @@ from bfsim.machine.calls.ready_calls import find_call
 from bfsim.machine.retiming.stretch_writer import write_stretch
 from bfsim.machine.retiming.work_check import are_accesses, calls_in
 
-FOLDER = Path(kernel.__file__).parent / KEPT
+FOLDER = Path(native.__file__).parent / KEPT
 ENTRIES = (
     trace_access,
     advance,

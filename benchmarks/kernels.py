@@ -103,7 +103,7 @@ def our_loop(
 ) -> Callable[[int], Any]:
     """Return a machine-code loop of our kernel on these arguments."""
     from bfsim.kernel import VDSP_O2, Work
-    from bfsim.kernel.prepared_call import words_of_entry
+    from bfsim.kernel.host_code.prepared_call import words_of_entry
     from bfsim.machine_code.calling import Taken
 
     code = kernel.compile(VDSP_O2, counted=counted, checked=checked)
@@ -139,13 +139,15 @@ def least_ns(loops: list[Callable[[int], Any]]) -> list[float]:
 
 def measure(case: Any) -> Timing:
     """Measure one twin."""
-    from bfsim.kernel import VDSP_O2, costs, jit
+    from bfsim.kernel import VDSP_O2
+    from bfsim.kernel.estimate import estimated
+    from bfsim.kernel.host_code import jit
 
     start = time.perf_counter()
     case.kernel.compile(VDSP_O2)
     cold = time.perf_counter() - start
     jit.compile_kernel.cache_clear()
-    costs.costs_of.cache_clear()
+    estimated.costs_of.cache_clear()
     start = time.perf_counter()
     case.kernel.compile(VDSP_O2)
     warm = time.perf_counter() - start

@@ -12,10 +12,10 @@ from dataclasses import replace
 from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.build import Build
-from bfsim.kernel.counters import Counter
-from bfsim.kernel.function import Function
-from bfsim.kernel.inlining import decisions
-from bfsim.kernel.isa import MNEMONICS, Op
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.estimate.inlining.inlining import decisions
+from bfsim.kernel.language.function import Function
+from bfsim.kernel.operations import MNEMONICS, Op
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.hardware import find_profile
 from bfsim.loading.kernel_named import load_kernel

@@ -97,5 +97,65 @@ MACHINE = _sets(
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 
 
+KERNEL = _sets(
+    {
+        "keys": "",
+        "operations": "",
+        "rules": "",
+        "types": "",
+        "intrinsics": "operations types",
+        "native": "keys",
+        "profile": "operations rules",
+        "ir": "intrinsics profile",
+        "language": "keys types intrinsics",
+        "c": "types intrinsics language",
+        "calls": "types native language",
+        "costs": "operations ir",
+        "emitting": "types intrinsics ir language",
+        "function_keys": "keys profile language",
+        "estimate": "operations rules types intrinsics profile ir language costs emitting function_keys",
+        "objects": "keys operations types profile ir language c calls costs",
+        "host_code": "types intrinsics profile ir language calls costs emitting function_keys estimate",
+        "decorator": "profile language calls costs estimate objects host_code",
+        "build": "profile language costs objects host_code decorator",
+    }
+)
+"""Each part of the kernel and what it imports of the others, from the bottom to the top."""
+
+
+ESTIMATE = _sets(
+    {
+        "choices": "",
+        "conditions": "",
+        "loops": "",
+        "arithmetic": "loops",
+        "memory": "choices loops",
+        "switches": "conditions",
+        "ranges": "arithmetic",
+        "unoptimised": "arithmetic",
+        "induction_variables": "loops ranges",
+        "jump_threading": "choices conditions loops switches ranges",
+        "prediction": "loops ranges",
+        "inlining": "prediction",
+        "redundancies": "choices conditions loops prediction",
+        "loop_copies": "conditions loops arithmetic memory jump_threading prediction inlining",
+        "selection": (
+            "choices conditions loops arithmetic memory ranges induction_variables jump_threading "
+            "prediction redundancies"
+        ),
+        "registers": "memory induction_variables selection",
+        "rewrites": (
+            "choices conditions loops arithmetic memory switches jump_threading redundancies loop_copies"
+        ),
+        "layout": "conditions switches prediction selection registers",
+        "scheduling": "selection registers",
+        "optimised": "loops selection registers layout scheduling",
+        "costing": "switches unoptimised jump_threading inlining loop_copies rewrites optimised",
+        "estimated": "costing",
+    }
+)
+"""Each part of `kernel/estimate` and what it imports of the others, from the bottom to the top."""
+
+
 READ_VERSION = {"recording", "report", "running", "cli"}
 """These also read `bfsim.__version__`."""

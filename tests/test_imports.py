@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rooms import MACHINE, MAY_IMPORT, READ_VERSION
+from tests.rooms import ESTIMATE, KERNEL, MACHINE, MAY_IMPORT, READ_VERSION
 
 ROOT = Path(__file__).parent.parent
 
@@ -90,6 +90,20 @@ def test_a_block_of_the_machine_imports_only_what_it_is_wired_to() -> None:
         if block not in {"board", "__init__"} and module.startswith("bfsim.machine."):
             other = module.split(".")[2]
             assert other == block or other in MACHINE[block], f"{path} imports {module}"
+
+
+@pytest.mark.parametrize(("folder", "parts"), [("kernel", KERNEL), ("kernel/estimate", ESTIMATE)])
+def test_parts_stand_above_those_that_they_import(folder: str, parts: dict[str, set[str]]) -> None:
+    """The table of the parts of a room goes from the bottom to the top, and names all that each imports of the others."""
+    name, found = f"bfsim.{folder.replace('/', '.')}.", {each: set[str]() for each in parts}
+    for path in (each for each in SOURCES if each.is_relative_to(ROOT / "bfsim" / folder)):
+        part = path.relative_to(ROOT / "bfsim" / folder).parts[0].removesuffix(".py")
+        if part != "__init__":
+            modules = (each for each in imported_modules(path) if each.startswith(name))
+            found[part] |= {each.removeprefix(name).split(".")[0] for each in modules} - {part}
+    assert found == parts
+    order = [*parts]
+    assert all(parts[each] <= {*order[:number]} for number, each in enumerate(order))
 
 
 def test_a_peripheral_is_known_to_the_table_alone() -> None:
@@ -189,7 +203,7 @@ def test_the_simulator_knows_no_robot() -> None:
 
 
 def test_the_page_names_every_room() -> None:
-    """docs/architecture.md says of each room what is in it."""
+    """docs/architecture.md says of each room, and of each part of the kernel, what is in it."""
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    rooms = {each for each in MAY_IMPORT if not each.startswith("__")}
+    rooms = {each for each in (*MAY_IMPORT, *KERNEL, *ESTIMATE) if not each.startswith("__")}
     assert {each for each in rooms if f"`{each}`" not in page} == set()

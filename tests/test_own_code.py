@@ -21,7 +21,7 @@ from bfsim.compiling.object_code import _shipped_programs, object_code
 from bfsim.errors import BfsimWarning
 from bfsim.explain import explain_named
 from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
-from bfsim.kernel.isa import COSTS, Op
+from bfsim.kernel.operations import COSTS, Op
 from bfsim.kernel.profile import DEFAULT, GCC, GCC_ADI
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernel_named import load_kernel
@@ -51,7 +51,7 @@ MAKERS = (
     "elftools",
     "bfsim.blackfin.decode",
     "bfsim.blackfin.translate",
-    "bfsim.kernel.language",
+    "bfsim.kernel.language.language",
     "bfsim.kernel.c",
 )
 """Of what is kept."""

@@ -10,7 +10,7 @@ from bfsim.blackfin.prototypes import CPrototype, CType, prototype_of
 from bfsim.errors import KernelError
 from bfsim.files import store
 from bfsim.kernel import keys
-from bfsim.kernel.function import Parameter
+from bfsim.kernel.language.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number
 
 REGISTER_BYTES = 4

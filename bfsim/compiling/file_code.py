@@ -18,7 +18,7 @@ from bfsim.compiling.recipes import AS_BYTES, Recipe, code_of
 from bfsim.compiling.toolchain import blackfin_compiler
 from bfsim.errors import KernelError
 from bfsim.kernel import CompilerProfile, Kernel
-from bfsim.kernel.function import Function, Parameter
+from bfsim.kernel.language.function import Function, Parameter
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.loaded_files import LoadedFiles
 from bfsim.kernel.objects.places import Places, object_function

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bfsim.errors import KernelError, shown
 from bfsim.kernel import Kernel
-from bfsim.kernel.function import Parameter
+from bfsim.kernel.language.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number
 
 NUMBERS = (IntType, FloatType)

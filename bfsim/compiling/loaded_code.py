@@ -11,7 +11,7 @@ from bfsim.blackfin.timing import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
 from bfsim.files import store
 from bfsim.kernel import keys
-from bfsim.kernel.function import Function
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject, code_bytes, compiled_object
 from bfsim.kernel.objects.places import Places
 

@@ -12,8 +12,8 @@ from bfsim.compiling.recipes import Recipe, code_at_hand, code_of, is_shipped
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
 from bfsim.files import store
-from bfsim.kernel import CompilerProfile, Kernel, keys
-from bfsim.kernel.function import Function
+from bfsim.kernel import CompilerProfile, Kernel, function_keys
+from bfsim.kernel.language.function import Function
 
 PROGRAMS = "programs"
 """What comes with bfsim under this name: the names under which its firmware is kept as C."""
@@ -112,7 +112,7 @@ class InC:
 def written(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> tuple[str, InC]:
     """Write kernels as C, and return the name under which that is kept."""
     functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
-    return keys.program_key(functions.values(), called), _written(functions, called)
+    return function_keys.program_key(functions.values(), called), _written(functions, called)
 
 
 def _in_c(
@@ -124,7 +124,7 @@ def _in_c(
     longer than to run a frame.
     """
     functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
-    name = keys.program_key(functions.values(), called)
+    name = function_keys.program_key(functions.values(), called)
 
     def made() -> Any:
         shipped = store.shipped(__package__, name)

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
-from bfsim.kernel.counters import Counter
+from bfsim.kernel.costs.counters import Counter
 from bfsim.kernel.decorator import Kernel
-from bfsim.kernel.function import Function
-from bfsim.kernel.jit import CompiledKernel
+from bfsim.kernel.host_code.jit import CompiledKernel
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
 from bfsim.machine_code import Effort
 

@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import BfsimWarning, KernelError
-from bfsim.kernel.access_trace import AccessTrace
-from bfsim.kernel.arguments import Arguments
-from bfsim.kernel.costs import costs_of
-from bfsim.kernel.counters import Counter
-from bfsim.kernel.function import Function
-from bfsim.kernel.jit import CompiledKernel, compile_kernel
-from bfsim.kernel.prepared_call import PreparedCall
+from bfsim.kernel.calls.access_trace import AccessTrace
+from bfsim.kernel.calls.arguments import Arguments
+from bfsim.kernel.calls.work import Work
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.estimate.estimated import costs_of
+from bfsim.kernel.host_code.jit import CompiledKernel, compile_kernel
+from bfsim.kernel.host_code.prepared_call import PreparedCall
+from bfsim.kernel.language.function import Function
+from bfsim.kernel.language.reading import read_kernel
 from bfsim.kernel.profile import DEFAULT, GCC_O0, RUN_AS_COMPILED, CompilerProfile, profile_named
-from bfsim.kernel.reading import read_kernel
-from bfsim.kernel.work import Work
 from bfsim.machine_code import Effort
 from bfsim.machine_code.endless import ended_by_signals
 
@@ -198,7 +198,7 @@ class Kernel:
     def _refuse_floats(self, profile: CompilerProfile) -> None:
         if profile.floats is not None:
             return
-        from bfsim.kernel.tree import first_float  # the body must be read, which few runs need
+        from bfsim.kernel.language.tree import first_float  # the body must be read, which few runs need
 
         for each in (self.function, *self.function.callees()):
             line = first_float(each)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from bfsim.errors import ConfigError
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 
 # A plain 32-bit machine with multiply and divide: 32-bit pointers as on the Blackfin, no vectors, and LLVM

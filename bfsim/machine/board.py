@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED, Build
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.linker import LinkMap
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.bus import Bus

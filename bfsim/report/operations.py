@@ -1,4 +1,4 @@
-"""What the operations of the Blackfin (`bfsim.kernel.isa.Op`) and the routines of its run-time library are called in sentences."""
+"""What the operations of the Blackfin (`bfsim.kernel.operations.Op`) and the routines of its run-time library are called in sentences."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from bfsim.kernel.c.names import c_type
-from bfsim.kernel.function import Function
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import ArrayType, FloatType
 from bfsim.verifying.sample import Argument
 

@@ -11,8 +11,8 @@ import pytest
 from bfsim.blackfin.decode import decode
 from bfsim.blackfin.origins import Origin, made_by
 from bfsim.kernel import Kernel
-from bfsim.kernel.access_trace import KIND_BIT, KIND_MASK, LOG, STORE, AccessTrace
 from bfsim.kernel.build import Build
+from bfsim.kernel.calls.access_trace import KIND_BIT, KIND_MASK, LOG, STORE, AccessTrace
 from bfsim.kernel.profile import DEFAULT
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernels import entries_of

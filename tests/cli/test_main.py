@@ -76,8 +76,8 @@ def test_a_run_imports_only_what_it_needs() -> None:
     """What compiles and costs kernels, reads pictures and writes them waits for somebody to need it."""
     late = {
         "PIL",
-        "bfsim.kernel.costing",
-        "bfsim.kernel.emit",
+        "bfsim.kernel.estimate.costing",
+        "bfsim.kernel.emitting.emit",
         "bfsim.recording.importing.importer",
         "numba",
         "pydantic",

@@ -6,10 +6,10 @@ from collections import Counter as Tally
 from pathlib import Path
 
 from bfsim.kernel import GCC_O2, CompilerProfile
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.operations import Op
 from tests.kernel.modules import kernel_of
 
 

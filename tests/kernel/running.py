@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel, Work
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.profile import Inlines
 
 CALLING_GCC, CALLING_VDSP = (replace(each, inlines=Inlines.NOTHING) for each in (GCC_O2, VDSP_O2))

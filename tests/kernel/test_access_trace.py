@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
-from bfsim.kernel import access_trace as log
 from bfsim.kernel import i32, kernel, u8
-from bfsim.kernel.access_trace import (
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls.access_trace import (
     FILL,
     LOAD,
     STORE,

@@ -15,7 +15,9 @@ import pytest
 
 from bfsim.errors import BfsimWarning
 from bfsim.files import store
-from bfsim.kernel import VDSP_O2, Kernel, costing, instrument
+from bfsim.kernel import VDSP_O2, Kernel
+from bfsim.kernel.estimate import costing
+from bfsim.kernel.host_code import instrument
 from bfsim.kernel.profile import DEFAULT
 from bfsim.machine_code.caller import caller
 from tests.kernel.modules import HEADER, import_text
@@ -25,7 +27,8 @@ TEXT = "@kernel\ndef f(a: u8[:], b: u8[:]):\n    for i in range(len(a)):\n      
 RUN = """
 import numpy as np
 from bfsim.errors import BfsimWarning
-from bfsim.kernel import VDSP_O2, instrument
+from bfsim.kernel import VDSP_O2
+from bfsim.kernel.host_code import instrument
 from program import f
 compiles = []
 real = instrument.instrument
@@ -227,7 +230,7 @@ def test_processes_share_the_cache_and_agree_on_the_cycles(tmp_path: Path) -> No
 
 
 FOLLOW = """
-from bfsim.kernel.native import native_entry
+from bfsim.kernel.native.entries import native_entry
 
 @native_entry("int64", "int64")
 def follow(word):

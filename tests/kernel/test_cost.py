@@ -10,7 +10,7 @@ import pytest
 
 from bfsim.errors import BfsimWarning, KernelError
 from bfsim.kernel import GCC_O2, VDSP_O2, Kernel
-from bfsim.kernel.isa import COSTS, Op
+from bfsim.kernel.operations import COSTS, Op
 from bfsim.kernel.profile import DEFAULT
 from tests.kernel import cost_kernels
 from tests.kernel.conftest import ImportText

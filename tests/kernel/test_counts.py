@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from bfsim.kernel import GCC_O0, Kernel, instrument
+from bfsim.kernel import GCC_O0, Kernel
+from bfsim.kernel.host_code import instrument
 from tests.kernel.modules import import_text
 from tests.kernel.plain import arrays_of
 from tests.kernel.programs import ARGUMENTS, programs

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from bfsim.kernel import VDSP_O2
-from bfsim.kernel.costing import optimised
+from bfsim.kernel.estimate.costing import optimised
 from tests.kernel import cost_kernels
 
 NAMES = ("suppress", "positions_above", "store_each", "translate", "flip_cube")
@@ -17,7 +17,7 @@ PRINT = f"""
 import hashlib, sys
 sys.path.insert(0, sys.argv[1])
 from bfsim.kernel import VDSP_O2
-from bfsim.kernel.costing import optimised
+from bfsim.kernel.estimate.costing import optimised
 from tests.kernel import cost_kernels
 for name in {NAMES}:
     kernel = getattr(cost_kernels, name)

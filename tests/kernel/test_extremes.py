@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from bfsim.kernel import GCC_O2, VDSP_O2
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import import_text

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from bfsim.errors import KernelError
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, f32, i32, kernel, sqrt, u32
-from bfsim.kernel.isa import COSTS, Op
+from bfsim.kernel.operations import COSTS, Op
 from tests.kernel.modules import import_text
 from tests.kernel.running import run
 

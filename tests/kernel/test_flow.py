@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from bfsim.kernel import VDSP_O2
-from bfsim.kernel.call_paths import Program
-from bfsim.kernel.costing import cost, optimised
-from bfsim.kernel.costs import Costs
-from bfsim.kernel.instrument import instrument
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.ir_text import Instruction
-from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
-from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.costs.call_paths import Program
+from bfsim.kernel.costs.costs import Costs
+from bfsim.kernel.estimate.costing import cost, optimised
+from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
+from bfsim.kernel.host_code.instrument import instrument
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.ir.text import Instruction
 from tests.kernel import cost_kernels
 
 INSTRUCTIONS = """

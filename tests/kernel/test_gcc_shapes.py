@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.kernel import GCC_O2
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 from tests.kernel.lowered import context, lowered
 

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from bfsim.kernel import GCC_O2
-from bfsim.kernel.costing import optimised
+from bfsim.kernel.estimate.costing import optimised
 from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.modules import kernel_of
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from bfsim.explain import explain
-from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel, gimple_size
-from bfsim.kernel.inlining import Decision, Why, decisions
+from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel.estimate.inlining import gimple_size
+from bfsim.kernel.estimate.inlining.inlining import Decision, Why, decisions
 from bfsim.kernel.profile import Inlines
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_GCC, CALLING_VDSP, run

@@ -11,14 +11,14 @@ import pytest
 from benchmarks.twins.lines import grow_segments
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O2, Kernel, profile_named
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.isa import COSTS, Op
-from bfsim.kernel.lowering.context import Context
-from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
-from bfsim.kernel.lowering.multiples import multiple
-from bfsim.kernel.lowering.predict import combined
-from bfsim.kernel.lowering.schedule import issues
+from bfsim.kernel.estimate.arithmetic.multiples import multiple
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.prediction.predict import combined
+from bfsim.kernel.estimate.scheduling.schedule import issues
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.operations import COSTS, Op
 from bfsim.kernel.rules import Rule
 from tests.kernel.lowered import context, lowered
 from tests.kernel.modules import import_text, kernel_of

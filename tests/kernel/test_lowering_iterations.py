@@ -8,10 +8,10 @@ import pytest
 
 from benchmarks.twins.lines import grow_segments
 from bfsim.kernel import GCC_O2, Kernel
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.operations import Op
 from tests.kernel.lowered import context, lowered
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_GCC

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, keys
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.isa import Op
-from bfsim.kernel.loops import COPIED, ControlFlow
-from bfsim.kernel.lowering.moves import _is_circular
-from bfsim.kernel.lowering.predict import Likelihood
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.prediction.predict import Likelihood
+from bfsim.kernel.estimate.registers.moves import _is_circular
+from bfsim.kernel.ir.control_flow import COPIED, ControlFlow
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 from tests.kernel.lowered import context, lowered
 from tests.kernel.modules import kernel_of

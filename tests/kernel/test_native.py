@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from benchmarks.keep_native import ENTRIES, FOLDER
-from bfsim import kernel
 from bfsim.errors import BfsimError
 from bfsim.files import store
-from bfsim.kernel.native_sources import source_of
+from bfsim.kernel import native
+from bfsim.kernel.native.sources import source_of
 from tests.kernel.modules import import_text
 
-PACKAGE = Path(kernel.__file__).parent.parent
+PACKAGE = Path(native.__file__).parents[2]
 
 
 def test_what_comes_with_bfsim_is_made_of_what_it_is_now() -> None:
@@ -35,7 +35,7 @@ def test_all_entries_come_with_bfsim() -> None:
 def test_it_is_for_any_processor(name: str) -> None:
     """It names no machine, no address in a process and nothing of Python or numba, and calls only what LLVM has."""
     (entry,) = (each for each in ENTRIES if each.symbol == name)
-    text = (store.shipped(kernel.__name__, entry.digest()) or b"").decode()
+    text = (store.shipped(native.__name__, entry.digest()) or b"").decode()
     assert re.findall(r"^define (?!internal ).*?@(\w+)", text, re.MULTILINE) == [name]
     assert not re.search(
         r"^target|inttoptr|target-cpu|target-features| x86| asm |Py[A-Z]|NRT_|numba_", text, re.MULTILINE
@@ -44,7 +44,7 @@ def test_it_is_for_any_processor(name: str) -> None:
 
 
 PARTS = '''
-from bfsim.kernel.native import native, native_entry
+from bfsim.kernel.native.entries import native, native_entry
 import numbers_of_it as n
 
 STEP = 3
@@ -111,7 +111,7 @@ def test_who_needs_numba_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 IR = """
-from bfsim.kernel.native import native_entry, words_at
+from bfsim.kernel.native.entries import native_entry, words_at
 
 @native_entry("int64", "int64*", "int64")
 def pick(words_from, number):

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.access_trace import AccessTrace
-from bfsim.kernel.counters import Counter
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls.access_trace import AccessTrace
+from bfsim.kernel.costs.counters import Counter
 from tests.kernel.modules import import_text, kernel_of
 from tests.kernel.plain import arrays_of
 from tests.kernel.programs import programs

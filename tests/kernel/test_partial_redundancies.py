@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import COUNT, LIMIT, arguments, check_estimate
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of

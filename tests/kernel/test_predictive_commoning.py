@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import arguments, beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.errors import KernelError
-from bfsim.kernel import VDSP_O2, language, source_files
+from bfsim.kernel import VDSP_O2
+from bfsim.kernel.language import language, source_files
 from tests.kernel.modules import import_text
 
 TEXT = """

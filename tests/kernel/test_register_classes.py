@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from bfsim.kernel import GCC_O2, VDSP_O2
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.isa import Op
-from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.value_ranges import answer, value_range
+from bfsim.kernel.estimate.ranges.value_ranges import answer, value_range
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import arguments, beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of

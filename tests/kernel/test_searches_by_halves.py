@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import tree
-from bfsim.kernel.subloops import end_of_subloop
+from bfsim.kernel.emitting.subloops import end_of_subloop
+from bfsim.kernel.language import tree
 from tests.kernel.beside_gcc import Case, beside_gcc
 from tests.kernel.modules import kernel_of
 

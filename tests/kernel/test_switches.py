@@ -10,8 +10,8 @@ import pytest
 
 from bfsim.errors import KernelError
 from bfsim.kernel import GCC_O2
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.lowering.hidden_numbers import revealed
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.switches.hidden_numbers import revealed
 from bfsim.kernel.rules import Rule
 from tests.kernel.beside_gcc import beside_gcc, check_meaning
 from tests.kernel.decisions import Decisions

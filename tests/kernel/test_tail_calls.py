@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_GCC, run
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from bfsim.kernel import GCC_O2, VDSP_O2
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 

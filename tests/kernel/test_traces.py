@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from bfsim.kernel import GCC_O2
-from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.traces import Edge, Graph, Layout, laid_out
+from bfsim.kernel.estimate.layout.traces import Edge, Graph, Layout, laid_out
+from bfsim.kernel.operations import Op
 from tests.kernel.modules import import_text
 
 WAYS = tuple[tuple[str, float], ...]

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.costing import optimised
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.ir_text import Routine
-from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.charges import BlockCost, Charge
-from bfsim.kernel.lowering.unoptimised import lower
+from bfsim.kernel.costs.charges import BlockCost, Charge
+from bfsim.kernel.estimate.costing import optimised
+from bfsim.kernel.estimate.unoptimised.lowering import lower
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.ir.text import Routine
+from bfsim.kernel.operations import Op
 from bfsim.kernel.profile import GCC_O0
 from tests.kernel.conftest import ImportText
 from tests.kernel.programs import programs

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bfsim.kernel.ir_reading import read_module
-from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.range_arithmetic import ANY, COMPUTED, WORDS, Range, within
-from bfsim.kernel.lowering.unsigned_ranges import UnsignedRanges
+from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, COMPUTED, WORDS, Range, within
+from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.reading import read_module
 
 Pair = tuple[Range, int]
 

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, tree
-from bfsim.kernel.isa import Op
-from bfsim.kernel.subloops import makes_subloop
+from bfsim.kernel import GCC_O2
+from bfsim.kernel.emitting.subloops import makes_subloop
+from bfsim.kernel.language import tree
+from bfsim.kernel.operations import Op
 from tests.kernel.beside_gcc import beside_gcc
 from tests.kernel.lowered import lowered
 from tests.kernel.modules import kernel_of

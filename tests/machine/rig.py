@@ -19,8 +19,8 @@ from bfsim.chip.memory_map import region_of
 from bfsim.chip.sensors import LEFT_CAMERA
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel
-from bfsim.kernel import access_trace as log
 from bfsim.kernel.build import ESTIMATED, Build
+from bfsim.kernel.calls import access_trace as log
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w

@@ -16,9 +16,9 @@ from bfsim.api import Core, Frame
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import KernelError
 from bfsim.kernel import VDSP_O2, Kernel
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.bus.state import FETCH_BYTES
 from bfsim.machine.calls import code_fetches

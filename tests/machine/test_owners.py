@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from benchmarks.random_traffic import SIZE, hammer, pictures
 from bfsim.api import Core, Frame, i32, kernel
 from bfsim.chip.boards import CM_BF561
-from bfsim.kernel import GCC_O0, VDSP_O2, CompilerProfile, call_paths
+from bfsim.kernel import GCC_O0, VDSP_O2, CompilerProfile
 from bfsim.kernel.build import Build
+from bfsim.kernel.costs import call_paths
 from bfsim.linker import link
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of

@@ -8,7 +8,7 @@ import re
 import textwrap
 import tokenize
 
-from bfsim.kernel.function import Function
+from bfsim.kernel.language.function import Function
 
 WIDTH = 100
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from bfsim.kernel import tree
-from bfsim.kernel.function import Function
+from bfsim.kernel.language import tree
+from bfsim.kernel.language.function import Function
 
 Block = tuple[tree.Stmt, ...]
 

@@ -10,10 +10,10 @@ from enum import IntEnum
 
 import numpy as np
 
-from bfsim.kernel import tree
 from bfsim.kernel.c.names import WORD, LocalNames, c_type
-from bfsim.kernel.function import Function
-from bfsim.kernel.operators import ALIKE, BINARY
+from bfsim.kernel.language import tree
+from bfsim.kernel.language.function import Function
+from bfsim.kernel.language.operators import ALIKE, BINARY
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, i32, u32
 
 

@@ -12,10 +12,10 @@ from bfsim.blackfin.form import Form
 from bfsim.blackfin.forms import TABLE
 from bfsim.blackfin.operands import Operand
 from bfsim.blackfin.text import text
-from bfsim.kernel import tree
-from bfsim.kernel.function import Function
 from bfsim.kernel.intrinsics import Intrinsic
 from bfsim.kernel.intrinsics.intrinsic import RESULT, Step
+from bfsim.kernel.language import tree
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import PAIR, IntType
 
 INTRINSICS = "intrinsics.h"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from bfsim.kernel.c.headers import MACROS
-from bfsim.kernel.function import Function
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, Value
 
 OPERATORS = (

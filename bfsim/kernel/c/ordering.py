@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from bfsim.kernel import tree
-from bfsim.kernel.function import Body, Function
+from bfsim.kernel.language import tree
+from bfsim.kernel.language.function import Body, Function
 from bfsim.kernel.types import BOOL, Value, i32
 
 

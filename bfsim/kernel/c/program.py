@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import PurePath
 
-from bfsim.kernel import tree
 from bfsim.kernel.c.comments import c_comment
 from bfsim.kernel.c.expressions import number
 from bfsim.kernel.c.headers import DECLARED
@@ -17,8 +16,9 @@ from bfsim.kernel.c.intrinsics import INTRINSICS, intrinsics_header, intrinsics_
 from bfsim.kernel.c.library import LIBRARY
 from bfsim.kernel.c.names import WORD, free_name, is_free
 from bfsim.kernel.c.statements import Definition, Place, signature
-from bfsim.kernel.constants import constant_of
-from bfsim.kernel.function import Function
+from bfsim.kernel.language import tree
+from bfsim.kernel.language.constants import constant_of
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import Number, f32, i32, u32
 
 OPERATORS = "operators.h"

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from bfsim.kernel import tree
 from bfsim.kernel.c.comments import WIDTH, Comments, c_comment
 from bfsim.kernel.c.declarations import Block, declarations
 from bfsim.kernel.c.expressions import Binds, Expressions
 from bfsim.kernel.c.names import LocalNames, c_type, parameter_list, result_type
 from bfsim.kernel.c.ordering import ordered
-from bfsim.kernel.function import Function
-from bfsim.kernel.operators import ALIKE
+from bfsim.kernel.language import tree
+from bfsim.kernel.language.function import Function
+from bfsim.kernel.language.operators import ALIKE
 from bfsim.kernel.types import FloatType, Number
 
 INDENT = "    "

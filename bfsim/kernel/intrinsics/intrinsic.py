@@ -8,7 +8,7 @@ from functools import cached_property
 from inspect import signature
 
 from bfsim.blackfin.operands import Operand
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from bfsim.kernel.types import PAIR, IntType, PairType
 
 RESULT, LOWER = "R4", "R5"

@@ -12,7 +12,7 @@ from bfsim.blackfin.multipliers import ADDS, MULTIPLIES, RESTS
 from bfsim.blackfin.operands import Operand
 from bfsim.kernel.intrinsics import fract, video
 from bfsim.kernel.intrinsics.intrinsic import LOWER, RESULT, Intrinsic, Step
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 from bfsim.kernel.types import PAIR, i16, i32
 
 ALONE, TWO, THREE = (i32,), (i32, i32), (i32, i32, i32)

@@ -18,12 +18,12 @@ from bfsim.blackfin.placed import Placed, placed
 from bfsim.blackfin.subroutines import Subroutine
 from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.errors import KernelError
-from bfsim.kernel import crashes
-from bfsim.kernel.access_trace import AccessTrace
-from bfsim.kernel.function import Function
+from bfsim.kernel.calls import crashes
+from bfsim.kernel.calls.access_trace import AccessTrace
+from bfsim.kernel.calls.python_calls import Check, left_by, log_of, words_of
+from bfsim.kernel.calls.work import Work
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject
-from bfsim.kernel.python_calls import Check, left_by, log_of, words_of
-from bfsim.kernel.work import Work
 from bfsim.machine_code.calling import Taken
 from bfsim.machine_code.left import FAILED
 

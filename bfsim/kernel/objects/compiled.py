@@ -13,12 +13,12 @@ from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.files import store
 from bfsim.kernel import keys
-from bfsim.kernel.access_trace import WRITE
-from bfsim.kernel.call_paths import Program
-from bfsim.kernel.costs import Costs, kept_costs
-from bfsim.kernel.counters import Counter
-from bfsim.kernel.function import Function
-from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.calls.access_trace import WRITE
+from bfsim.kernel.costs.call_paths import Program
+from bfsim.kernel.costs.costs import Costs, kept_costs
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.ir.text import SourceLine
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.objects.places import Places
 from bfsim.kernel.types import ArrayType
 

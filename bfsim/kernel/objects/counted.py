@@ -11,10 +11,10 @@ from bfsim.blackfin.interlocks import Wait
 from bfsim.blackfin.pointers import Accesses
 from bfsim.blackfin.stalls import Waits
 from bfsim.blackfin.timing import Timing
-from bfsim.kernel.call_paths import RoutineCall
-from bfsim.kernel.counters import Counter
-from bfsim.kernel.ir_text import Entrance, SourceLine
-from bfsim.kernel.lowering.charges import Access, Charge, instead, merged
+from bfsim.kernel.costs.call_paths import RoutineCall
+from bfsim.kernel.costs.charges import Access, Charge, instead, merged
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.ir.text import Entrance, SourceLine
 from bfsim.kernel.objects.operations import TAKEN, operation_of
 from bfsim.kernel.objects.places import Places
 

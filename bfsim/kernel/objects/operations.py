@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.blackfin.decode import Instruction, Operation
-from bfsim.kernel.isa import Op
+from bfsim.kernel.operations import Op
 
 OF_FORM = {
     **dict.fromkeys(("add_pointers", "add_and_shift_pointers", "add_and_shift", "add_reversed"), Op.ADD_SHIFT),

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from bfsim.blackfin.image import Image, Routine
 from bfsim.files import store
 from bfsim.kernel import keys
-from bfsim.kernel.function import Body, Function, Parameter
-from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.ir.text import SourceLine
+from bfsim.kernel.language.function import Body, Function, Parameter
 from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, file_lines, source_of
 from bfsim.kernel.types import Number
 

@@ -5,7 +5,7 @@ What they do is what `dma_requests` and `sdram` would do with each; what cannot 
 
 from __future__ import annotations
 
-from bfsim.kernel.native import native
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned, arrival
 from bfsim.machine.bus.sdram import hits_ahead

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import kind_of, site_at
 from bfsim.machine.bus.pacing import aligned

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.native import native
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned, arrival, burst_of, lose, next_paced, step_device
 from bfsim.machine.bus.runs import l2_alone_until, move_run, take_turn

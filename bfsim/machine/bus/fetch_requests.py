@@ -5,8 +5,8 @@ What they do is what `core_requests` would do with each. Alone at the port every
 
 from __future__ import annotations
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import charge, count_fetched, cycles_until, go_past, next_entry
 from bfsim.machine.bus.core_logs import site_at

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.l2_words import is_word_in_l2, play_words
 from bfsim.machine.bus.state import State

@@ -6,8 +6,8 @@ saves the host's time only. Where buffers lie in L2, nearly all that the bus doe
 
 from __future__ import annotations
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import charge_site, cycles_until
 from bfsim.machine.bus.core_logs import kind_of

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
-from bfsim.kernel.native import native
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.state import State

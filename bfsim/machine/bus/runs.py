@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.native import native
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import access, hits_ahead, stream
 from bfsim.machine.bus.state import Memory, State

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel.native import native
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
 

@@ -6,7 +6,7 @@ core met the bus last, though its clock may be further.
 
 from __future__ import annotations
 
-from bfsim.kernel.native import native
+from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import start_job
 from bfsim.machine.bus.state import State

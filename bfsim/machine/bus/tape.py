@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel import work as numbers
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import work as numbers
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
 from bfsim.machine_code.asking import Noted

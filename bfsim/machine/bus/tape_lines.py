@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.tape import Tape, write

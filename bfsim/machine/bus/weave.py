@@ -12,7 +12,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.camera_words import take_hits
 from bfsim.machine.bus.core_jobs import start_jobs

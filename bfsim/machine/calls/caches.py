@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from bfsim.chip.block_spec import CacheSpec
 from bfsim.chip.memory_map import Region
 from bfsim.errors import FirmwareError, LinkError
-from bfsim.kernel.access_trace import MAX_REGIONS, CachedRegion, CacheSize, Policy
+from bfsim.kernel.calls.access_trace import MAX_REGIONS, CachedRegion, CacheSize, Policy
 from bfsim.linker import LinkMap
 from bfsim.machine.memories import Memories
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, KernelError
 from bfsim.kernel import Kernel, Work
-from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import Build
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.objects.loaded_files import LoadedFiles
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.conflicts import Accesses, StageGroups, SubBanks

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus.state import FETCH_BYTES, State
 
 SUBBANK_BYTES = 4096

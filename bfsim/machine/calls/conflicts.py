@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import ChipSpec
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.memories import Memories, Row

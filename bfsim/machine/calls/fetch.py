@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from bfsim.chip.block_spec import CacheSpec
 from bfsim.kernel import Work
-from bfsim.kernel.access_trace import FUNCTION, AccessTrace
-from bfsim.kernel.counters import Counter
-from bfsim.kernel.native import NativeEntry
-from bfsim.kernel.python_calls import log_of
+from bfsim.kernel.calls.access_trace import FUNCTION, AccessTrace
+from bfsim.kernel.calls.python_calls import log_of
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.native.entries import NativeEntry
 from bfsim.machine.calls import code_fetches as c
 from bfsim.machine.calls.groups import CallGroup, Fetches
 from bfsim.machine_code.calling import followed_call

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel, Work
-from bfsim.kernel.call_paths import CallPath
-from bfsim.kernel.counters import Counter
-from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.jit import CompiledKernel
+from bfsim.kernel.costs.call_paths import CallPath
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.host_code.jit import CompiledKernel
+from bfsim.kernel.ir.text import SourceLine
 from bfsim.machine.bus.state import NO_BUFFER
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
-from bfsim.kernel.native import NativeEntry, native, native_entry, words_at
+from bfsim.kernel.native.entries import NativeEntry, native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus.state import State
 
 ALWAYS = -1

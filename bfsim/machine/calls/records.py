@@ -10,10 +10,10 @@ from functools import cache, cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel.call_paths import Offset
-from bfsim.kernel.function import Function
-from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.jit import CompiledKernel
+from bfsim.kernel.costs.call_paths import Offset
+from bfsim.kernel.host_code.jit import CompiledKernel
+from bfsim.kernel.ir.text import SourceLine
+from bfsim.kernel.language.function import Function
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import FILLS, Counted, stalls_by_reason
 from bfsim.trace import AccessRecord, KernelRecord, LineCost, PathRecord

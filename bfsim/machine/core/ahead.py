@@ -19,7 +19,7 @@ from bfsim.chip.block_spec import EventSpec
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import COUNTER_OF
 from bfsim.machine.bus.tape_lines import COPY_WORDS, HEAD, PLAN, NotedLines

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.core.progress import Progress

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from bfsim.chip.spec import ChipSpec
 from bfsim.errors import FirmwareError
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.core.frames import FinishedFrame, Frame

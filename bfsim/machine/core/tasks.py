@@ -11,7 +11,7 @@ import simpy
 from bfsim.chip.block_spec import EventSpec
 from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
-from bfsim.kernel.work import UNYIELDED
+from bfsim.kernel.calls.work import UNYIELDED
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
 from bfsim.machine.core.asked import Asked
 from bfsim.machine.core.handovers import Handovers

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.bus.woven_bus import WovenBus

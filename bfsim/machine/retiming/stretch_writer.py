@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.block_spec import EventSpec
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, FrameWork, Table

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from bfsim.kernel import access_trace as log
-from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.retiming.work import (
     BYTE,

@@ -1,0 +1,170 @@
+"""The access trace of the bound phase: what each access of a kernel outside L1 asks of the memories, access by access.
+
+It runs inside the compiled kernel and writes a log; the machine plays the log against the rest of the chip and adds the waiting.
+Where a region is cached it keeps the tags of the core's data cache, and logs line fills and write-backs only.
+The stamp of an access is the cycle at which its block began, without any of the waiting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import KernelError
+
+WRITE = 256  # `counters` adds it to an access's byte count when it writes
+
+# An entry of the log: `stamp << STAMP_BIT | kind << KIND_BIT | offset in the arena`
+KIND_BIT, STAMP_BIT = 28, 31
+OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
+LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET, FETCHES = range(8)
+"""What an entry is. FETCHES, the last one of a call, stands for all fetches of its code that no cache holds: their number takes the
+place of a stamp, and its site is that of the routine that is fetched first (`bus.state`)."""
+
+# Words of the state; the log stands behind them, and behind that the site of each of its entries (`call_paths`).
+(
+    FUNCTION,  # address of `trace_access`; compiled kernels call it
+    ARENA, END,  # host address of the arena, and of what is behind SDRAM and L2
+    ENTRIES,  # how many accesses there were
+    ROOM,  # how many entries the log can have
+    REGIONS,  # how many regions are cached
+    LINE_BITS, SETS, WAYS,
+    KEPT,  # how many entries of earlier calls are kept in front of those of the next
+) = range(10)  # fmt: skip
+MAX_REGIONS = 8
+FIRST_REGION = 10  # first offset, end and policy of each
+TAGS = (
+    FIRST_REGION + 3 * MAX_REGIONS
+)  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
+MAX_LINES = 2048
+LOG = TAGS + MAX_LINES
+ENTRY_WORDS = 2
+EMPTY = -1
+
+
+class Policy(IntEnum):
+    """How a cached region is written: at once and without allocation, or when a changed line leaves the cache."""
+
+    WRITE_THROUGH = 0
+    WRITE_BACK = 1
+
+
+WRITE_BACK_POLICY = int(Policy.WRITE_BACK)  # as compiled code knows it
+
+
+@dataclass(frozen=True, slots=True)
+class CachedRegion:
+    """Part of the arena that a data cache holds lines of."""
+
+    first: int
+    end: int
+    policy: Policy
+
+
+@dataclass(frozen=True, slots=True)
+class CacheSize:
+    """A data cache: `nbytes` in all, in lines of `line_bytes`, `ways` of them in a set."""
+
+    nbytes: int
+    line_bytes: int
+    ways: int
+
+    @property
+    def sets(self) -> int:
+        """Number of sets."""
+        return self.nbytes // (self.line_bytes * self.ways)
+
+
+class AccessTrace:
+    """The access trace of one core; `traced_access.py` is its compiled part, which waits until a kernel touches memory outside L1."""
+
+    def __init__(
+        self,
+        arena: NDArray[np.uint8],
+        traced_nbytes: int,
+        room: NDArray[np.int64],
+        cached: Sequence[CachedRegion] = (),
+        size: CacheSize | None = None,
+    ) -> None:
+        """`arena`: the host array of all memories; the first `traced_nbytes` of it are outside L1.
+
+        `room`: where the state and the log go, LOG words and ENTRY_WORDS for each entry that the log can have.
+        """
+        self._arena = arena  # the state has its address only
+        self._state = room
+        self._words: Any = room.data
+        self._at: int = room.ctypes.data  # numpy takes as long to find it as a short call
+        self._state[TAGS:LOG] = EMPTY
+        self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
+        self._room = self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
+        if size and cached:
+            self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = (
+                size.line_bytes.bit_length() - 1,
+                size.sets,
+                size.ways,
+            )
+            self._state[REGIONS] = len(cached)
+            for number, each in enumerate(cached):
+                at = FIRST_REGION + 3 * number
+                self._state[at : at + 3] = each.first, each.end, each.policy
+
+    def address(self) -> int:
+        """Return the host address of the state, ready to be traced."""
+        if not self._state[FUNCTION]:
+            from bfsim.kernel.calls.traced_access import trace_access  # which has the numbers above from here
+
+            self._state[FUNCTION] = trace_access.address()
+        return self._at
+
+    def address_of(self, word: int) -> int:
+        """Return the host address of a word of the state."""
+        return self._at + self._state.itemsize * word
+
+    def logs(self, address: int) -> bool:
+        """Whether accesses to memory at a host address are logged: whether it is outside of L1."""
+        return bool(self._state[ARENA] <= address < self._state[END])
+
+    def drop(self) -> None:
+        """Keep nothing any more."""
+        self._words[ENTRIES] = self._words[KEPT] = 0
+
+    def entries(self, count: int) -> NDArray[np.int64]:
+        """Return the first `count` entries of the log behind what is kept: those of the last call."""
+        first = LOG + self._words[KEPT]
+        return self._state[first : first + count]
+
+    def sites(self, count: int) -> NDArray[np.int64]:
+        """Return the sites of these entries."""
+        first = LOG + self._room + self._words[KEPT]
+        return self._state[first : first + count]
+
+    def check_room(self, count: int) -> None:
+        """Raise KernelError if a call must not log so many accesses."""
+        room = self._room - self._words[KEPT]
+        if count > room:
+            raise KernelError(
+                f"a kernel call must access memory outside L1 at most {room} times, not {count} times: split it"
+            )
+
+    def caches(self, offset: int) -> bool:
+        """Whether the data cache holds lines of the memory at `offset`."""
+        count = self._words[REGIONS]
+        if not count:  # most boards have none, and each ring asks
+            return False
+        regions = self._state[FIRST_REGION : FIRST_REGION + 3 * count].reshape(-1, 3)
+        return any(first <= offset < end for first, end, _ in regions.tolist())
+
+    def forget(self, first: int, nbytes: int) -> int:
+        """Invalidate the cached lines of `nbytes` from `first`, which are not written back; return how many that can be."""
+        if not self._state[SETS]:
+            return 0
+        bits = int(self._state[LINE_BITS])
+        low, high = first >> bits, (first + nbytes - 1) >> bits
+        tags = self._state[TAGS:LOG]
+        tags[(tags != EMPTY) & (tags >> 1 >= low) & (tags >> 1 <= high)] = EMPTY
+        return high - low + 1

@@ -1,0 +1,272 @@
+"""Call paths of a program: a kernel that is called through two others, or with other arrays, is counted apart.
+
+A program's counts are a table laid out as its tree of calls: first those of a routine itself, then those of each that it calls.
+Where a callee's part begins depends on the caller's part alone, so that a call hands on its own place and a constant.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.reading import KERNEL_CALL
+from bfsim.kernel.ir.text import Entrance, Routine, SourceLine
+
+if TYPE_CHECKING:
+    from bfsim.kernel.costs.costs import Costs
+
+POINTER = re.compile(r"\bptr (?:\w+ )*(%[\w.$-]+)")
+MOST_COUNTERS = 1000
+"""[ours] Of a program with more, the calls of a routine are counted together, whatever path they come by."""
+
+
+class RoutineCall(NamedTuple):
+    """A call of a routine; `arrays`: its parameters that are arrays, each with the caller's parameter that it gets."""
+
+    callee: str
+    arrays: tuple[tuple[str, str], ...]
+
+
+class Site(NamedTuple):
+    """Accesses of one source line to one array, the parameter `array` of the routine."""
+
+    line: SourceLine
+    array: str
+
+
+class Offset(NamedTuple):
+    """Where a part begins: its first counter and its first site."""
+
+    counter: int
+    site: int
+
+
+@dataclass(frozen=True, slots=True)
+class CallPath:
+    """One way to a routine. `routines`: from the program's own to it. `arrays`: its array parameters, each with the program's.
+
+    `first`: where its counters and its sites begin.
+    """
+
+    routines: tuple[str, ...]
+    arrays: Mapping[str, str]
+    first: Offset
+
+
+def calls_of(routines: Sequence[Routine]) -> dict[str, tuple[RoutineCall, ...]]:
+    """Return the calls that each routine makes of the others, in the order of its text."""
+    parameters = {each.symbol: [name[1:] for name in each.parameters] for each in routines}
+    return {each.symbol: tuple(_calls(each, parameters)) for each in routines}
+
+
+def _calls(routine: Routine, parameters: Mapping[str, Sequence[str]]) -> Iterator[RoutineCall]:
+    flow = ControlFlow(routine)
+    own = set(parameters[routine.symbol])
+    for block in routine.blocks:
+        for each in block.instructions:
+            found = KERNEL_CALL.search(each.row)
+            if found and found[1] in parameters:
+                pointers = set(POINTER.findall(each.text))
+                pairs = zip(parameters[found[1]], each.operands, strict=True)
+                roots = [(name, flow.root(operand)[1:]) for name, operand in pairs if operand in pointers]
+                yield RoutineCall(found[1], tuple((name, root) for name, root in roots if root in own))
+
+
+class RoutineCosts(NamedTuple):
+    """What an event of a counter costs, and whom: a row for each counter and each routine that has a part of it.
+
+    `symbols`: the routines. `counter` and `routine`: numbers of both, a row each. `costs`: calls, issue and stall cycles, a row each.
+    """
+
+    symbols: tuple[str, ...]
+    counter: NDArray[np.int64]
+    routine: NDArray[np.int64]
+    costs: NDArray[np.int64]
+
+
+class CountedAccesses(NamedTuple):
+    """So many accesses that an event of a counter makes at one site. `array`: the program's; each may be to that or to others, `among` in all.
+
+    `counter` and `site`: numbers of both.
+    """
+
+    counter: int
+    site: int
+    array: str
+    among: int
+    accesses: int
+
+
+@dataclass(frozen=True)
+class Program:
+    """The kernel `symbol` and all that it calls, as it is counted: each counter once for each path to its routine."""
+
+    symbol: str
+    costs: Costs
+    arrays: tuple[str, ...]
+    """The kernel's array parameters."""
+    together: bool = False
+    """Whether the calls of a routine are counted together, whatever path they come by."""
+    paths: tuple[CallPath, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        paths = tuple(self._tree()) if self._has_tree else tuple(self._flat())
+        object.__setattr__(self, "paths", paths)
+
+    @cached_property
+    def own(self) -> Mapping[str, tuple[Counter, ...]]:
+        """Counters of each routine."""
+        found: dict[str, list[Counter]] = {each: [] for each in (self.symbol, *self.costs.calls)}
+        for each in self.costs.counters:
+            found[each.routine].append(each)
+        return {routine: tuple(each) for routine, each in found.items()}
+
+    @cached_property
+    def own_sites(self) -> Mapping[str, tuple[Site, ...]]:
+        """Sites of each routine."""
+        return {
+            routine: tuple(
+                dict.fromkeys(Site(one.line, one.array) for each in counters for one in each.accesses)
+            )
+            for routine, counters in self.own.items()
+        }
+
+    @cached_property
+    def counters(self) -> tuple[Counter, ...]:
+        """What is counted, path by path."""
+        return tuple(each for path in self.paths for each in self.own[path.routines[-1]])
+
+    @cached_property
+    def sites(self) -> tuple[Site, ...]:
+        """Where it may access memory outside L1, path by path."""
+        return tuple(each for path in self.paths for each in self.own_sites[path.routines[-1]])
+
+    @cached_property
+    def routine_costs(self) -> RoutineCosts:
+        """Whose calls and cycles each counter counts."""
+        rows: dict[tuple[int, str], list[int]] = {}
+        for number, counter in enumerate(self.counters):
+            for each in counter.enters:
+                rows.setdefault((number, each.symbol), [0, 0, 0])[0] += 1
+            for place, issue_cclk, stall_cclk in counter.line_cclk:
+                row = rows.setdefault((number, place.routine), [0, 0, 0])
+                row[1] += issue_cclk
+                row[2] += stall_cclk
+        numbers = {
+            symbol: number for number, symbol in enumerate(dict.fromkeys(symbol for _, symbol in rows))
+        }
+        return RoutineCosts(
+            tuple(numbers),
+            np.array([counter for counter, _ in rows], np.int64),
+            np.array([numbers[symbol] for _, symbol in rows], np.int64),
+            np.array(list(rows.values()), np.int64).reshape(-1, 3),
+        )
+
+    @cached_property
+    def accesses(self) -> tuple[CountedAccesses, ...]:
+        """What the events of its counters access in its arrays."""
+        found: dict[tuple[int, int, str, int], int] = {}
+        for path in self.paths:
+            routine, first = path.routines[-1], path.first
+            sites = {each: first.site + number for number, each in enumerate(self.own_sites[routine])}
+            for number, counter in enumerate(self.own[routine], first.counter):
+                for each in counter.accesses:
+                    if each.is_counted and each.array in path.arrays:
+                        site = sites[Site(each.line, each.array)]
+                        key = (number, site, path.arrays[each.array], each.among)
+                        found[key] = found.get(key, 0) + 1
+        return tuple(CountedAccesses(*key, accesses) for key, accesses in found.items())
+
+    def call_offsets(self, routine: str) -> tuple[Offset, ...]:
+        """Return, of each call that a routine makes, where the callee's part begins, from where the caller's does."""
+        calls = self.costs.calls.get(routine, ())
+        if not calls or not self._has_tree:
+            return (Offset(0, 0),) * len(calls)
+        found, at = dict[RoutineCall, Offset](), self._own_size(routine)
+        for each in calls:
+            if each not in found:
+                found[each] = at
+                size = self._size(each.callee)
+                at = Offset(at.counter + size.counter, at.site + size.site)
+        return tuple(found[each] for each in calls)
+
+    def base(self, routine: str) -> Offset:
+        """Return where a routine's own counters begin in the part that it is handed."""
+        if self._has_tree:
+            return Offset(0, 0)
+        return next(each.first for each in self.paths if each.routines[-1] == routine)
+
+    def through(self, path: CallPath, line: SourceLine) -> tuple[str, ...]:
+        """Return the routines down to a line of one that `path` leads to, those that were inlined there included."""
+        if line.routine == path.routines[-1]:
+            return path.routines
+        return (*path.routines, *self.costs.inlined.get(line.site, ())[1:], line.routine)
+
+    def entered(self, path: CallPath, entrance: Entrance) -> tuple[str, ...]:
+        """Return the routines down to one that begins where `path` leads to, itself or inlined there."""
+        if entrance.symbol == path.routines[-1]:
+            return path.routines
+        return (*self.through(path, entrance.caller), entrance.symbol)
+
+    @cached_property
+    def _has_tree(self) -> bool:
+        if self.together:
+            return False
+        return self._size(self.symbol).counter <= max(MOST_COUNTERS, len(self.costs.counters))
+
+    def _own_size(self, routine: str) -> Offset:
+        return Offset(len(self.own[routine]), len(self.own_sites[routine]))
+
+    @cached_property
+    def _sizes(self) -> dict[str, Offset]:
+        return {}
+
+    def _size(self, routine: str) -> Offset:
+        """Return how many counters and sites a routine has, with all that it calls."""
+        if routine not in self._sizes:
+            parts = [
+                self._own_size(routine),
+                *(self._size(each.callee) for each in dict.fromkeys(self.costs.calls.get(routine, ()))),
+            ]
+            self._sizes[routine] = Offset(
+                sum(each.counter for each in parts), sum(each.site for each in parts)
+            )
+        return self._sizes[routine]
+
+    def _tree(self) -> Iterator[CallPath]:
+        """Yield every path, each routine before those that it calls, as `call_offsets` has them."""
+        top = CallPath((self.symbol,), {each: each for each in self.arrays}, Offset(0, 0))
+        yield from self._below(top)
+
+    def _below(self, path: CallPath) -> Iterator[CallPath]:
+        yield path
+        routine, first = path.routines[-1], path.first
+        calls = self.costs.calls.get(routine, ())
+        for call, offset in dict(zip(calls, self.call_offsets(routine), strict=True)).items():
+            arrays = {taker: path.arrays[giver] for taker, giver in call.arrays}
+            begin = Offset(first.counter + offset.counter, first.site + offset.site)
+            yield from self._below(CallPath((*path.routines, call.callee), arrays, begin))
+
+    def _flat(self) -> Iterator[CallPath]:
+        """Yield one path to each routine, the first that is found."""
+        waiting = [CallPath((self.symbol,), {each: each for each in self.arrays}, Offset(0, 0))]
+        at, known = Offset(0, 0), {self.symbol}
+        while waiting:
+            path = waiting.pop(0)
+            routine = path.routines[-1]
+            yield CallPath(path.routines, path.arrays, at)
+            size = self._own_size(routine)
+            at = Offset(at.counter + size.counter, at.site + size.site)
+            for call in self.costs.calls.get(routine, ()):
+                if call.callee not in known:
+                    known.add(call.callee)
+                    arrays = {taker: path.arrays[giver] for taker, giver in call.arrays}
+                    waiting.append(CallPath((*path.routines, call.callee), arrays, at))

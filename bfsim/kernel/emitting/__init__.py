@@ -1,0 +1,1 @@
+"""Typed tree → LLVM IR, as plain as code at -O0."""

@@ -1,0 +1,1 @@
+"""Arithmetic that compilers do in another way: products, powers, sums, remainders, bits."""

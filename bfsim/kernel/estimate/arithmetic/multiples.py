@@ -1,0 +1,103 @@
+"""Products with a constant as shifts and additions, as GCC picks them [synth_mult in expmed.cc of GCC 12].
+
+What an operation costs there is the Blackfin's [bfin_rtx_costs in bfin.cc]: a difference is one operation whatever is shifted on
+the way, a sum is one where the shift is by 1 or 2. In the code, other shifts are instructions of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+from bfsim.kernel.operations import ADDRESS_SHIFTS, Op
+
+PRODUCT_COST = 4  # of a multiplication and of its constant, in operations
+SHIFTED = (Op.SHIFT, Op.ALU)
+SHIFTED_SUMS = (2, 4)  # factors by which a sum may be multiplied as it is added up
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How to multiply: what GCC thinks that it costs, how long it takes to the result, and its instructions."""
+
+    cost: int
+    latency: int
+    ops: tuple[Op, ...]
+    is_sum: bool = False
+    """Whether the last instruction adds, and could shift the sum by 1 or 2 as well."""
+    subtracts: bool = False
+    """Whether there is a difference in it, which is as good the other way round."""
+
+    def is_cheaper(self, cost: int, latency: int) -> bool:
+        """Whether it costs less, or as little and takes less long [CHEAPER_MULT_COST]."""
+        return (self.cost, self.latency) < (cost, latency)
+
+    def then(self, step: Plan, factor: int) -> Plan:
+        """Return this one with a step behind it that multiplies by `factor`."""
+        joins = self.is_sum and factor in SHIFTED_SUMS and step.ops == (Op.SHIFT,)
+        ops = (*self.ops[:-1], Op.ADD_SHIFT) if joins else (*self.ops, *step.ops)
+        latency = max(self.latency + step.latency, step.cost)
+        return Plan(self.cost + step.cost, latency, ops, step.is_sum, self.subtracts or step.subtracts)
+
+
+SHIFT = Plan(1, 1, (Op.SHIFT,))
+SUM = Plan(1, 1, (Op.ALU,), is_sum=True)
+DIFFERENCE = Plan(1, 1, (Op.ALU,), subtracts=True)
+SHIFTED_SUM = Plan(1, 1, (Op.ADD_SHIFT,))
+SHIFTED_DIFFERENCE = Plan(1, 1, SHIFTED, subtracts=True)
+LONG_SUM = Plan(2, 1, SHIFTED, is_sum=True)
+
+
+@cache
+def multiple(factor: int) -> tuple[Op, ...] | None:
+    """Return the operations that multiply by `factor`, or None if GCC multiplies."""
+    if factor == 1:
+        return ()
+    if factor > 0:
+        found = _plan(factor, PRODUCT_COST, PRODUCT_COST)
+        return found.ops if found else None
+    if factor < 0 and (1 - factor).bit_count() == 1:
+        return SHIFTED
+    negated = _plan(-factor, PRODUCT_COST - 1, PRODUCT_COST - 1) if factor < 0 else None
+    if negated is None:
+        return None
+    return negated.ops if negated.subtracts else (*negated.ops, Op.ALU)
+
+
+@cache
+def _plan(factor: int, cost: int, latency: int) -> Plan | None:
+    """Return the first of the best ways that are cheaper than `cost`, in GCC's order."""
+    if factor == 1:
+        return Plan(0, 0, ())
+    best = None
+    for inner, step in _steps(factor):
+        before = _plan(inner, cost - step.cost, latency - step.latency) if cost > step.cost else None
+        found = before.then(step, factor // inner) if before else None
+        if found is not None and found.is_cheaper(cost, latency):
+            best, cost, latency = found, found.cost, found.latency
+    return best
+
+
+def _steps(factor: int) -> Iterator[tuple[int, Plan]]:
+    """From what `factor` can be made, and how."""
+    lowest = factor & -factor
+    if lowest > 1:
+        yield factor // lowest, SHIFT
+    elif factor & 3 == 3 and factor != 3:
+        yield factor + 1, DIFFERENCE
+    else:
+        yield factor - 1, SUM
+    for shift in range((factor - 1).bit_length() - 1, 1, -1):
+        times = (1 << shift) + 1
+        if factor % times == 0 and factor > times:
+            yield factor // times, SHIFTED_SUM if shift in ADDRESS_SHIFTS else LONG_SUM
+        times = (1 << shift) - 1
+        if factor % times == 0 and factor > times:
+            yield factor // times, SHIFTED_DIFFERENCE
+    if lowest == 1:
+        shift = ((factor - 1) & -(factor - 1)).bit_length() - 1
+        if shift in ADDRESS_SHIFTS:
+            yield (factor - 1) >> shift, SHIFTED_SUM
+        shift = ((factor + 1) & -(factor + 1)).bit_length() - 1
+        yield (factor + 1) >> shift, SHIFTED_DIFFERENCE

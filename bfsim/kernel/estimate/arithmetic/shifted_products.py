@@ -1,0 +1,52 @@
+"""A product that is shifted left is shifted: LLVM multiplies by a larger number in its place, beside the product itself.
+
+`k = x * C; (k << 15) | (k >> 17)` is one product in C, and two to LLVM.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bfsim.kernel.estimate.arithmetic.multiples import multiple
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.text import Instruction, Routine, is_number, written
+from bfsim.kernel.ir.widths import WORD
+
+
+def with_shifted_products(routine: Routine) -> Routine:
+    """Return `routine` with such products as shifts again."""
+    flow = ControlFlow(routine)
+    blocks = [
+        replace(
+            block,
+            instructions=tuple(_shift(flow, block.label, each) or each for each in block.instructions),
+        )
+        for block in routine.blocks
+    ]
+    return replace(routine, blocks=tuple(blocks))
+
+
+def _shift(flow: ControlFlow, label: str, each: Instruction) -> Instruction | None:
+    """Return a product as a shift of another one that is there before it."""
+    if not _is_product(each):
+        return None
+    value, factor = each.operands[:2]
+    for other in flow.users[value]:
+        if other is each or not _is_product(other) or other.operands[0] != value:
+            continue
+        home, _ = flow.defined[other.result or ""]
+        rows = flow.blocks[label].instructions
+        is_before = rows.index(other) < rows.index(each) if home == label else home in flow.dominators[label]
+        if not is_before:
+            continue
+        for bits in range(1, WORD):
+            if (int(other.operands[1]) << bits) % (1 << WORD) == int(factor) % (1 << WORD):
+                text = f"shl i{WORD} {other.result}, {bits}"
+                return written(each.result or "", text, (other.result or "", str(bits)), each)
+    return None
+
+
+def _is_product(each: Instruction) -> bool:
+    """Whether it multiplies by a number, and takes an instruction that multiplies."""
+    is_word = each.opcode == "mul" and each.bits == WORD and is_number(each.operands[1])
+    return is_word and multiple(int(each.operands[1])) is None

@@ -1,0 +1,1 @@
+"""Choices between values: if-conversion, minima and maxima, conditional moves."""

@@ -1,0 +1,1 @@
+"""Conditions: tests that are split or made one."""

@@ -1,0 +1,1 @@
+"""Induction variables: what a loop steps, and what it computes from that."""

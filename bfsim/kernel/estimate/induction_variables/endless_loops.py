@@ -1,0 +1,163 @@
+"""Loops that may be endless, as far as GCC can see: no register counts their iterations."""
+
+from __future__ import annotations
+
+from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
+from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
+from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, LARGEST
+from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
+from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.ir.text import Instruction, is_number, predicate
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
+
+
+class EndlessLoops:
+    """Tells which loops of one routine may be endless."""
+
+    def __init__(
+        self,
+        flow: ControlFlow,
+        evolution: ScalarEvolution,
+        induction_variables: InductionVariables,
+        profile: CompilerProfile,
+    ) -> None:
+        self.flow = flow
+        self.evolution = evolution
+        self.induction_variables = induction_variables
+        self.profile = profile
+
+    def may_be(self, loop: Loop) -> bool:
+        """With several exits, the pointer that walks is compared for equality with its end.
+
+        GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i < n + 1`, which is `i <= n` and may always
+        hold, nor a counter of its own that may step over the largest number.
+        """
+        around = self.flow.around(loop)
+        is_one = around is not None and around.latch in loop.blocks  # an iteration that begins elsewhere
+        if len(self.flow.exits(loop)) - is_one < 2:
+            return False
+        if self._is_inclusive(loop):
+            return True
+        if self.flow.is_split(loop):
+            return not self._steps_by_one(loop)
+        if self._is_wanted(loop):
+            return not self._steps_by_one(loop) and not self._ends_at_number(loop)
+        steps = {
+            abs(variable.increment.constant)
+            for variable in self.induction_variables.all
+            if variable.loop is loop
+        }
+        wide = bool(steps) and 1 not in steps
+        fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
+        known = fixed or self._starts_in_front(loop)
+        return wide and not known and not self._may_not_start(loop)
+
+    def _starts_in_front(self, loop: Loop) -> bool:
+        """Whether a loop walks from an address that is computed right before it, of no constant: what is left to its end is a multiple of the step then.
+
+        That of what the loop around counts is a pointer, too, of which that is not known [simplify_using_initial_values in loop-iv.cc]. Nor
+        is it asked of a counter that is wanted behind the loop, or steps by more than one.
+        """
+        start = self.evolution.counter_start(loop)
+        if start is None or is_number(start) or not self.profile.applies(Rule.COMPUTED_STARTS):
+            return False
+        if not self._steps_by_one(loop):
+            return False
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        moving = {each for each in test.operands if not self.flow.is_invariant(each, loop)} if test else set()
+        inside = {id(each) for label in loop.blocks for each in self.flow.blocks[label].instructions}
+        behind = any(id(user) not in inside for each in moving for user in self.flow.users.get(each, ()))
+        return not behind and not self._comes_from_choice(start)
+
+    def _comes_from_choice(self, value: str) -> bool:
+        """Whether a value is a phi, or computed from one; what is loaded is not."""
+        made = self.flow.instruction(value)
+        if made is None or made.opcode == "load":
+            return False
+        return made.opcode == "phi" or any(map(self._comes_from_choice, made.operands))
+
+    def _ends_at_number(self, loop: Loop) -> bool:
+        """Whether a counter of wider steps is sure not to pass the largest number there is ["infinite" in niter_for_exit in loop-iv.cc]."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        return test is not None and is_number(test.operands[1])
+
+    def _is_wanted(self, loop: Loop) -> bool:
+        """Whether each iteration wants the counter, or something behind the loop, and not as an index alone: then no pointer takes its place."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        waiting = [each for each in test.operands if not self.flow.is_invariant(each, loop)] if test else []
+        seen: set[str] = set()
+        while waiting:
+            name = waiting.pop()
+            seen.add(name)
+            for user in self.flow.users.get(name, []):
+                if user.opcode == "phi" and (user.result or "") not in seen:
+                    waiting.append(user.result or "")
+                elif user.opcode not in ("phi", "getelementptr") and self._is_use(user, loop):
+                    return True
+        return False
+
+    def _is_use(self, user: Instruction, loop: Loop) -> bool:
+        """Whether an instruction is behind `loop`, or made in each iteration and neither its test nor a step."""
+        home = next((label for label in loop.blocks if user in self.flow.blocks[label].instructions), None)
+        if home is None:
+            return True
+        is_counting = (
+            user.result == self.evolution.exit_test(loop)
+            or self.evolution.increment(user.result or "", loop) is not None
+        )
+        return not is_counting and self.flow.every_iteration(home, loop)
+
+    def _may_not_start(self, loop: Loop) -> bool:
+        """Whether a counter that goes down to a constant is tested before the loop.
+
+        Then GCC knows no bound of the iterations that keeps a pointer of wider steps from wrapping, and no pointer takes the
+        counter's place [may_eliminate_iv in tree-ssa-loop-ivopts.cc].
+        """
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        if test is None or not is_number(test.operands[1]):
+            return False
+        block = self.flow.blocks[self.flow.entering(loop)]
+        while len(set(block.successors)) == 1 and len(self.flow.predecessors[block.label]) == 1:
+            block = self.flow.blocks[self.flow.predecessors[block.label][0]]
+        guard = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
+        return guard is not None and guard.opcode == "icmp" and is_number(guard.operands[1])
+
+    def _is_inclusive(self, loop: Loop) -> bool:
+        """Whether a loop runs up to a bound and with it, and that may be the largest number there is; so may the `stop` of `stop + 1`."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        if test is None or not self.profile.applies(Rule.INCLUSIVE_LOOPS):
+            return False
+        stop, bound = test.operands[1], self.flow.instruction(test.operands[1])
+        if bound is not None and bound.opcode == "add" and bound.operands[1] == "1":
+            return not self._is_exceeded(bound.operands[0], loop)
+        leaves = self.flow.blocks[self.flow.ending(loop)].successors[0] not in loop.blocks
+        is_inclusive = predicate(test) in (("sgt", "ugt") if leaves else ("sle", "ule"))
+        return is_inclusive and self.flow.is_invariant(stop, loop) and not self._is_known(stop, loop)
+
+    def _is_known(self, stop: str, loop: Loop) -> bool:
+        """Whether a bound is sure not to be the largest number there is."""
+        if is_number(stop) or self._is_exceeded(stop, loop):
+            return True
+        low, high = UnsignedRanges(self.flow).found.get(stop, ANY)
+        return high < LARGEST or low > LARGEST
+
+    def _is_exceeded(self, value: str, loop: Loop) -> bool:
+        """Whether a test before `loop` has found something larger than a value [simplify_using_initial_values in loop-iv.cc]."""
+        above = self.flow.dominators[loop.header]
+        for block in (self.flow.blocks[label] for label in above - loop.blocks):
+            test = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
+            if test is None or test.opcode != "icmp" or len(set(block.successors)) != 2:
+                continue
+            yes, no = ({each} <= above for each in block.successors)
+            relation = predicate(test)
+            smaller = {"slt": (0, yes), "sgt": (1, yes), "sge": (0, no), "sle": (1, no)}.get(relation)
+            if yes != no and smaller is not None and smaller[1] and test.operands[smaller[0]] == value:
+                return True
+        return False
+
+    def _steps_by_one(self, loop: Loop) -> bool:
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        gain = self.evolution.increment(test.operands[0], loop) if test is not None else None
+        return gain is not None and abs(gain.constant) == 1 and not gain.symbolic

@@ -1,0 +1,220 @@
+"""Induction variables: pointers that a loop steps along, each with the array accesses that share it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from bfsim.kernel.estimate.loops.scalar_evolution import Affine, Increment, ScalarEvolution
+from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.ir.text import Instruction, SourceLine, arms_of, each_arm, is_number
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
+
+HIDDEN = ".len"  # every array comes with its length, which C code would not pass
+
+
+@dataclass(slots=True)
+class InductionVariable:
+    """Accesses at constant distances from one pointer, which advances by the same amount with each iteration of `loop`."""
+
+    name: str
+    loop: Loop
+    root: str
+    increment: Increment
+    line: SourceLine
+    accesses: list[tuple[str, Instruction, int]] = field(default_factory=list)
+    """(block, access, offset in bytes)"""
+    start: tuple[tuple[str, int], ...] = ()
+    """What is added to the array's address where the loop starts, with factors: values that the loop around does not step along."""
+    steps_free: bool = False
+    offset_apart: bool = False
+    neighbour: InductionVariable | None = None
+    """The variable whose pointer serves this one as well: only some iterations access it, at a distance that does not change."""
+    distance: tuple[tuple[str, int], ...] = ()
+    """The terms of that distance, with factors."""
+
+    @property
+    def stride(self) -> str | None:
+        """The register that holds the step, if it is no constant."""
+        return f"{self.name}.stride" if self.increment.symbolic else None
+
+
+class InductionVariables:
+    """The induction variables of one routine; `of` finds that of an access by its identity."""
+
+    def __init__(
+        self,
+        flow: ControlFlow,
+        evolution: ScalarEvolution,
+        frequency: Mapping[str, float],
+        profile: CompilerProfile,
+    ) -> None:
+        """`frequency`: of each block."""
+        self.flow, self.evolution, self.frequency, self.profile = flow, evolution, frequency, profile
+        self.all: list[InductionVariable] = []
+        self.of: dict[int, InductionVariable] = {}
+        found: dict[tuple[str, tuple[tuple[str, int], ...]], InductionVariable] = {}
+        for label in flow.order:
+            for each in flow.blocks[label].instructions:
+                if each.opcode in ("load", "store"):
+                    for where, pointer in self._pointers(label, each):
+                        self._place(where, each, pointer, found)
+        for variable in self.all:
+            variable.steps_free = self._steps_free(variable)
+            variable.offset_apart = not any(offset == 0 for _, _, offset in variable.accesses)
+        for variable in self.all:
+            variable.neighbour = next((other for other in self.all if self._serves(other, variable)), None)
+            if variable.neighbour is not None:
+                variable.distance = self._distance(variable.neighbour, variable)
+
+    def _serves(self, one: InductionVariable, other: InductionVariable) -> bool:
+        """Whether the pointer of one variable takes the place of another's [cost of an iv use, tree-ssa-loop-ivopts.cc].
+
+        An access that not every iteration makes costs less where it is computed from a pointer that is there than with a pointer
+        of its own, which every iteration would have to step: as long as an iteration makes one of them at most, by the guess of how often
+        each block runs [determine_group_iv_cost_address].
+        """
+        if (
+            one is other
+            or one.loop is not other.loop
+            or one.root != other.root
+            or one.increment != other.increment
+        ):
+            return False
+        fixed = all(
+            self.evolution.code_motion.is_invariant(name, one.loop) for name, _ in self._distance(one, other)
+        )
+        return (
+            fixed
+            and not one.increment.symbolic
+            and self.is_steady(one)
+            and not self.is_steady(other)
+            and self._share(other) <= 1
+        )
+
+    def _share(self, variable: InductionVariable) -> float:
+        """How many of its accesses an iteration makes."""
+        total = sum(self.frequency[label] for label, _, _ in variable.accesses)
+        return total / self.frequency[variable.loop.header]
+
+    def is_steady(self, variable: InductionVariable) -> bool:
+        """Whether every iteration makes one of the accesses."""
+        return any(self.flow.every_iteration(label, variable.loop) for label, _, _ in variable.accesses)
+
+    def _distance(self, one: InductionVariable, other: InductionVariable) -> tuple[tuple[str, int], ...]:
+        here, there = (
+            self.evolution.affine(variable.accesses[0][1].operands[-1]) for variable in (one, other)
+        )
+        return there.plus(here, -1).terms
+
+    def _pointers(self, label: str, each: Instruction) -> list[tuple[str, str]]:
+        """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""
+        source = self.flow.instruction(each.operands[-1])
+        if source is not None and is_merged_pointer(source) and self.profile.applies(Rule.MERGED_LOADS):
+            return [(arm_label, value) for value, arm_label in each_arm(source)]
+        return [(label, each.operands[-1])]
+
+    def _place(
+        self,
+        label: str,
+        each: Instruction,
+        pointer: str,
+        found: dict[tuple[str, tuple[tuple[str, int], ...]], InductionVariable],
+    ) -> None:
+        for loop in self.flow.loops_of(label):
+            increment = self.evolution.increment(pointer, loop)
+            if increment is None:
+                return
+            if increment.moves:
+                affine = self.evolution.affine(pointer)
+                key = (loop.header, affine.terms)
+                variable = found.get(key)
+                if variable is None:
+                    root = self._root(affine)
+                    variable = found[key] = InductionVariable(
+                        f"%walk.{len(self.all)}", loop, root, increment, each.line
+                    )
+                    variable.start = self._start(affine, root, loop)
+                    self.all.append(variable)
+                variable.accesses.append((label, each, affine.constant))
+                self.of[id(each)] = variable
+                return
+
+    def _root(self, affine: Affine) -> str:
+        """The array that an address points into: a parameter with a length, or else a term that counts once."""
+        once = [name for name, times in affine.terms if times == 1]
+        arrays = [name for name in once if f"{name}{HIDDEN}" in self.flow.routine.parameters]
+        return next(iter((*arrays, *once)), affine.terms[0][0])
+
+    def _start(self, affine: Affine, root: str, loop: Loop) -> tuple[tuple[str, int], ...]:
+        """The terms of a first address that the loop around does not step along."""
+        around = self.flow.around(loop)
+        if around is None:
+            return ()
+        terms = [(self._entering_value(name, loop), times) for name, times in affine.terms if name != root]
+        return tuple(
+            (name, times)
+            for name, times in terms
+            if not is_number(name)
+            and self.evolution.code_motion.is_invariant(name, loop)
+            and self.evolution.increment(name, around) is None
+            and not self._is_carried(name, around)
+        )
+
+    def _is_carried(self, name: str, around: Loop, depth: int = 4) -> bool:
+        """Whether the loop around carries a position from iteration to iteration, which only some of them, or inner loops, step."""
+        each = self.flow.instruction(name)
+        if each is None or depth == 0 or self.flow.defined[name][0] not in around.blocks:
+            return False
+        if each.opcode == "phi" and self.flow.defined[name][0] == around.header:
+            return True
+        return each.opcode in ("phi", "add") and any(
+            self._is_carried(value, around, depth - 1) for value in each.operands if value != name
+        )
+
+    def _entering_value(self, name: str, loop: Loop) -> str:
+        """What a term is in the first iteration of `loop`."""
+        each = self.flow.instruction(name)
+        if each is None or each.opcode != "phi" or self.flow.defined[name][0] != loop.header:
+            return name
+        arms = arms_of(each)
+        return arms[self.flow.entering(loop)]
+
+    def _hoisted(self, label: str, variable: InductionVariable) -> str:
+        """The block of a test, when both its sides load the same element first thing: it is loaded before the test."""
+        before = self.flow.predecessors[label]
+        if len(before) != 1 or not self.profile.applies(Rule.COMMON_LOADS):
+            return label
+        sides = set(self.flow.blocks[before[0]].successors)
+        alike = {
+            (where, offset)
+            for where, each, offset in variable.accesses
+            if each.opcode == "load" and where in sides
+        }
+        both = len(sides) == 2 and len(alike) == 2 and len({offset for _, offset in alike}) == 1
+        return before[0] if both and len({where for where, _ in alike}) == 2 else label
+
+    def _steps_free(self, variable: InductionVariable) -> bool:
+        """A post-increment: the step is the width of an access that is made in every iteration.
+
+        Either all accesses are in one block, or the first at the lowest address is made in every iteration of a loop that
+        walks upwards, or downwards to the one end it has; the others then reach back from the stepped pointer
+        [add_autoinc_candidates in tree-ssa-loop-ivopts.cc].
+        """
+        step = variable.increment.constant
+        labels = {self._hoisted(label, variable) for label, _, _ in variable.accesses}
+        if variable.increment.symbolic:
+            return False
+        if len(labels) == 1 and self.flow.every_iteration(next(iter(labels)), variable.loop):
+            return any(abs(step) == each.bits // 8 for _, each, _ in variable.accesses)
+        label, lowest, _ = min(variable.accesses, key=lambda access: access[2])
+        downwards = self.profile.applies(Rule.DOWNWARD_POINTERS) and len(self.flow.exits(variable.loop)) == 1
+        return (abs(step) if downwards else step) == lowest.bits // 8 and self.flow.every_iteration(
+            label, variable.loop
+        )
+
+
+def is_merged_pointer(each: Instruction) -> bool:
+    """Whether a phi merges addresses, not a pointer that the loop carries."""
+    return each.opcode == "phi" and each.text.startswith("phi ptr") and each.result not in each.operands

@@ -1,0 +1,1 @@
+"""Inlining: which calls a compiler puts the called code in place of."""

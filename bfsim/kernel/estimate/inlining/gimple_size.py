@@ -1,0 +1,147 @@
+"""Size and time of a routine as GCC's inliner estimates them, in statements of its own intermediate code.
+
+One instruction of LLVM's IR, optimised within its own function only, stands for one statement [estimate_num_insns in
+tree-inline.cc of GCC 12]: an address that is computed counts once, and once more for its scale; a load, a store and a sum
+count one; phis and widenings are free. Of an access to a fixed element of a parameter, such as state[0], half is expected to go where the
+routine is inlined [eliminated_by_inlining_prob in ipa-fnsummary.cc]. The size of 230 routines was 12 % off on average, and exact for half of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import cache, cached_property
+from math import floor
+
+from bfsim.files import store
+from bfsim.kernel import function_keys
+from bfsim.kernel.emitting.emit import emit_alone
+from bfsim.kernel.estimate.prediction.frequencies import frequencies
+from bfsim.kernel.estimate.prediction.predict import Likelihood
+from bfsim.kernel.ir import llvm_passes
+from bfsim.kernel.ir.control_flow import ControlFlow, pointee_nbytes
+from bfsim.kernel.ir.reading import read_module
+from bfsim.kernel.ir.text import Instruction, without_marks
+from bfsim.kernel.language.function import Function
+
+GONE = 0.5  # [ipa-fnsummary.cc] of an access that may go
+# [tree-inline.cc] time of a call, of a division by no constant, of a return; everything else takes as long as it is large
+CALL_TIME, DIVISION_TIME, RETURN_TIME = 10, 10, 2
+TEST_SIZE = 2  # [tree-inline.cc] of a comparison that a branch takes
+EARLY_PASSES = (
+    "sroa", "simplify_cfg", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce",
+    "simplify_cfg",
+)  # fmt: skip
+FREE = ("phi", "trunc", "zext", "sext", "freeze", "bitcast", "unreachable", "ret")
+
+
+@dataclass(frozen=True, slots=True)
+class CallSite:
+    """A call in a routine: its line, how often it runs per run of the routine, and its own size and time."""
+
+    callee: str
+    line: int
+    frequency: float
+    size: int
+    time: int
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What one routine is where it is inlined, and what is gone there beside its prologue and its return."""
+
+    size: int
+    time: float
+    calls: tuple[CallSite, ...]
+    gone_size: int
+    gone_time: float
+
+
+@cache
+def estimate(function: Function) -> Estimate:
+    """Estimate one kernel, nothing inlined into it, or take what was estimated from the cache on disk: profiles and programs share it."""
+    found = store.kept(function_keys.estimate_key(function), lambda: asdict(_estimated(function)))
+    return Estimate(**{**found, "calls": tuple(CallSite(**each) for each in found["calls"])})
+
+
+def _estimated(function: Function) -> Estimate:
+    module = llvm_passes.parsed(emit_alone(function))
+    llvm_passes.run(EARLY_PASSES, module)
+    (routine,) = map(without_marks, read_module(str(module)))
+    arguments = {each.symbol: len(each.parameters) + len(each.measured) for each in function.callees()}
+    return _Estimator(ControlFlow(routine), arguments).run()
+
+
+@dataclass(frozen=True)
+class _Estimator:
+    flow: ControlFlow
+    arguments: dict[str, int]
+    """By symbol, what a call of a kernel passes."""
+
+    def run(self) -> Estimate:
+        size, time, calls, accesses, gone_time = 0, 0.0, [], 0, 0.0
+        for label in self.flow.order:
+            frequency = self.frequency[label]
+            for each in self.flow.blocks[label].instructions:
+                own = self._size(each)
+                size += own
+                time += frequency * self._time(each, own)
+                if self._is_of_parameter(each):
+                    accesses += 1
+                    gone_time += GONE * frequency
+                if each.is_call:
+                    calls.append(
+                        CallSite(_callee(each), each.line.line, frequency, own, self._time(each, own))
+                    )
+        gone = floor(GONE * accesses)
+        return Estimate(size - gone, time - gone_time, tuple(calls), gone, gone_time)
+
+    def _is_of_parameter(self, access: Instruction) -> bool:
+        """Whether it loads or stores a fixed element of a parameter."""
+        if access.opcode not in ("load", "store"):
+            return False
+        place = access.operands[-1]
+        made = self.flow.instruction(place)
+        if made is not None and made.opcode == "getelementptr" and not made.operands[-1].startswith("%"):
+            place = made.operands[0]
+        return place in self.flow.routine.parameters
+
+    def _size(self, each: Instruction) -> int:
+        if each.is_call:
+            return 1 + self.arguments[_callee(each)] + int(each.result in self.flow.users)
+        return statement_size(self.flow, each)
+
+    def _time(self, each: Instruction, size: int) -> int:
+        if each.is_call:
+            return size - 1 + CALL_TIME
+        if each.is_division and each.operands[1].startswith("%"):
+            return DIVISION_TIME
+        return size
+
+    @cached_property
+    def frequency(self) -> dict[str, float]:
+        """Runs of each block per run of the routine."""
+        return frequencies(self.flow, Likelihood(self.flow).taken)
+
+
+def statement_size(flow: ControlFlow, each: Instruction) -> int:
+    """Return the size of what is no call."""
+    if each.opcode in FREE:
+        return 0
+    if each.opcode == "getelementptr":
+        return min(pointee_nbytes(each), 2) if each.operands[-1].startswith("%") else 0
+    if each.opcode in ("icmp", "fcmp"):
+        return int(not _only_branches(flow, each))
+    if each.opcode == "br":
+        return TEST_SIZE if each.operands else 0
+    if each.opcode == "switch":
+        return 2 * (1 + len(each.text.split("label")) - 2)
+    return 1
+
+
+def _only_branches(flow: ControlFlow, test: Instruction) -> bool:
+    users = flow.users.get(test.result or "", [])
+    return bool(users) and all(each.opcode == "br" for each in users)
+
+
+def _callee(call: Instruction) -> str:
+    return call.text[call.text.index("@") + 1 : call.text.index("(", call.text.index("@"))]

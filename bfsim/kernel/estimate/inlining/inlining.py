@@ -1,0 +1,236 @@
+"""Which calls a compiler puts the called code in place of, as GCC 12 decides it at -O2 [ipa-inline.cc, params.opt].
+
+A call is inlined early if the code hardly grows by it; later, best gain first, if it grows by less than 15 statements, or by
+less than 30 and takes much less time, or by less than 70 and all calls of a static kernel together save code; and at last where
+all calls of a static kernel together save code, as the only call of it does. What is never inlined is what the compiler does
+not see (`Inlines`). A kernel cannot call itself, so that nothing is inlined without end.
+
+Not modelled: constants that make a callee smaller at one call, cloning and splitting of functions, limits of size
+that only functions of thousands of statements reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from functools import cache
+
+from bfsim.kernel.emitting.values import InlinedCall
+from bfsim.kernel.estimate.inlining.gimple_size import RETURN_TIME, Estimate, estimate
+from bfsim.kernel.function_keys import compiled_with
+from bfsim.kernel.language.function import Function
+from bfsim.kernel.profile import CompilerProfile, Inlines
+
+EARLY_STATEMENTS = 6  # [params.opt] early-inlining-insns
+SMALL_STATEMENTS = 15  # [params.opt] max-inline-insns-auto
+FAST_STATEMENTS = 30  # [params.opt] the same times inline-heuristics-hint-percent, for what gains much time
+SINGLE_STATEMENTS = 70  # [params.opt] max-inline-insns-single
+LEAST_SPEEDUP = 0.30  # [params.opt] inline-min-speedup
+KEPT_STATEMENTS = 3  # of a function that is not inlined: uninlined-function-insns [params.opt] and the return
+
+
+class Why(StrEnum):
+    """Why a call is inlined, or is not."""
+
+    SHRINKS = "code shrinks by it"
+    SMALL = "small"
+    FAST = "much faster"
+    ONCE = "all calls of it together save code"
+    UNSEEN = "in another file"
+    LARGE = "too large"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Decision:
+    """What becomes of the calls of `callee` in one line of `caller`; `growth` in statements."""
+
+    caller: str
+    callee: str
+    line: int
+    inlined: bool
+    why: Why
+    growth: int
+
+
+@dataclass(slots=True)
+class _Edge:
+    """A call in code as it stands now; `site` is the (routine, line) where the source has it."""
+
+    callee: str
+    site: tuple[str, int]
+    frequency: float
+    size: int
+    time: float
+
+
+@dataclass(slots=True)
+class _Node:
+    """A routine as it stands now, with what has been inlined into it; `gone`: what it is more where it is not inlined."""
+
+    size: int
+    time: float
+    gone_size: int
+    gone_time: float
+    edges: list[_Edge]
+    is_static: bool
+
+
+@cache
+def decisions(function: Function, profile: CompilerProfile) -> tuple[Decision, ...]:
+    """Return what becomes of the calls in `function` and in the kernels that it calls, callers in the order of their symbols."""
+    if not profile.optimises or profile.inlines is Inlines.NOTHING or not function.callees():
+        return ()
+    within = {each.symbol for each in (*function.callees(), function)}
+    kernels = {each.symbol: each for each in compiled_with(function, profile)}
+    by_file = profile.inlines is Inlines.FILE
+    estimates = {symbol: estimate(each) for symbol, each in kernels.items()}
+    unseen = {
+        (caller, site.callee)
+        for caller, each in estimates.items()
+        for site in each.calls
+        if by_file and kernels[caller].file != kernels[site.callee].file
+    }
+    static = {
+        symbol
+        for symbol, each in kernels.items()
+        if (each.is_static if by_file else each is not function)
+        and all(symbol != callee for _, callee in unseen)
+    }
+    found = Inliner(estimates, frozenset(static), frozenset(unseen)).decide()
+    return tuple(sorted(each for each in found if each.caller in within))
+
+
+def inlined_calls(function: Function, profile: CompilerProfile) -> frozenset[InlinedCall]:
+    """Return the calls in the program of `function` that are inlined."""
+    return frozenset(
+        (each.caller, each.callee, each.line) for each in decisions(function, profile) if each.inlined
+    )
+
+
+@dataclass
+class Inliner:
+    """Decides about all calls of a program. `estimates`: by symbol, callees before their callers."""
+
+    estimates: Mapping[str, Estimate]
+    static: frozenset[str]
+    unseen: frozenset[tuple[str, str]]
+    """(caller, callee) of the calls whose callee the compiler does not see."""
+    nodes: dict[str, _Node] = field(init=False)
+    found: dict[tuple[str, int, str], Decision] = field(init=False, default_factory=dict)
+
+    def decide(self) -> tuple[Decision, ...]:
+        """Return what becomes of each call, in the order of the callers."""
+        self.nodes = {name: self._node(name, each) for name, each in self.estimates.items()}
+        for name in self.nodes:
+            self._early(name)
+        while (best := self._best()) is not None:
+            name, edge, why = best
+            self._inline(name, edge, why)
+        for name in [each for each in self.nodes if each in self.static]:
+            if self._saves(name):
+                for caller, edge in self._calls_of(name):
+                    self._inline(caller, edge, Why.ONCE)
+        for node in self.nodes.values():
+            for edge in node.edges:
+                self._leave(edge)
+        return tuple(self.found.values())
+
+    def _node(self, name: str, estimate: Estimate) -> _Node:
+        edges = [
+            _Edge(each.callee, (name, each.line), each.frequency, each.size, each.time)
+            for each in estimate.calls
+        ]
+        gone = estimate.gone_size + KEPT_STATEMENTS, estimate.gone_time + RETURN_TIME
+        return _Node(estimate.size, estimate.time, *gone, edges, name in self.static)
+
+    def _sees(self, edge: _Edge) -> bool:
+        return (edge.site[0], edge.callee) not in self.unseen
+
+    def _growth(self, edge: _Edge) -> int:
+        return self.nodes[edge.callee].size - edge.size
+
+    def _early(self, name: str) -> None:
+        """Inline what is tiny; of a callee that calls others, what is tiny even if each of them is inlined too."""
+        for edge in list(self.nodes[name].edges):
+            growth, calls = self._growth(edge), len(self.nodes[edge.callee].edges)
+            if self._sees(edge) and (growth <= 0 or growth * (calls + 1) <= EARLY_STATEMENTS):
+                self._inline(name, edge, Why.SHRINKS if growth <= 0 else Why.SMALL)
+
+    def _best(self) -> tuple[str, _Edge, Why] | None:
+        wanted = [
+            (self._badness(name, edge), name, edge, why)
+            for name, node in self.nodes.items()
+            for edge in node.edges
+            if self._sees(edge) and (why := self._wants(name, edge)) is not None
+        ]
+        return min(wanted, key=lambda each: each[0])[1:] if wanted else None
+
+    def _wants(self, name: str, edge: _Edge) -> Why | None:
+        """Why a call is inlined as one of a small function [want_inline_small_function_p]."""
+        growth = self._growth(edge)
+        if growth <= 0:
+            return Why.SHRINKS
+        if growth < SMALL_STATEMENTS:
+            return Why.SMALL
+        if growth < FAST_STATEMENTS and self._is_much_faster(name, edge):
+            return Why.FAST
+        if growth < SINGLE_STATEMENTS and self._saves(edge.callee):
+            return Why.ONCE
+        return None
+
+    def _gain(self, edge: _Edge) -> float:
+        """Time that is saved: that of the call, and of what is gone."""
+        return (edge.time + self.nodes[edge.callee].gone_time) * edge.frequency
+
+    def _is_much_faster(self, name: str, edge: _Edge) -> bool:
+        """Whether the caller, with the time in the callee, gets faster by 30 % [big_speedup_p]."""
+        caller, callee = self.nodes[name], self.nodes[edge.callee]
+        time = caller.time + (callee.time + callee.gone_time) * edge.frequency
+        return self._gain(edge) > LEAST_SPEEDUP * time
+
+    def _badness(self, name: str, edge: _Edge) -> float:
+        """The lower, the earlier is a call inlined [edge_badness]."""
+        growth = self._growth(edge)
+        if growth <= 0:
+            return -1e12 + growth
+        overall = self._overall_growth(edge.callee)
+        weight = growth * (self.nodes[name].size + growth) * (overall * overall if overall > 0 else 1)
+        badness = -self._gain(edge) / weight
+        return badness * 4 if overall <= 0 else badness
+
+    def _calls_of(self, callee: str) -> list[tuple[str, _Edge]]:
+        return [
+            (name, edge) for name, node in self.nodes.items() for edge in node.edges if edge.callee == callee
+        ]
+
+    def _overall_growth(self, callee: str) -> int:
+        """By how much the program grows if all calls of `callee` are inlined."""
+        node = self.nodes[callee]
+        own = node.size + node.gone_size if callee in self.static else 0
+        return sum(self._growth(edge) for _, edge in self._calls_of(callee)) - own
+
+    def _saves(self, callee: str) -> bool:
+        return callee in self.static and bool(self._calls_of(callee)) and self._overall_growth(callee) <= 0
+
+    def _inline(self, name: str, edge: _Edge, why: Why) -> None:
+        node, callee = self.nodes[name], self.nodes[edge.callee]
+        self._note(edge, inlined=True, why=why)
+        node.size += callee.size - edge.size
+        node.time += (callee.time - edge.time) * edge.frequency
+        place = next(index for index, each in enumerate(node.edges) if each is edge)
+        node.edges[place : place + 1] = [
+            replace(each, frequency=each.frequency * edge.frequency) for each in callee.edges
+        ]
+        if edge.callee in self.static and not self._calls_of(edge.callee):
+            callee.edges = []  # nothing calls it any more: it is gone
+
+    def _leave(self, edge: _Edge) -> None:
+        self._note(edge, inlined=False, why=Why.LARGE if self._sees(edge) else Why.UNSEEN)
+
+    def _note(self, edge: _Edge, *, inlined: bool, why: Why) -> None:
+        key = (*edge.site, edge.callee)
+        if key not in self.found or (inlined and not self.found[key].inlined):
+            self.found[key] = Decision(
+                *edge.site[:1], edge.callee, edge.site[1], inlined, why, self._growth(edge)
+            )

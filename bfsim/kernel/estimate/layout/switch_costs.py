@@ -1,0 +1,46 @@
+"""What a switch costs: a jump by a table, or comparisons and branches in the order of the cases."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from bfsim.kernel import operations
+from bfsim.kernel.costs.charges import BlockCost, Test, charge, instead
+from bfsim.kernel.estimate.switches.jump_tables import MARK, first_entry
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.text import BasicBlock
+from bfsim.kernel.ir.widths import WORD, widest
+from bfsim.kernel.operations import Op
+
+
+def add_switch(cost: BlockCost, block: BasicBlock, flow: ControlFlow) -> None:
+    """Add the switch at the end of a block to its cost [expand_case in stmt.cc, tablejump in bfin.md of GCC 12]."""
+    value, line = block.terminator.operands[0], block.terminator.line
+    numbers = [case for case, _ in block.cases]
+    if MARK in block.label:
+        tested = [charge(each, line) for each in _table_index(flow, value, numbers)]
+        default = [*tested, charge(Op.BRANCH_TAKEN, line)]
+        found = [charge(each, line) for each in (Op.BRANCH_NOT_TAKEN, Op.ADD_SHIFT, Op.LOAD32, Op.JUMP)]
+        hits = [[*tested, *found]] * len(numbers)
+    else:
+        pair = [charge(Op.COMPARE, line), charge(Op.BRANCH_NOT_TAKEN, line)]
+        default = pair * len(numbers)
+        last = [charge(Op.COMPARE, line), charge(Op.BRANCH_TAKEN, line)]
+        hits = [[*pair * index, *last] for index in range(len(numbers))]
+    cost.charges += default
+    for number, hit in zip(numbers, hits, strict=True):
+        cost.tests.append(Test(value, number, instead(hit, default)))
+
+
+def _table_index(flow: ControlFlow, value: str, numbers: Sequence[int]) -> Iterator[Op]:
+    """What makes the number of a table's entry of a value, in a pointer register, and compares it with the last one."""
+    first = first_entry(numbers)
+    if first:
+        yield Op.ALU
+        each = flow.instruction(value)
+        if each is not None and each.opcode in ("zext", "load") and widest(flow, value) < WORD:
+            yield Op.EXTEND
+    yield Op.MOVE
+    if max(numbers) - first not in operations.COMPARE_UNSIGNED_IMMEDIATE:
+        yield Op.IMM
+    yield Op.COMPARE

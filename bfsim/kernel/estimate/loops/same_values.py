@@ -1,0 +1,15 @@
+"""What is computed in a loop and is the same in all iterations, because all that it is made of is."""
+
+from __future__ import annotations
+
+from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.ir.text import Instruction
+
+COMPUTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "select", "call", "getelementptr")
+
+
+def is_same(flow: ControlFlow, loop: Loop, each: Instruction) -> bool:
+    """Whether an instruction, which neither loads nor divides nor calls, computes the same in all iterations of a loop."""
+    made_of = (flow.instruction(operand) for operand in each.operands if not flow.is_invariant(operand, loop))
+    computes = each.opcode in COMPUTED and not each.is_call
+    return computes and all(made is not None and is_same(flow, loop, made) for made in made_of)

@@ -1,0 +1,1 @@
+"""Value ranges: between which numbers a value is."""

@@ -1,0 +1,1 @@
+"""Redundancies: what is computed or loaded on a way where it is there already, or not needed."""

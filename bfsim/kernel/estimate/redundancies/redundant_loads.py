@@ -1,0 +1,176 @@
+"""Loads of which the value is there already on every way: partial redundancy elimination [tree-ssa-pre.cc of GCC 12].
+
+`if a[j] < a[least]: least = j` in a loop: `a[least]` is `a[j]` where `least` was set just now, and what it was
+otherwise. The value goes along in a register of its own beside `least`, so that there are two to choose and the
+branch stays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from bfsim.kernel.ir.control_flow import ControlFlow, Loop, pointee_nbytes
+from bfsim.kernel.ir.preheaders import with_preheader
+from bfsim.kernel.ir.text import Instruction, Routine, arms_of, phi_of
+
+AGAIN = ".again"  # in the name of an address that is only computed to go along
+
+
+@dataclass(frozen=True, slots=True)
+class RedundantLoad:
+    """A load at `address` in the header of a loop, whose value follows that of `index` along the arms of `merged`."""
+
+    loop: Loop
+    load: Instruction
+    address: Instruction
+    index: Instruction
+    merged: Instruction
+    values: dict[str, str]
+    """Of each arm of `merged`, by the label it comes from: the value that the load would give."""
+
+
+def without_redundant_loads(routine: Routine) -> Routine:
+    """Return `routine` with such loads before their loops."""
+    flow = ControlFlow(routine)
+    for loop in flow.loops:
+        for each in flow.blocks[loop.header].instructions:
+            carried = _carried(flow, loop, each)
+            if carried is None:
+                continue
+            entering = flow.entering(loop)
+            if len(set(flow.blocks[entering].successors)) > 1:  # the loop need not be entered
+                return without_redundant_loads(with_preheader(routine, loop, entering))
+            return without_redundant_loads(_moved(flow, routine, carried))
+    return routine
+
+
+def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> RedundantLoad | None:
+    address = flow.instruction(load.operands[0]) if load.opcode == "load" else None
+    if address is None or address.opcode != "getelementptr" or flow.users.get(address.result or "") != [load]:
+        return None
+    index = flow.instruction(address.operands[-1])
+    if index is None or index.opcode != "phi" or flow.defined[index.result or ""][0] != loop.header:
+        return None
+    arms = arms_of(index)
+    merged = flow.instruction(arms.get(loop.latch, ""))
+    if set(arms) != {flow.entering(loop), loop.latch} or merged is None or merged.opcode != "phi":
+        return None
+    inside = [each for label in loop.blocks for each in flow.blocks[label].instructions]
+    if any(each.opcode == "store" or each.is_call for each in inside):
+        return None
+    if not all(flow.is_invariant(each, loop) for each in address.operands[:-1]):
+        return None
+    values = {
+        label: load.result if value == index.result else _loaded(flow, loop, load, value, label)
+        for label, value in arms_of(merged).items()
+    }
+    known = {label: value for label, value in values.items() if value is not None}
+    carried = RedundantLoad(loop, load, address, index, merged, known)
+    return carried if len(known) == len(values) and _is_loaded_behind(flow, carried) else None
+
+
+def _loaded(flow: ControlFlow, loop: Loop, load: Instruction, index: str, label: str) -> str | None:
+    """The value at the same array's `index`, if it has been loaded on the way to the end of block `label`."""
+    address = flow.defined[load.operands[0]][1]
+    for before in flow.inside(loop):
+        for each in flow.blocks[before].instructions if before in flow.dominators[label] else ():
+            other = flow.instruction(each.operands[0]) if each.opcode == "load" else None
+            if other is None or other.operands != (*address.operands[:-1], index):
+                continue
+            if pointee_nbytes(other) == pointee_nbytes(address) and _kind(each) == _kind(load):
+                return each.result
+    return None
+
+
+def _kind(load: Instruction) -> str:
+    """The type that is loaded, as LLVM writes it."""
+    return load.text.split()[1].rstrip(",")
+
+
+def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
+    """Load before the loop; in it, a phi beside that of the index, and one beside each that merges it."""
+    load, loop = carried.load, carried.loop
+    first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
+    entering = flow.entering(loop)
+    arms = arms_of(carried.index)
+    kind = _kind(load)
+    start = replace(
+        carried.address,
+        result=address,
+        text=carried.address.text.replace(f" {carried.index.result}", f" {arms[entering]}"),
+        operands=(*carried.address.operands[:-1], arms[entering]),
+    )
+    before = replace(
+        load,
+        result=first,
+        text=load.text.replace(f" {load.operands[0]},", f" {address},"),
+        operands=(address,),
+    )
+    here = _phi(load, load.result or "", kind, {entering: first, loop.latch: following})
+    merging = _phi(load, following, kind, carried.values)
+    home = flow.defined[carried.merged.result or ""][0]
+    blocks = []
+    for block in routine.blocks:
+        rows = [each for each in block.instructions if each is not load and each is not carried.address]
+        if block.label == entering:
+            rows[-1:-1] = [start, before]
+        if block.label == home:
+            rows.insert(0, merging)
+        if block.label == loop.header:
+            rows.insert(0, here)
+        blocks.append(replace(block, instructions=tuple(rows)))
+    return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
+
+
+def _with_addresses(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
+    """Where the element is wanted behind the loop, its address goes along: computed again on the ways that keep it."""
+    kept = {label for label, value in carried.values.items() if value == carried.load.result}
+    alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
+    if not alone or not _is_wanted_behind(flow, carried):
+        return routine
+    name = f"{carried.load.result}{AGAIN}"
+    again = {label: replace(carried.address, result=f"{name}.{label}") for label in kept}
+    blocks = [
+        replace(block, instructions=(again[block.label], *block.instructions))
+        if block.label in kept
+        else block
+        for block in routine.blocks
+    ]
+    return replace(routine, blocks=tuple(blocks))
+
+
+def _addresses_behind(flow: ControlFlow, carried: RedundantLoad) -> list[Instruction]:
+    """Addresses of the element that was chosen last, computed behind the loop."""
+    array = carried.address.operands[:-1]
+    chosen = [
+        user.result
+        for user in flow.users.get(carried.merged.result or "", [])
+        if user.opcode == "phi" and flow.defined[user.result or ""][0] not in carried.loop.blocks
+    ]
+    users = (each for name in chosen for each in flow.users.get(name or "", []))
+    return [each for each in users if each.opcode == "getelementptr" and each.operands[:-1] == array]
+
+
+def _is_wanted_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
+    return bool(_addresses_behind(flow, carried))
+
+
+def _is_loaded_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
+    """Whether the element that was chosen last is loaded behind the loop on every way, too.
+
+    Else the load is not sure to be made where the index is chosen, which -O2 asks for [compute_antic in tree-ssa-pre.cc; partial
+    anticipation is for -O3].
+    """
+    loads = {
+        flow.defined[load.result or ""][0]
+        for address in _addresses_behind(flow, carried)
+        for load in flow.users.get(address.result or "", [])
+        if load.opcode == "load"
+    }
+    blocks = carried.loop.blocks
+    ends = {way for label in blocks for way in flow.blocks[label].successors if way not in blocks}
+    return all(loads & flow.post_dominators[way] for way in ends)
+
+
+def _phi(load: Instruction, result: str, kind: str, arms: dict[str, str]) -> Instruction:
+    return phi_of(result, kind, ((value, label) for label, value in arms.items()), replace(load, location=""))

@@ -1,0 +1,1 @@
+"""Registers: which bank each value is in, what does not fit, and what that costs."""

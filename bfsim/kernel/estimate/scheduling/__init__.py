@@ -1,0 +1,1 @@
+"""Scheduling: when each operation is issued, and which share a bundle."""

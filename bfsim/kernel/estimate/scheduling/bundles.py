@@ -1,0 +1,61 @@
+"""Which accesses of a routine share a bundle, and so take no cycle of their own [bfin_gen_bundles in bfin.cc of GCC 12]."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.kernel.estimate.registers.registers import Allocation
+from bfsim.kernel.estimate.scheduling.block_schedule import BlockSchedule, is_kept
+from bfsim.kernel.estimate.scheduling.local_registers import LocalRegisters
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.estimate.selection.machine_code import MachineCode
+from bfsim.kernel.ir.text import each_arm
+
+
+def bundled(context: Context, code: MachineCode, allocation: Allocation) -> frozenset[tuple[str, int]]:
+    """Return the blocks of such accesses, and their places in them.
+
+    Blocks between which no branch is left are scheduled as one; what a test stood between is not brought together, for GCC may have kept it.
+    """
+    renews = {
+        context.name(value): each.result or ""
+        for block in context.flow.routine.blocks
+        for each in block.instructions
+        if each.opcode == "phi"
+        for value, _ in each_arm(each)
+    }
+    found = set[tuple[str, int]]()
+    for labels in _merged(context):
+        places = [(label, number) for label in labels for number in range(len(code.of[label]))]
+        # a copy of an old value is noted at the loop's end, and made before the new value is there
+        places.sort(key=lambda place: not is_kept(code.of[place[0]][place[1]]))
+        registers = LocalRegisters(
+            [code.of[label][number] for label, number in places],
+            allocation.bank.get,
+            lambda name: allocation.register.get(name, name),
+            allocation.alive[labels[-1]],
+        )
+        pairs = BlockSchedule(registers, renews).paired()
+        found |= {places[other] for wide, other in pairs if places[wide][0] == places[other][0]}
+    return frozenset(found)
+
+
+def _merged(context: Context) -> Iterator[list[str]]:
+    """Blocks that are one, for no branch is left between them."""
+    flow, gone, converted = context.flow, context.if_conversion.gone, context.if_conversion.by_label
+    behind = dict[str, str]()
+    for label, block in flow.blocks.items():
+        ways = set(block.successors)
+        if label in converted:
+            ways = {flow.defined[converted[label].phi.result or ""][0]}
+        if len(ways) == 1 and label not in gone:
+            (way,) = ways
+            if {*flow.predecessors[way]} - gone == {label}:
+                behind[label] = way
+    for label in flow.order:
+        if label in gone or label in behind.values():
+            continue
+        labels = [label]
+        while labels[-1] in behind:
+            labels.append(behind[labels[-1]])
+        yield labels

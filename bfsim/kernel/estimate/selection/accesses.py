@@ -1,0 +1,178 @@
+"""Loads and stores, and the pointers that they go through: those that walk along, and those computed where they are used."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bfsim.kernel import operations
+from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.selection.calls import Calls
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.ir.control_flow import pointee_nbytes
+from bfsim.kernel.ir.text import Instruction
+from bfsim.kernel.operations import Op
+from bfsim.kernel.rules import Rule
+
+ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
+LOADS = {8: Op.LOAD8, 16: Op.LOAD16, 32: Op.LOAD32}
+STORES = {8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
+
+
+class Accesses(Calls):
+    """Emits instructions into the block `label`; here those of loads, stores and addresses."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.flow = context.flow
+        self.beside: dict[str, list[str]] = {}
+        """Blocks in which the pointer of a variable is computed from its neighbour's."""
+
+    def load(self, each: Instruction) -> None:
+        bank = ANY if each.bits == 32 else DATA
+        address, nbytes = (self._address(each), POINTER), self._access_bytes(each)
+        self.append(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes, access=each)
+        if self.context.narrow.extended_apart(each):
+            self.append(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
+            if self.context.narrow.extended_for_distance(each):
+                self.append(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
+        elif self.context.narrow.extended_late(each):
+            self.append(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+
+    def store(self, each: Instruction) -> None:
+        bank = ANY if each.bits == 32 else DATA
+        value, address = (each.operands[0], bank), (self._address(each), POINTER)
+        self.append(
+            STORES[each.bits], each, None, DATA, value, address, nbytes=self._access_bytes(each), access=each
+        )
+
+    def _access_bytes(self, each: Instruction) -> int | None:
+        """Bytes have no short form with an offset [PRM]."""
+        pointer = self.flow.instruction(each.operands[-1])
+        offset = (
+            pointer is not None
+            and pointer.opcode == "getelementptr"
+            and not pointer.operands[-1].startswith("%")
+        )
+        return operations.LONG_FORM_BYTES if offset and each.bits == operations.BYTE_BITS else None
+
+    def _address(self, each: Instruction) -> str:
+        """Return the pointer that an access uses: one that walks along, or one that was computed."""
+        variable = self.context.induction_variables.of.get(id(each))
+        if variable is not None and variable.neighbour is not None:
+            return self._beside(variable, variable.neighbour.name, each)
+        return variable.name if variable else self.context.base(each.operands[-1])
+
+    def _beside(self, variable: InductionVariable, neighbour: str, each: Instruction) -> str:
+        """Compute a pointer from another one, once on each way; what is subtracted goes through the data registers."""
+        known = self.beside.setdefault(variable.name, [])
+        for label in known:
+            if label in self.flow.dominators[self.label]:
+                return f"{variable.name}.{label}"
+        known.append(self.label)
+        address = f"{variable.name}.{self.label}"
+        if len(variable.distance) == 1 and variable.distance[0][1] != -1:
+            self.append(
+                Op.ALU, each, address, POINTER, (neighbour, POINTER), (self._scaled(variable, each), POINTER)
+            )
+        else:
+            for name, _ in variable.distance:
+                self.append(Op.ALU, each, address, DATA, (neighbour, DATA), (name, DATA))
+                neighbour = address
+        return address
+
+    def _scaled(self, variable: InductionVariable, each: Instruction) -> str:
+        (name, times), *_ = variable.distance
+        if times == 1:
+            return name
+        distance, entering = f"{variable.name}.distance", self.flow.entering(variable.loop)
+        if not any(instruction.result == distance for instruction in self.code.of[entering]):
+            self.code.add(
+                entering,
+                MachineInstruction(Op.SHIFT, each.line, distance, DATA, ((self.context.name(name), DATA),)),
+            )
+        return distance
+
+    def element(self, each: Instruction) -> None:
+        """An address that does not walk: base plus scaled index; constant offsets belong to the access."""
+        base, index = each.operands[0], each.operands[-1]
+        if not index.startswith("%"):
+            self._field(each)
+            return
+        nbytes = pointee_nbytes(each)
+        op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
+        self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
+
+    def _field(self, each: Instruction) -> None:
+        """The address of a field, where that is not an offset in the access."""
+        fields, name = self.context.fields, each.result or ""
+        if fields is None or (name not in fields.own and name not in fields.first):
+            return
+        record = (self.context.base(each.operands[0]), POINTER)
+        if name in fields.copies:
+            self.append(Op.MOVE, each, name, POINTER, record)
+        if name in fields.own:
+            self.append(Op.ALU, each, name, POINTER, record)
+            self.append(Op.ALU, each, name, POINTER, (name, POINTER))
+        else:
+            self.append(Op.ALU, each, None, POINTER, record)
+            self.append(Op.ADD_SHIFT, each, None, POINTER, record)
+
+    def counters(self, label: str) -> None:
+        """Compute the counters that a pointer stands for; it has been stepped by then, so each iteration keeps what it was."""
+        for each in self.context.counters.eliminated.values():
+            variable = each.variable
+            if label == variable.loop.header and not each.is_stepped:
+                self.code.add(
+                    label,
+                    MachineInstruction(Op.MOVE, variable.line, None, POINTER, ((variable.name, POINTER),)),
+                )
+            if label in each.blocks:
+                terms = ((variable.name, POINTER), (self.context.name(variable.root), POINTER))
+                step = MachineInstruction(Op.ALU, variable.line, each.name, POINTER, terms)
+                self.code.add(label, step)
+                if each.sums > 1:
+                    self.code.add(label, replace(step, uses=((each.name, POINTER),)))
+
+    def pointers(self) -> None:
+        """Set up the pointers that walk, and step those for which no post-increment does."""
+        for variable in self.context.induction_variables.all:
+            if variable.loop.header in self.context.fills or variable.neighbour is not None:
+                continue
+            line = variable.line
+            entering, latch = self.flow.entering(variable.loop), variable.loop.latch
+            if not variable.start:
+                start = MachineInstruction(Op.MOVE, line, variable.name, POINTER, ((variable.root, ANY),))
+                self.code.add(entering, start)
+            total = self.context.name(variable.root)
+            for name, times in variable.start:
+                op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
+                terms = ((total, POINTER), (self.context.name(name), POINTER))
+                self.code.add(entering, MachineInstruction(op, line, variable.name, POINTER, terms))
+                total = variable.name
+            if variable.offset_apart:
+                self.code.add(
+                    entering,
+                    MachineInstruction(Op.ALU, line, variable.name, POINTER, ((variable.name, POINTER),)),
+                )
+            if not variable.steps_free:
+                uses = ((variable.name, POINTER),) + (
+                    ((variable.stride, POINTER),) if variable.stride else ()
+                )
+                kept = any(
+                    each.variable is variable and not each.is_stepped
+                    for each in self.context.counters.eliminated.values()
+                )
+                self.code.add(
+                    variable.loop.header if kept else latch,
+                    MachineInstruction(Op.ALU, line, variable.name, POINTER, uses),
+                )
+                loose = (
+                    variable.loop.header not in self.context.counters.counted
+                    and len(self.flow.exits(variable.loop)) > 1
+                )
+                if loose and self.context.profile.applies(Rule.POINTER_COPIES):
+                    # the exits see the pointer before and after its step
+                    self.code.add(
+                        latch, MachineInstruction(Op.MOVE, line, None, POINTER, ((variable.name, POINTER),))
+                    )

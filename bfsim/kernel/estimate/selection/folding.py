@@ -1,0 +1,242 @@
+"""Instructions of the IR that are part of another operation of the Blackfin."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
+from bfsim.kernel.estimate.arithmetic.remainders import quotient_of_rest
+from bfsim.kernel.estimate.redundancies.hoisted_code import BEFORE_TESTS
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.text import Instruction, is_number, predicate
+from bfsim.kernel.operations import ADDRESS_SHIFTS
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
+
+SHIFTS = ("shl", "lshr", "ashr")
+NARROW = (8, 16)
+BYTE_MASK = 0xFF
+HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
+
+
+class Folding:
+    """What is folded into what, in one routine."""
+
+    def __init__(self, flow: ControlFlow, profile: CompilerProfile, flags: frozenset[str | None]) -> None:
+        """`flags`: what is computed from conditions without a branch (`if_conversion`)."""
+        self.flow, self.profile, self.flags = flow, profile, flags
+
+    def shift_add(self, each: Instruction) -> tuple[str, str] | None:
+        """The value that an addition shifts by 1 or 2 on the way, and the other one."""
+        if each.opcode != "add":
+            return None
+        for operand, other in (each.operands[:2], each.operands[1::-1]):
+            source = self.flow.instruction(operand)
+            if source is not None and source.opcode == "shl" and len(self.users(operand)) == 1:
+                amount = source.operands[1]
+                fits = amount.isdigit() and int(amount) in ADDRESS_SHIFTS and not is_number(other)
+                if fits and self.shifted_sum(source) is None:
+                    return source.operands[0], other
+        return None
+
+    def shifted_sum(self, shift: Instruction) -> tuple[str, str] | None:
+        """The two values of (x + y) << 1 or 2, which is one operation."""
+        source = self.flow.instruction(shift.operands[0])
+        if (
+            shift.opcode != "shl"
+            or source is None
+            or source.opcode != "add"
+            or len(self.users(shift.operands[0])) != 1
+        ):
+            return None
+        amount = shift.operands[1]
+        constant = any(map(is_number, source.operands))
+        if constant or not amount.isdigit() or int(amount) not in ADDRESS_SHIFTS:
+            return None
+        return source.operands[0], source.operands[1]
+
+    def accumulated(self, product: Instruction) -> Instruction | None:
+        """The addition of a 16-bit product to a sum that a loop carries, where the compiler has one operation for both."""
+        users = self.users(product.result or "")
+        if (
+            not self.profile.accumulates
+            or product.opcode != "mul"
+            or len(users) != 1
+            or users[0].opcode != "add"
+        ):
+            return None
+        others = [self.flow.instruction(each) for each in users[0].operands if each != product.result]
+        carried = any(
+            each is not None and each.opcode == "phi" and users[0].result in each.operands for each in others
+        )
+        return users[0] if carried and all(self.is_short(each) for each in product.operands[:2]) else None
+
+    def accumulates(self, addition: Instruction) -> Instruction | None:
+        """The product that an addition takes in as a multiply-accumulate."""
+        products = (self.flow.instruction(each) for each in addition.operands)
+        return next(
+            (each for each in products if each is not None and self.accumulated(each) is addition), None
+        )
+
+    def in_shifted_sum(self, each: Instruction) -> bool:
+        """Whether an addition is done by the shift that uses it."""
+        users = self.users(each.result or "")
+        return each.opcode == "add" and len(users) == 1 and self.shifted_sum(users[0]) is not None
+
+    def in_shift_add(self, shift: Instruction) -> bool:
+        """Whether a shift is done by the addition that uses it."""
+        users = self.users(shift.result or "")
+        if len(users) != 1 or shift.opcode != "shl":
+            return False
+        plan = self.shift_add(users[0])
+        return (
+            plan is not None
+            and plan[0] == shift.operands[0]
+            and users[0].operands.count(shift.result or "") == 1
+        )
+
+    def extension_of(self, each: Instruction) -> str | None:
+        """The value of which (x << k) >> k is the sign extension."""
+        source = self.flow.instruction(each.operands[0])
+        if each.opcode != "ashr" or source is None or source.opcode != "shl":
+            return None
+        alike = source.operands[1] == each.operands[1] and each.operands[1] in ("16", "24")
+        return source.operands[0] if alike else None
+
+    def is_shift_mask(self, each: Instruction) -> bool:
+        """Whether an `and 31` is only the language's rule for shift counts: the shifter does it."""
+        return each.opcode == "and" and each.operands[1] == "31" and all(
+            user.opcode in SHIFTS and user.operands[1] == each.result for user in self.users(each.result or "")
+        )  # fmt: skip
+
+    def bit_tested(self, compare: Instruction) -> str | None:
+        """The value of which a comparison tests a single bit."""
+        masked = self.flow.instruction(compare.operands[0])
+        if predicate(compare) not in ("eq", "ne") or compare.operands[1] != "0" or masked is None:
+            return None
+        mask, alone = masked.operands[-1], len(self.users(masked.result or "")) == 1
+        single = masked.opcode == "and" and mask.isdigit() and int(mask).bit_count() == 1
+        if not (single and alone) or self._is_overwritten(masked):
+            return None
+        return self._shifted_before(masked) or masked.operands[0]
+
+    def _is_overwritten(self, masked: Instruction) -> bool:
+        """Whether what was moved before the branch takes over the register of a value that is masked: it is masked before, and compared behind."""
+        value, here = masked.operands[0], self._block_of(masked)
+        own = {id(each) for each in here}
+        takes_over = any(
+            each.operands[0] == value
+            and (each.result or "").endswith(BEFORE_TESTS)
+            and any(user.opcode == "phi" for user in self.users(each.result or ""))
+            for each in here
+            if each.opcode in SHIFTS
+        )
+        return takes_over and all(id(user) in own for user in self.users(value))
+
+    def _shifted_before(self, masked: Instruction) -> str | None:
+        """The value that was shifted before one of its bits is tested: LLVM makes a test of the value before of that."""
+        value, here = masked.operands[0], self._block_of(masked)
+        for each in here[: here.index(masked)]:
+            if each.opcode == "shl" and each.operands[0] == value and is_number(each.operands[1]):
+                bit = int(masked.operands[-1]).bit_length() - 1 + int(each.operands[1])
+                return each.result if bit < each.bits else None
+        return None
+
+    def _block_of(self, each: Instruction) -> tuple[Instruction, ...]:
+        return self.flow.blocks[self.flow.defined[each.result or ""][0]].instructions
+
+    def in_bit_test(self, each: Instruction) -> bool:
+        """Whether an `and` is done by a bit test."""
+        users = self.users(each.result or "")
+        return len(users) == 1 and users[0].opcode == "icmp" and self.bit_tested(users[0]) is not None and (
+            users[0].operands[0] == each.result
+        )  # fmt: skip
+
+    def sunk_mask(self, phi: Instruction) -> bool:
+        """Whether every arm of a phi ends in a mask of 8 bits, or of 16: as a conversion, it is done once behind them."""
+        if phi.opcode != "phi" or len(phi.operands) < 2 or not self.profile.applies(Rule.SUNK_MASK):
+            return False
+        masks = [self._masked(each) for each in phi.operands]
+        return None not in masks and len({self._is_byte_mask(each) for each in masks if each}) == 1
+
+    def _masked(self, value: str) -> Instruction | None:
+        each = self.flow.instruction(value)
+        if each is not None and each.opcode in ("xor", "or") and _fits_16(each.operands[1]):
+            each = self.flow.instruction(each.operands[0])
+        if each is None or each.opcode != "and" or not _fits_16(each.operands[1]):
+            return None
+        return each if int(each.operands[1]) >= HIGH_BYTE or self._is_byte_mask(each) else None
+
+    def _is_byte_mask(self, each: Instruction) -> bool:
+        """Whether a mask leaves a byte; LLVM takes out the lowest bit of it where a shift has made that 0."""
+        shifted = self.flow.instruction(each.operands[0])
+        is_even = shifted is not None and shifted.opcode == "shl" and shifted.operands[1] == "1"
+        return each.operands[1] == str(BYTE_MASK) or (is_even and each.operands[1] == str(BYTE_MASK - 1))
+
+    def in_sunk_mask(self, each: Instruction) -> bool:
+        """Whether a mask is done behind the arms that end in it."""
+        return id(each) in self._sunk
+
+    @cached_property
+    def _sunk(self) -> set[int]:
+        phis = [
+            each for block in self.flow.routine.blocks for each in block.instructions if self.sunk_mask(each)
+        ]
+        return {id(self._masked(value)) for each in phis for value in each.operands}
+
+    def compared(self, compare: Instruction) -> tuple[str, str]:
+        """What a comparison compares: with `x + k` at hand and `x` stepped by it, LLVM's `x > 0` is C's `x + k > k`."""
+        left, right = compare.operands[:2]
+        carried = self.flow.instruction(left)
+        if carried is None or carried.opcode != "phi" or not is_number(right):
+            return left, right
+        here = self.flow.blocks[self.flow.defined[compare.result or ""][0]].instructions
+        for each in here[: here.index(compare)]:
+            steps = each.opcode == "add" and each.operands[0] == left and each.result in carried.operands
+            if steps and is_number(each.operands[1]):
+                return each.result or "", str(int(right) + int(each.operands[1]))
+        return left, right
+
+    def remainder(self, each: Instruction) -> Instruction | None:
+        """The division whose remainder a difference is: where that is a call, it is another one."""
+        return quotient_of_rest(self.flow, each) if self.profile.applies(Rule.REMAINDERS) else None
+
+    def added_flag(self, each: Instruction) -> str | None:
+        """The other operand of a sum with 0 or another constant, by the way: only the ways that do not bring 0 add.
+
+        [partial redundancy elimination, tree-ssa-pre.cc of GCC 12]
+        """
+        if each.opcode != "add" or not self.profile.applies(Rule.ADDED_FLAGS):
+            return None
+        for operand, other in (each.operands[:2], each.operands[1::-1]):
+            flag = self.flow.instruction(operand)
+            if (
+                flag is not None
+                and flag.opcode == "phi"
+                and operand not in self.flags
+                and self.users(operand) == [each]
+                and self.flow.defined[operand][0] == self.flow.defined[each.result or ""][0]
+                and "0" in flag.operands
+                and all(map(is_number, flag.operands))
+            ):
+                return other
+        return None
+
+    def counted_bits(self, each: Instruction) -> str | None:
+        """The word whose bits an instruction ends up with, counted in parallel: an instruction does that."""
+        return counted_word(self.flow, each) if self.profile.applies(Rule.PARALLEL_COUNTS) else None
+
+    def is_short(self, operand: str) -> bool:
+        """Whether a compiler sees that a factor has 16 bits: a constant, or a narrow value that was extended."""
+        if is_number(operand):
+            return -(1 << 15) <= int(operand) < 1 << 15
+        each = self.flow.instruction(operand)
+        return each is not None and each.opcode in ("sext", "zext", "load") and each.bits in NARROW
+
+    def users(self, value: str) -> list[Instruction]:
+        """Return the instructions that use a value."""
+        return self.flow.users.get(value, [])
+
+
+def _fits_16(operand: str) -> bool:
+    return operand.isdigit() and int(operand) <= 0xFFFF

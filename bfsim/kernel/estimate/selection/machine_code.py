@@ -1,0 +1,53 @@
+"""Blackfin instructions on values that have no register yet, and how a routine's control flow will be coded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from bfsim.kernel.ir.text import Instruction, SourceLine
+from bfsim.kernel.operations import COSTS, Op
+
+
+class RegisterBank(Enum):
+    """Where a value must be: data register, pointer register, or either."""
+
+    DATA = "R"
+    POINTER = "P"
+    ANY = "R/P"
+
+
+@dataclass(slots=True)
+class MachineInstruction:
+    """One operation. `uses` are names of values, or constants written #5; `overwrites`: the operand it destroys."""
+
+    op: Op
+    line: SourceLine
+    result: str | None
+    bank: RegisterBank
+    uses: tuple[tuple[str, RegisterBank], ...] = ()
+    overwrites: tuple[str, ...] = ()
+    cclk: int | None = None
+    """Cycles, where they are not those of the operation."""
+    nbytes: int | None = None
+    """Bytes of code, where they are not those of the operation."""
+    access: Instruction | None = None
+    """The access of the IR that it makes."""
+    routine: str = ""
+    """The routine of the run-time library that it is an operation of."""
+
+    @property
+    def code_bytes(self) -> int:
+        """Bytes of code."""
+        return COSTS[self.op].nbytes if self.nbytes is None else self.nbytes
+
+
+@dataclass(slots=True)
+class MachineCode:
+    """The operations of each block of a routine, but for its branches."""
+
+    of: dict[str, list[MachineInstruction]] = field(default_factory=dict)
+
+    def add(self, label: str, instruction: MachineInstruction) -> None:
+        """Append to a block."""
+        self.of.setdefault(label, []).append(instruction)

@@ -1,0 +1,1 @@
+"""The estimate of code that no compiler optimised: GCC at -O0."""

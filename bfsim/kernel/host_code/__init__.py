@@ -1,0 +1,1 @@
+"""LLVM IR → machine code for this host, with counters, guards and reports of accesses."""

@@ -1,0 +1,224 @@
+"""LLVM IR as data: functions, blocks and instructions, each with its text, and how they are said anew with other names and values.
+
+Passes of our own (`rewrites`) take a routine and return another one; what is costed, and what is compiled for the host, is read from
+the text that they leave (`reading`, `writing`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from bfsim.kernel.intrinsics import BY_NAME, PREFIX, Intrinsic
+
+NAME = re.compile(r"%[\w.$-]+")
+TARGET = re.compile(r"label (%[\w.$-]+)")
+PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
+CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
+WIDTH = re.compile(r"\bi(\d+)\b")
+INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
+NO_HINT = (1 << 20, 1)
+"""Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
+LEAVES = (11, 189)
+"""Weights of a branch whose first side leaves one of two loops that begin with the same test [PRED_LOOP_EXIT in predict.def of GCC 12, of two exits]."""
+SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
+           "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
+"""Relations by those of the same two values the other way round."""
+INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
+            "ult": "uge", "uge": "ult", "ule": "ugt", "ugt": "ule", "eq": "ne", "ne": "eq"}  # fmt: skip
+"""Relations by those that hold where they do not."""
+ENTERS = "bfsim.enters."
+"""Before the symbol of a kernel, names a call that does nothing, where the code of that kernel begins, which is inlined."""
+STEPS = "bfsim.steps"
+"""A call that does nothing, with start, stop and step of the loop behind it, whose step is no constant: `guards` checks them."""
+HOLDS = "bfsim.holds"
+"""A call that does nothing, in the header of a loop that is not to be rotated, until loops are."""
+OF_VARIABLE = "cut.variable"
+"""In the name of what a store cuts off a local variable, and of what LLVM makes of that: in C the variable is a whole word until then."""
+HIDES = "bfsim.hides"
+"""A call that returns its number, of which LLVM is to know nothing."""
+
+
+class SourceLine(NamedTuple):
+    """Where an operation comes from: a line of the kernel `routine`. `site`: LLVM's number of the call that was inlined, 0 if none was."""
+
+    routine: str
+    line: int
+    site: int = 0
+
+
+class Entrance(NamedTuple):
+    """Where the code of the kernel `symbol` begins, called from the line `caller`; `location` is the number of its note."""
+
+    symbol: str
+    caller: SourceLine
+    location: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """One instruction. `operands` are the texts of its value operands: names such as %x, or constants."""
+
+    result: str | None
+    opcode: str
+    text: str
+    operands: tuple[str, ...]
+    line: SourceLine
+    weights: tuple[int, ...] = ()
+    """Of a branch: how likely each side is, where the source gives a hint."""
+    location: str = ""
+    """Number of the note that has its source line."""
+    hint: str = ""
+    """Number of the note that has its weights; empty if there is none yet."""
+
+    @property
+    def row(self) -> str:
+        """The instruction as a line of LLVM's text."""
+        target = f"{self.result} = " if self.result else ""
+        location = f", !dbg !{self.location}" if self.location else ""
+        return f"  {target}{self.text}{location}{f', !prof !{self.hint}' if self.hint else ''}"
+
+    @property
+    def is_division(self) -> bool:
+        """Whether the Blackfin has no instruction for it, but a routine in the run-time library."""
+        return self.opcode in ("sdiv", "udiv", "srem", "urem")
+
+    @property
+    def is_soft_float(self) -> bool:
+        """Whether it calls the soft-float library."""
+        named = self.opcode == "call" and ("@llvm.sqrt" in self.text or "@llvm.fpto" in self.text)
+        return named or self.opcode in ("fadd", "fsub", "fmul", "fdiv", "fcmp", "sitofp", "uitofp")
+
+    @property
+    def is_call(self) -> bool:
+        """Whether it is a call of another kernel."""
+        return self.opcode == "call" and not self.is_computation and not self.is_mark
+
+    @property
+    def is_mark(self) -> bool:
+        """Whether it is no code, and only says what is to be checked here."""
+        return self.opcode == "call" and any(f"@{each}(" in self.text for each in (STEPS, HOLDS))
+
+    @property
+    def is_computation(self) -> bool:
+        """Whether it is a call by which LLVM, or the kernel language, writes an operation."""
+        names = ("@llvm.", f"@{PREFIX}", f"@{HIDES}")
+        return self.opcode == "call" and any(each in self.text for each in names)
+
+    @property
+    def intrinsic(self) -> Intrinsic | None:
+        """The intrinsic that it calls."""
+        found = INTRINSIC.search(self.text) if self.opcode == "call" else None
+        return BY_NAME[found[1]] if found else None
+
+    @property
+    def bits(self) -> int:
+        """Width of the value that it loads, stores, extends or computes."""
+        found = WIDTH.search(self.text) if " float" not in self.text else None
+        return int(found.group(1)) if found else 32
+
+
+@dataclass(frozen=True, slots=True)
+class BasicBlock:
+    """A basic block: phi nodes, other instructions, terminator last. Labels are written without %."""
+
+    label: str
+    instructions: tuple[Instruction, ...]
+    enters: tuple[Entrance, ...] = ()
+    """Of the inlined kernels whose code begins here."""
+
+    def rows(self) -> Iterator[str]:
+        """The block as LLVM's text."""
+        yield f"{self.label}:"
+        phis = [each for each in self.instructions if each.opcode == "phi"]
+        yield from (each.row for each in phis)
+        for entrance in self.enters:
+            location = f", !dbg !{entrance.location}" if entrance.location else ""
+            yield f"  call void @{ENTERS}{entrance.symbol}(){location}"
+        yield from (each.row for each in self.instructions[len(phis) :])
+
+    @property
+    def terminator(self) -> Instruction:
+        """The last instruction."""
+        return self.instructions[-1]
+
+    @property
+    def successors(self) -> tuple[str, ...]:
+        """Labels that the terminator can go to: of a branch the true side first, of a switch the default first."""
+        return tuple(each[1:] for each in TARGET.findall(self.terminator.text))
+
+    @property
+    def cases(self) -> tuple[tuple[int, str], ...]:
+        """(value, label) of each case of a switch."""
+        return tuple((int(value), label[1:]) for value, label in CASE.findall(self.terminator.text))
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """A function of the module."""
+
+    symbol: str
+    parameters: tuple[str, ...]
+    blocks: tuple[BasicBlock, ...]
+
+
+def without_marks(routine: Routine) -> Routine:
+    """Return `routine` as the Blackfin has it, which checks nothing."""
+    blocks = (
+        replace(block, instructions=tuple(each for each in block.instructions if not each.is_mark))
+        for block in routine.blocks
+    )
+    return replace(routine, blocks=tuple(blocks))
+
+
+def each_arm(phi: Instruction) -> list[tuple[str, str]]:
+    """Return (value, label of the block it comes from) of a phi; of a block that leads there by two cases of a switch, twice."""
+    return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]
+
+
+def arms_of(phi: Instruction) -> dict[str, str]:
+    """Return the values of a phi by the labels of the blocks that they come from."""
+    return {label: value for value, label in each_arm(phi)}
+
+
+def phi_of(result: str, kind: str, arms: Iterable[tuple[str, str]], at: Instruction) -> Instruction:
+    """Return the phi of values of an LLVM type, each with the label of its block, of the same place in the source as `at`."""
+    arms = [*arms]
+    text = ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
+    return written(result, f"phi {kind} {text}", tuple(value for value, _ in arms), at)
+
+
+def with_each_arm(phi: Instruction, arms: Iterable[tuple[str, str]]) -> Instruction:
+    """Return a phi of other values, each with the label of the block that it comes from."""
+    return phi_of(phi.result or "", phi.text.split()[1], arms, phi)
+
+
+def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
+    """Return a phi of other values, by the labels of the blocks that they come from."""
+    return with_each_arm(phi, ((value, label) for label, value in arms.items()))
+
+
+def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
+    """Return an instruction that reads what `names` has in place of the values named there."""
+    if not any(name in names for name in each.operands):
+        return each
+    text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
+    return replace(each, text=text, operands=tuple(names.get(name, name) for name in each.operands))
+
+
+def written(result: str, text: str, operands: tuple[str, ...], at: Instruction) -> Instruction:
+    """Return the instruction `text`, of the same place in the source as the instruction `at`."""
+    return Instruction(result, text.split(maxsplit=1)[0], text, operands, at.line, location=at.location)
+
+
+def is_number(value: str) -> bool:
+    """Whether a value is an integer of the text."""
+    return value.lstrip("-").isdigit()
+
+
+def predicate(compare: Instruction) -> str:
+    """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
+    words = compare.text.split()
+    return words[2] if words[1] in ("samesign", "fast") else words[1]

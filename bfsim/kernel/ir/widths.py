@@ -1,0 +1,33 @@
+"""How many low bits of a value may be set: a conversion that keeps them all is none [tree-ssa-ccp.cc, tree-vrp.cc of GCC 12]."""
+
+from __future__ import annotations
+
+from bfsim.kernel.ir.control_flow import ControlFlow
+
+BYTE, WORD, PAIR = 8, 32, 64
+"""Bits. A pair is what an intrinsic with two results gives; only its words are used."""
+DEEPEST = 6  # operations that are looked through; each may have several operands
+
+
+def widest(flow: ControlFlow, value: str, seen: frozenset[str] = frozenset()) -> int:
+    """Return the number of low bits beyond which `value` has none; 32 if that is not known."""
+    if value.isdigit():
+        return int(value).bit_length()
+    each = flow.instruction(value)
+    if each is None or len(seen) == DEEPEST:
+        return WORD
+    if value in seen:
+        return 0  # round a loop: what the other ways bring
+    widths = [widest(flow, operand, seen | {value}) for operand in each.operands[:2]]
+    match each.opcode:
+        case "load" | "zext":
+            return each.bits
+        case "and":
+            return min(widths)
+        case "or" | "xor":
+            return max(widths)
+        case "phi":
+            return max(widest(flow, operand, seen | {value}) for operand in each.operands)
+        case "lshr" if each.operands[1].isdigit():
+            return max(0, widths[0] - int(each.operands[1]))
+    return WORD
