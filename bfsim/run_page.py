@@ -21,7 +21,7 @@ from bfsim.report.html.frames import MOST
 from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.ldf.map import MemoryMap
-from bfsim.report.save import require_apart, require_place, write_text
+from bfsim.report.save import require_apart, require_no_source, require_place, write_text
 from bfsim.report.target import Target
 from bfsim.running.inputs import calibration_of, files_of_run
 from bfsim.running.watchers import Watchers, calling
@@ -34,6 +34,7 @@ def require_page(path: Path, others: Iterable[Path | None]) -> None:
     """Raise ConfigError unless a page can be written to `path`, which must be none of the `others`, and its packages are there."""
     require_place(path)
     require_apart(path, others)
+    require_no_source(path)
     missing = [each for each in _PACKAGES if find_spec(each) is None]
     if missing:
         raise ConfigError(

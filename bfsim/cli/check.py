@@ -86,6 +86,7 @@ def check(
     from bfsim.checking import arguments_of, require_comparable, require_held
     from bfsim.report.check.history import read_history, trend_table
     from bfsim.report.check.outputs import check_json
+    from bfsim.report.save import require_no_source
     from bfsim.running.inputs import files_of_run
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
@@ -94,6 +95,8 @@ def check(
     if update:
         _require_places([path], read)
     _require_places([history, *outputs.values()], [path, *read])
+    for output in filter(None, outputs.values()):
+        require_no_source(output)
     require_json_place(json_path, (path, history, *outputs.values(), *read))
     if history:
         read_history(history)

@@ -96,11 +96,21 @@ def milliseconds(cclk: float, cclk_hz: float) -> float:
 
 
 def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
-    """Frames per second from frame end to frame end; of a single frame, one over its duration."""
+    """Frames per second from frame end to frame end; of a single frame, one over its duration.
+
+    Firmware that waits for every picture is as fast as these come, from picture to picture: in a few frames, a first one that took
+    long would make it faster than its cameras.
+    """
     ends = [max(core.end_cclk for core in frame.cores) for frame in frames]
     if len(frames) == 1:
         return cclk_hz / (ends[0] - min(core.begin_cclk for core in frames[0].cores))
+    if all(_idles(core) for frame in frames[1:] for core in frame.cores):
+        ends = [frame.last_line_cclk for frame in frames]
     return (len(frames) - 1) * cclk_hz / (ends[-1] - ends[0])
+
+
+def _idles(frame: CoreFrame) -> bool:
+    return any(cost.idle_cclk for cost in frame.stages)
 
 
 def latency_cclk(frame: FrameRecord) -> int:

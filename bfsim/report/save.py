@@ -16,9 +16,15 @@ from bfsim.files.drafts import growing_draft
 if sys.platform != "win32":
     import fcntl
 
+_STDOUT = Path("-")
+"""As many other programs have it."""
+SOURCES = (".bag", ".c", ".db3", ".ldf", ".mcap", ".py", ".s", ".toml")
+"""Files that people record or write."""
+
 
 def require_place(path: Path) -> None:
     """Raise ConfigError unless a file can be written at `path`: its folder exists and is writable, and what is there is a file."""
+    require_name(path)
     if not path.parent.is_dir():
         raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
     if path.exists() and not path.is_file():
@@ -27,11 +33,28 @@ def require_place(path: Path) -> None:
         raise ConfigError(f"{path}: the folder {path.parent} must be writable to write a file there")
 
 
+def require_name(path: Path) -> None:
+    """Raise ConfigError if a path means standard output."""
+    if path == _STDOUT:
+        raise ConfigError(
+            f"{path} must be a name: what is written is there as a whole, which standard output cannot be"
+        )
+
+
 def require_apart(path: Path, others: Iterable[Path | None]) -> None:
     """Raise ConfigError if one of the `others`, which a command reads or writes too, is the file at `path`."""
     if _resolved(path) in {_resolved(each) for each in others if each}:
         raise ConfigError(
             f"{path} must be a file of its own to be written, not one that is read or written, too"
+        )
+
+
+def require_no_source(path: Path) -> None:
+    """Raise ConfigError if there is a recording, firmware or the like at `path`: whoever forgets a FILE behind an option names these."""
+    if path.suffix.lower() in SOURCES and path.exists():
+        raise ConfigError(
+            f"{path} must not be there yet: a *{path.suffix} is what people record or write, and is not replaced; "
+            "is a FILE missing behind the option?"
         )
 
 

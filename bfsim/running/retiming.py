@@ -19,7 +19,7 @@ from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.process.reading_ahead import read_ahead
-from bfsim.report.save import growing_file
+from bfsim.report.save import growing_file, require_no_source
 from bfsim.running.identifying import DigestedFrames
 from bfsim.trace import Identity
 
@@ -94,6 +94,7 @@ def recording_work(
         raise ConfigError(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
         )
+    require_no_source(path)
     with suppress(_InterruptedError), growing_file(path) as stream, WorkWriter(stream, path) as writer:
         cores: list[RecordingCore] = []
 

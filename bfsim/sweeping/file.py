@@ -21,6 +21,8 @@ MOST_POINTS = 100_000
 """More would take years."""
 
 BASE, AXES, POINT = "base", "axes", "point"
+BASELINE_KEY = "run"
+"""At the top of a baseline of `bfsim check`, which is TOML, too."""
 RECORDING, CONFIGURATION, NAME = "recording", "configuration", "name"
 
 
@@ -85,6 +87,10 @@ def _require_apart(points: Sequence[Point]) -> None:
 
 
 def _points(plain: Mapping[str, Any], folder: Path, scripts: Path) -> Iterator[Point]:
+    if BASELINE_KEY in plain:
+        raise ConfigError(
+            f"it must be a sweep, with [{AXES}] or [[{POINT}]], not a baseline of `bfsim check`"
+        )
     for key in plain:
         if key not in {BASE, AXES, POINT}:
             raise ConfigError(f"{cut(key)} must not be there; known are [{BASE}], [{AXES}] and [[{POINT}]]")

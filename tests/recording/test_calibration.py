@@ -233,6 +233,10 @@ def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp
     )
     with Image.open(tmp_path / "plot.png") as plot:
         assert plot.width > 1000
+    precious = path.read_bytes()
+    refused = CliRunner().invoke(record, ["info", str(path), "--plot", str(path)])
+    assert str(refused.exception) == f"--plot must be a file *.png, not {path}"
+    assert path.read_bytes() == precious
 
 
 def test_residuals_are_drawn_and_kept(tmp_path: Path) -> None:

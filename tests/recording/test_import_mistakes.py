@@ -61,6 +61,13 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("sources")
+def test_standard_output_is_no_recording() -> None:
+    """A file called - is what a later command would take for standard input, and nobody would find."""
+    with pytest.raises(RecordingError, match=r"^-: recording must have a name like run\.mcap"):
+        import_recording(["three"], Path("-"), mono=True)
+
+
+@pytest.mark.usefixtures("sources")
 @pytest.mark.parametrize(
     ("names", "options", "message"),
     [

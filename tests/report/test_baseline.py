@@ -117,6 +117,8 @@ def refusal(tmp_path: Path, text: str) -> str:
         ("[[run]]\nname = 'a'\n[[run]]\nname = 'a'", "each run must have a name of its own, but two are called 'a'"),
         ("[[run]]\nname = 'a'\nrequire = ['fps > 1']", "run 'a', require: after the name"),
         ("runs = 1", "runs must not be there; known keys are run"),
+        ("axes.ldf = ['l2']", "must be a baseline of `bfsim check`, not a file of `bfsim sweep`"),
+        ("[[point]]\nldf = 'l2'", "not a file of `bfsim sweep`; points of that are compared by what would stand behind `bfsim run`"),
         ("run = 1", "run must be a valid list, not 1"),
         ("run = [1]", "run 1, it must be a valid dictionary, not 1"),
         ("[[run]]\nname = ''", "name must have at least 1 character, not ''"),

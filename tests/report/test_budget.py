@@ -73,6 +73,18 @@ def test_a_part_is_a_row_of_its_own_and_in_the_row_of_its_stage() -> None:
     assert core.frame.elapsed_cclk.total == 180
 
 
+def test_firmware_that_waits_for_every_picture_is_no_faster_than_they_come() -> None:
+    """A picture every 1,000 cycles; the first frame's work takes 60 more than the second one's, and so ends nearer to that."""
+    first = core_frame("A", 0, cost("Edge detection", 160), cost(REST, 0, idle_cclk=1_000))
+    second = core_frame("A", 1_160, cost("Edge detection", 100), cost(REST, 0, idle_cclk=840))
+    waiting = [frame(0, first, latency_cclk=160), frame(1, second, latency_cclk=100)]
+    assert frame_rate_hz(waiting, 1_000_000) == 1_000
+    other = core_frame("B", 1_160, cost("Edge detection", 940))  # one core is never without work
+    begun = core_frame("B", 0, cost("Edge detection", 1_160))
+    busy = [frame(0, first, begun, latency_cclk=160), frame(1, second, other, latency_cclk=100)]
+    assert frame_rate_hz(busy, 1_000_000) == 1_000_000 / 940
+
+
 def test_frame_rate_runs_from_frame_end_to_frame_end() -> None:
     """The start-up in the first frame does not count; the last core to end does."""
     run = edge_run(9_950, 950, 950)

@@ -46,12 +46,13 @@ def timelines(
 
     Raises ConfigError for a place that cannot be written, one of the `others` included.
     """
-    from bfsim.report.save import require_apart, require_place
+    from bfsim.report.save import require_apart, require_no_source, require_place
 
     for path, beside in ((trace, flame), (flame, trace)):
         if path:
             require_place(path)
             require_apart(path, (beside, *others))
+            require_no_source(path)
     if flame:
         watchers.done.append(partial(_write_flame, flame))
     with _tracing(watchers, trace) if trace else nullcontext():

@@ -10,7 +10,7 @@ import click
 
 from bfsim.cli.options.json_file import json_option, require_json_place, tell
 from bfsim.cli.record.recorded import info_table
-from bfsim.errors import RecordingError
+from bfsim.errors import ConfigError
 from bfsim.process.terminal import print_report, progress_bar
 
 
@@ -33,21 +33,19 @@ def info_command(path: Path, json_path: Path | None, plot: Path | None) -> None:
     """
     from bfsim.recording import RecordingReader
     from bfsim.recording.info import describe_recording
+    from bfsim.report.save import require_place, write_bytes
 
+    if plot:
+        if plot.suffix.lower() != ".png":
+            raise ConfigError(f"--plot must be a file *.png, not {plot}")
+        require_place(plot)
     require_json_place(json_path, (path, plot))
     with RecordingReader(path) as reader, progress_bar("Reading") as progress:
         info = describe_recording(reader, progress)
         if plot:
-            _write(plot, reader.residual_plot())
+            write_bytes(plot, [reader.residual_plot()])
     tell(
         json_path,
         lambda: [json.dumps(asdict(info), default=str, indent=2), "\n"],
         lambda: print_report(info_table(info)),
     )
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        path.write_bytes(data)
-    except OSError as error:
-        raise RecordingError(f"{path}: file must be writable: {error.strerror}") from None

@@ -33,6 +33,10 @@ def check_call(
     force: bool,
 ) -> None:
     """Raise RecordingError unless the options fit each other and the number of sources, and `output` may be written."""
+    if output == Path("-"):
+        raise RecordingError(
+            "-: recording must have a name like run.mcap: it is written as a whole, which standard output cannot be"
+        )
     if output.suffix.lower() != ".mcap" and guess_format(os.fspath(output)):
         raise RecordingError(
             f"{output}: recording must have a name like run.mcap, not one of pictures; it comes first, and what it is made of "

@@ -21,6 +21,9 @@ from bfsim.report.wrong_value import key_of, wrong_value
 OLD_KEYS = {"core", "measured_by", "tolerance_percent"}
 """At the top of files that were written before there were several runs in one."""
 
+SWEEP_KEYS = {"base", "axes", "point"}
+"""At the top of what `bfsim sweep` reads, which is TOML, too."""
+
 TABLES: dict[int | str, type[Table]] = {
     "measured_on": MeasuredOn, "costs": Costs, "of": KeptOwner, "lines": KeptLine,
 }  # fmt: skip
@@ -79,6 +82,11 @@ def validated(document: TOMLDocument, path: Path) -> Baseline:
         raise ConfigError(
             f"{path} was written by an older bfsim, and must be made anew: move it away, run `{update_command(path)}` "
             "with your options, and copy your comments"
+        )
+    if set(plain) & SWEEP_KEYS and "run" not in plain:
+        raise ConfigError(
+            f"{path} must be a baseline of `bfsim check`, not a file of `bfsim sweep`; points of that are compared by "
+            "what would stand behind `bfsim run`"
         )
     try:
         baseline = Baseline.model_validate(plain)

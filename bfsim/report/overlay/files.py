@@ -19,7 +19,7 @@ from bfsim.files.drafts import draft_folder, sweep
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.style import PAPER
-from bfsim.report.save import require_place
+from bfsim.report.save import require_name, require_place
 from bfsim.seen import SeenFrame
 
 FRAME_MS = 200
@@ -172,6 +172,7 @@ def _require_folder(path: Path) -> None:
             raise ConfigError(f"{path} must be a folder for the overlay, not a file")
         if not path.parent.is_dir():
             raise ConfigError(f"{path}: the folder {path.parent} must exist to make a folder there")
+        require_name(path)
         return
     sweep(path)
     foreign = set(path.iterdir()) - set(_earlier(path))
