@@ -12,7 +12,7 @@ import pytest
 import zstandard
 
 from bfsim.errors import WorkError
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.retiming.work import BYTE, CALL, KIND, SITE, FrameWork
 from bfsim.machine.retiming.work_check import check

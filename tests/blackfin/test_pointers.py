@@ -12,7 +12,8 @@ from bfsim.blackfin.decode import decode
 from bfsim.blackfin.origins import Origin, made_by
 from bfsim.kernel import Kernel
 from bfsim.kernel.build import Build
-from bfsim.kernel.calls.access_trace import KIND_BIT, KIND_MASK, LOG, STORE, AccessTrace
+from bfsim.kernel.calls.access_log import KIND_BIT, KIND_MASK, LOG, STORE
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.profile import DEFAULT
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernels import entries_of

@@ -17,7 +17,7 @@ from bfsim.chip.settings import with_settings
 from bfsim.chip.spec import BoardSpec, Pll
 from bfsim.errors import ConfigError
 from bfsim.fields import leaves
-from bfsim.kernel.calls.access_trace import OFFSET_MASK
+from bfsim.kernel.calls.access_log import OFFSET_MASK
 from bfsim.machine.bus import state
 
 

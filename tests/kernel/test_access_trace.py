@@ -14,17 +14,9 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import i32, kernel, u8
-from bfsim.kernel.calls import access_trace as log
-from bfsim.kernel.calls.access_trace import (
-    FILL,
-    LOAD,
-    STORE,
-    WRITE_BACK,
-    AccessTrace,
-    CachedRegion,
-    CacheSize,
-    Policy,
-)
+from bfsim.kernel.calls import access_log as log
+from bfsim.kernel.calls.access_log import FILL, LOAD, STORE, WRITE_BACK, Policy
+from bfsim.kernel.calls.access_trace import AccessTrace, CachedRegion, CacheSize
 from tests.kernel.running import run
 
 OUTSIDE, L1 = 8192, 4096  # bytes of the arena: first what is traced, then what is not

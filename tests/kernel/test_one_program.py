@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.costs.counters import Counter
 from tests.kernel.modules import import_text, kernel_of

@@ -91,7 +91,7 @@ def test_a_side_that_only_says_what_is_next_leads_back_at_once(
     body: str, leaves: bool | None, tmp_path: Path
 ) -> None:
     """Unless it hands on what the other one hands on, too, or the loop's own test has just failed."""
-    block = kernel_of(ENDED.format(body), tmp_path).function.body
+    block = tree.body_of(kernel_of(ENDED.format(body), tmp_path).function).block
     (loop,) = [each for each in block if isinstance(each, tree.While)]
     end = end_of_subloop(loop, block)
     assert (end and end[1]) == leaves

@@ -159,7 +159,7 @@ def test_a_continue_makes_two_loops_if_all_it_hands_on_changes_later(
     body: str, is_one: bool, tmp_path: Path
 ) -> None:
     """On each other way back: what does not is the same variable of one loop. Numbers, and what no iteration takes up, do not count."""
-    block = kernel_of(TAKEN.format(body), tmp_path).function.body
+    block = tree.body_of(kernel_of(TAKEN.format(body), tmp_path).function).block
     (loop,) = [each for each in block if isinstance(each, tree.While)]
     assert makes_subloop(loop, block) is is_one
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bfsim.chip.boards import BOARDS, board_named
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk

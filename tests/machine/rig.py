@@ -20,7 +20,7 @@ from bfsim.chip.sensors import LEFT_CAMERA
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel
 from bfsim.kernel.build import ESTIMATED, Build
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w

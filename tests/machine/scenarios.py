@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from bfsim.chip.boards import board_named
-from bfsim.kernel.calls.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
+from bfsim.kernel.calls.access_log import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
 from bfsim.machine.bus import core_requests, dma_requests, runs, store_buffer
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk

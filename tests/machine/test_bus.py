@@ -10,7 +10,7 @@ import pytest
 from bfsim.chip.boards import CM_BF561
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
-from bfsim.kernel.calls.access_trace import LOAD, STORE
+from bfsim.kernel.calls.access_log import LOAD, STORE
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.trace import StallReason

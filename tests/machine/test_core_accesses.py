@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
-from bfsim.kernel.calls.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
+from bfsim.kernel.calls.access_log import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
 from bfsim.machine.bus import state as w
 from bfsim.trace import StallReason
 from tests.machine.rig import Bench, Call

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from bfsim.chip.boards import board_named
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.detailed.arbiter import Grant, Request
 from bfsim.machine.detailed.sdram import Page, SdramBanks

@@ -17,7 +17,7 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.errors import KernelError
 from bfsim.kernel import VDSP_O2, Kernel
 from bfsim.kernel.build import ESTIMATED
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.bus.state import FETCH_BYTES

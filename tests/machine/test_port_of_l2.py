@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bfsim.kernel.calls.access_trace import FETCH_LINE, LOAD, STORE
+from bfsim.kernel.calls.access_log import FETCH_LINE, LOAD, STORE
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus import weave
 from bfsim.machine.bus.transfer_plans import TransferPlan

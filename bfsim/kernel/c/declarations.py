@@ -28,10 +28,10 @@ class Declarations:
 def declarations(function: Function) -> Declarations:
     """Return where the locals of a kernel are declared."""
     parameters = {each.name for each in function.parameters}
-    found = Declarations()
-    found.counting.update(map(id, _counting_loops(function.body, (), parameters)))
-    for name in (name for name, _ in function.locals if name not in parameters):
-        _Local(name, found).declare(function.body)
+    found, body = Declarations(), tree.body_of(function)
+    found.counting.update(map(id, _counting_loops(body.block, (), parameters)))
+    for name in (name for name, _ in body.locals if name not in parameters):
+        _Local(name, found).declare(body.block)
     return found
 
 

@@ -30,7 +30,7 @@ BLACKFIN = "__bfin__"
 
 def intrinsics_in(functions: Iterable[Function]) -> list[Intrinsic]:
     """Return the intrinsics that kernels use, by name."""
-    nodes = (node for each in functions for node in tree.parts(each.body))
+    nodes = (node for each in functions for node in tree.parts(tree.body_of(each).block))
     found = {each.intrinsic for each in nodes if isinstance(each, tree.IntrinsicCall)}
     return sorted(found, key=lambda each: each.name)
 

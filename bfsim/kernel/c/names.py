@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from bfsim.kernel.c.headers import MACROS
 from bfsim.kernel.language.function import Function
+from bfsim.kernel.language.tree import body_of
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, Value
 
 OPERATORS = (
@@ -124,7 +125,7 @@ class LocalNames:
 def _declared(function: Function) -> Iterator[str]:
     yield from (each.name for each in function.parameters)
     parameters = {each.name for each in function.parameters}
-    yield from (name for name, _ in function.locals if name not in parameters)
+    yield from (name for name, _ in body_of(function).locals if name not in parameters)
 
 
 def parameter_list(function: Function, names: LocalNames) -> list[str]:

@@ -10,18 +10,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from bfsim.kernel.language import tree
-from bfsim.kernel.language.function import Body, Function
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import BOOL, Value, i32
 
 
 def ordered(function: Function) -> Function:
     """Return `function` with no expression in which the order of evaluation matters."""
-    rewriter = _Rewriter({name for name, _ in function.locals})
-    block = rewriter.block(function.body)
+    body = tree.body_of(function)
+    rewriter = _Rewriter({name for name, _ in body.locals})
+    block = rewriter.block(body.block)
     if not rewriter.new:
         return function
-    body = Body((*function.locals, *rewriter.new), block)
-    return replace(function, read=lambda: body)
+    rewritten = tree.Body((*body.locals, *rewriter.new), block)
+    return replace(function, read=lambda: rewritten)
 
 
 @dataclass(slots=True)

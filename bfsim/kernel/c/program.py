@@ -79,7 +79,7 @@ def _static(functions: Iterable[Function]) -> frozenset[Function]:
     elsewhere = {
         call.callee
         for each in functions
-        for call in tree.calls_in(each.body)
+        for call in tree.calls_in(tree.body_of(each).block)
         if call.callee.file != each.file
     }
     return frozenset(each for each in functions if each.is_static and each not in elsewhere)
@@ -177,9 +177,10 @@ def _constants(members: Iterable[Function], names: Mapping[Function, str]) -> di
     taken = {*names.values(), *names_in_header(intrinsics_in(members))}
     wanted: dict[str, int | float] = {}
     for function in members:
-        taken.update(name for name, _ in function.locals)
+        body = tree.body_of(function)
+        taken.update(name for name, _ in body.locals)
         taken.update(each.name for each in function.parameters)
-        for node in tree.parts(function.body):
+        for node in tree.parts(body.block):
             if isinstance(node, tree.Const):
                 for name in WORD.findall(node.written):
                     value = constant_of(function.names.get(name))

@@ -67,21 +67,22 @@ class Definition:
         head = signature(function, functions, is_static=is_static)
         self.function, self.place = ordered(function), place
         function = self.function
-        self.types = dict(function.locals)
+        self.body = tree.body_of(function)
+        self.types = dict(self.body.locals)
         self.names = LocalNames(function, functions.values())
         self.expressions = Expressions(self.names, functions, constants)
         self.declarations = declarations(function)
-        self.read = {each.name for each in tree.parts(function.body) if isinstance(each, tree.Local)}
+        self.read = {each.name for each in tree.parts(self.body.block) if isinstance(each, tree.Local)}
         self.lines = c_comment(self.comments.docstring) if self.comments.docstring else []
         self._directive(1, "")
         self.lines += [*head, "{"]
         self._unused()
-        self._block(function.body, INDENT)
+        self._block(self.body.block, INDENT)
         self.lines.append("}")
 
     def _unused(self) -> None:
         used = set(self.read)
-        for each in tree.parts(self.function.body):
+        for each in tree.parts(self.body.block):
             if isinstance(each, (tree.Load, tree.Store)):
                 used.add(each.array)
             elif isinstance(each, tree.KernelCall):

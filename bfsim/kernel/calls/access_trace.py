@@ -9,52 +9,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
-
-WRITE = 256  # `counters` adds it to an access's byte count when it writes
-
-# An entry of the log: `stamp << STAMP_BIT | kind << KIND_BIT | offset in the arena`
-KIND_BIT, STAMP_BIT = 28, 31
-OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
-LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET, FETCHES = range(8)
-"""What an entry is. FETCHES, the last one of a call, stands for all fetches of its code that no cache holds: their number takes the
-place of a stamp, and its site is that of the routine that is fetched first (`bus.state`)."""
-
-# Words of the state; the log stands behind them, and behind that the site of each of its entries (`call_paths`).
-(
-    FUNCTION,  # address of `trace_access`; compiled kernels call it
-    ARENA, END,  # host address of the arena, and of what is behind SDRAM and L2
-    ENTRIES,  # how many accesses there were
-    ROOM,  # how many entries the log can have
-    REGIONS,  # how many regions are cached
-    LINE_BITS, SETS, WAYS,
-    KEPT,  # how many entries of earlier calls are kept in front of those of the next
-) = range(10)  # fmt: skip
-MAX_REGIONS = 8
-FIRST_REGION = 10  # first offset, end and policy of each
-TAGS = (
-    FIRST_REGION + 3 * MAX_REGIONS
-)  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
-MAX_LINES = 2048
-LOG = TAGS + MAX_LINES
-ENTRY_WORDS = 2
-EMPTY = -1
-
-
-class Policy(IntEnum):
-    """How a cached region is written: at once and without allocation, or when a changed line leaves the cache."""
-
-    WRITE_THROUGH = 0
-    WRITE_BACK = 1
-
-
-WRITE_BACK_POLICY = int(Policy.WRITE_BACK)  # as compiled code knows it
+from bfsim.kernel.calls.access_log import (
+    ARENA,
+    EMPTY,
+    END,
+    ENTRIES,
+    ENTRY_WORDS,
+    FIRST_REGION,
+    FUNCTION,
+    KEPT,
+    LINE_BITS,
+    LOG,
+    REGIONS,
+    ROOM,
+    SETS,
+    TAGS,
+    WAYS,
+    Policy,
+)
+from bfsim.kernel.calls.traced_access import trace_access
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +60,7 @@ class CacheSize:
 
 
 class AccessTrace:
-    """The access trace of one core; `traced_access.py` is its compiled part, which waits until a kernel touches memory outside L1."""
+    """The access trace of one core; `traced_access.py` is its compiled part, which is made once a kernel touches memory outside L1."""
 
     def __init__(
         self,
@@ -116,8 +95,6 @@ class AccessTrace:
     def address(self) -> int:
         """Return the host address of the state, ready to be traced."""
         if not self._state[FUNCTION]:
-            from bfsim.kernel.calls.traced_access import trace_access  # which has the numbers above from here
-
             self._state[FUNCTION] = trace_access.address()
         return self._at
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from bfsim.kernel.calls.access_trace import ENTRIES, KEPT, ROOM, AccessTrace
+from bfsim.kernel.calls.access_log import ENTRIES, KEPT, ROOM
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.calls.work import Work
 from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import ArrayType, FloatType, IntType, u32

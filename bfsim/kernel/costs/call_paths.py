@@ -6,33 +6,21 @@ Where a callee's part begins depends on the caller's part alone, so that a call 
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.kernel.costs.costs import Costs
 from bfsim.kernel.costs.counters import Counter
-from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.reading import KERNEL_CALL
-from bfsim.kernel.ir.text import Entrance, Routine, SourceLine
+from bfsim.kernel.costs.routine_calls import RoutineCall
+from bfsim.kernel.ir.text import Entrance, SourceLine
 
-if TYPE_CHECKING:
-    from bfsim.kernel.costs.costs import Costs
-
-POINTER = re.compile(r"\bptr (?:\w+ )*(%[\w.$-]+)")
 MOST_COUNTERS = 1000
 """[ours] Of a program with more, the calls of a routine are counted together, whatever path they come by."""
-
-
-class RoutineCall(NamedTuple):
-    """A call of a routine; `arrays`: its parameters that are arrays, each with the caller's parameter that it gets."""
-
-    callee: str
-    arrays: tuple[tuple[str, str], ...]
 
 
 class Site(NamedTuple):
@@ -59,25 +47,6 @@ class CallPath:
     routines: tuple[str, ...]
     arrays: Mapping[str, str]
     first: Offset
-
-
-def calls_of(routines: Sequence[Routine]) -> dict[str, tuple[RoutineCall, ...]]:
-    """Return the calls that each routine makes of the others, in the order of its text."""
-    parameters = {each.symbol: [name[1:] for name in each.parameters] for each in routines}
-    return {each.symbol: tuple(_calls(each, parameters)) for each in routines}
-
-
-def _calls(routine: Routine, parameters: Mapping[str, Sequence[str]]) -> Iterator[RoutineCall]:
-    flow = ControlFlow(routine)
-    own = set(parameters[routine.symbol])
-    for block in routine.blocks:
-        for each in block.instructions:
-            found = KERNEL_CALL.search(each.row)
-            if found and found[1] in parameters:
-                pointers = set(POINTER.findall(each.text))
-                pairs = zip(parameters[found[1]], each.operands, strict=True)
-                roots = [(name, flow.root(operand)[1:]) for name, operand in pairs if operand in pointers]
-                yield RoutineCall(found[1], tuple((name, root) for name, root in roots if root in own))
 
 
 class RoutineCosts(NamedTuple):

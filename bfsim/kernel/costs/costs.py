@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from bfsim.files import store
-from bfsim.kernel.costs.call_paths import RoutineCall
 from bfsim.kernel.costs.charges import Access, Charge
 from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.costs.routine_calls import RoutineCall
 from bfsim.kernel.ir.text import Entrance, SourceLine
 from bfsim.kernel.operations import Op
 

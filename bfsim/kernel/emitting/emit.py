@@ -103,12 +103,13 @@ def _emit_into(
     builder = ir.IRBuilder(target.append_basic_block("entry"))
     values = Values(builder, function, inlined, scope, arrays)
     values.at(1)
-    for number, (name, kind) in enumerate(function.locals):
+    body = tree.body_of(function)
+    for number, (name, kind) in enumerate(body.locals):
         # the number outlives all passes: in which order variables are declared matters to a compiler
         values.slots[name] = builder.alloca(register_type(kind), name=f"{name}.v{number}")
     for name, value in scalars.items():
         builder.store(value, values.slots[name])
-    _Statements(builder, values, function.body, one_way_back).emit(function.body)
+    _Statements(builder, values, body.block, one_way_back).emit(body.block)
     if not builder.block.is_terminated:
         if function.result:
             builder.unreachable()

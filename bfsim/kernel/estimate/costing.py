@@ -10,10 +10,10 @@ from functools import cache
 
 import llvmlite.binding as llvm
 
-from bfsim.kernel.costs.call_paths import calls_of
 from bfsim.kernel.costs.charges import Access, merged
 from bfsim.kernel.costs.costs import Costs
 from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.costs.routine_calls import calls_of
 from bfsim.kernel.emitting.emit import emit
 from bfsim.kernel.emitting.narrowed_divisions import with_rounded_names
 from bfsim.kernel.estimate import optimised as optimising

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from bfsim.kernel.calls.access_trace import ARENA, END, WRITE
+from bfsim.kernel.calls.access_log import ARENA, END, WRITE
 from bfsim.kernel.costs.call_paths import Program, Site
 from bfsim.kernel.costs.charges import Access
 from bfsim.kernel.ir.reading import DEFINE, LABEL

@@ -1,17 +1,13 @@
-"""A kernel as everybody knows it: what it is called, where it stands, what it takes and calls. What it does is a tree, read when asked for."""
+"""A kernel as everybody knows it: what it is called, where it stands, what it takes and calls. What it does is a tree of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
-from typing import TYPE_CHECKING
+from functools import cache
 
 from bfsim.files.content import lines_of
-from bfsim.kernel.types import ArrayType, Number, Value
-
-if TYPE_CHECKING:
-    from bfsim.kernel.language.tree import Stmt
+from bfsim.kernel.types import ArrayType, Number
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,14 +16,6 @@ class Parameter:
 
     name: str
     type: Number | ArrayType
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """What a kernel does. `locals` gives the type of every local name."""
-
-    locals: tuple[tuple[str, Value], ...]
-    block: tuple[Stmt, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +27,7 @@ class Function:
     do not run it. Whether another file imports it is not looked at.
     `calls`: the kernels that it calls itself, each once, in source order. `written`: array parameters that it, or a kernel called
     by it, stores into; `measured`: those whose length is asked for, which comes with them in C. `digest`: of all that its code
-    depends on but its callees. `read`: reads its body, which few runs need.
+    depends on but its callees. `read`: reads its body, which few runs need (`tree.body_of`).
     """
 
     name: str
@@ -55,7 +43,7 @@ class Function:
     written: frozenset[str]
     measured: frozenset[str]
     digest: str
-    read: Callable[[], Body]
+    read: Callable[[], object]
 
     def __repr__(self) -> str:
         """Return the symbol alone, which stands for it in the text of a call."""
@@ -65,20 +53,6 @@ class Function:
     def place(self) -> str:
         """Where it is defined, as file:line."""
         return f"{self.file}:{self.first_line}"
-
-    @cached_property
-    def _body(self) -> Body:
-        return self.read()
-
-    @property
-    def locals(self) -> tuple[tuple[str, Value], ...]:
-        """Every local name with its type."""
-        return self._body.locals
-
-    @property
-    def body(self) -> tuple[Stmt, ...]:
-        """Its statements."""
-        return self._body.block
 
     @property
     def array_names(self) -> tuple[str, ...]:

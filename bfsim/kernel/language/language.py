@@ -13,11 +13,12 @@ from types import CodeType, FunctionType
 from typing import NamedTuple
 
 from bfsim.errors import with_article
-from bfsim.kernel.language.function import Body, Parameter
+from bfsim.kernel.language.function import Parameter
 from bfsim.kernel.language.refusal import KernelSource
 from bfsim.kernel.language.scope import KernelScope
 from bfsim.kernel.language.signature import parameters_of, result_type
 from bfsim.kernel.language.statements import Statements
+from bfsim.kernel.language.tree import Body
 from bfsim.kernel.types import Number
 
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 
 from bfsim.kernel.intrinsics import Intrinsic
-from bfsim.kernel.language.function import Body, Function
+from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import FloatType, IntType, Number, Value
 
 
@@ -228,12 +229,28 @@ class Continue:
 Stmt = Assign | Store | If | While | For | Return | Evaluate | Break | Continue
 
 
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What a kernel does. `locals` gives the type of every local name."""
+
+    locals: tuple[tuple[str, Value], ...]
+    block: tuple[Stmt, ...]
+
+
+@cache
+def body_of(function: Function) -> Body:
+    """Return what a kernel does."""
+    body = function.read()
+    assert isinstance(body, Body)
+    return body
+
+
 def first_float(function: Function) -> int | None:
     """Line of the first float in a kernel itself, counted like every `line`; None without floats."""
     kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)
     lines = [
         each.line
-        for each in parts(function.body)
+        for each in parts(body_of(function).block)
         if isinstance(each, kinds) and isinstance(each.type, FloatType)
     ]
     in_head = any(

@@ -13,7 +13,7 @@ from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.files import store
 from bfsim.kernel import keys
-from bfsim.kernel.calls.access_trace import WRITE
+from bfsim.kernel.calls.access_log import WRITE
 from bfsim.kernel.costs.call_paths import Program
 from bfsim.kernel.costs.costs import Costs, kept_costs
 from bfsim.kernel.costs.counters import Counter

@@ -11,9 +11,9 @@ from bfsim.blackfin.interlocks import Wait
 from bfsim.blackfin.pointers import Accesses
 from bfsim.blackfin.stalls import Waits
 from bfsim.blackfin.timing import Timing
-from bfsim.kernel.costs.call_paths import RoutineCall
 from bfsim.kernel.costs.charges import Access, Charge, instead, merged
 from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.costs.routine_calls import RoutineCall
 from bfsim.kernel.ir.text import Entrance, SourceLine
 from bfsim.kernel.objects.operations import TAKEN, operation_of
 from bfsim.kernel.objects.places import Places

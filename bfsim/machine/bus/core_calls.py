@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import CoreLogs
 from bfsim.machine.bus.ends import Ends

@@ -6,7 +6,7 @@ Loads overtake stores, except that a load from an address in the store buffer wa
 
 from __future__ import annotations
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import bytes_of, charge, go_past, next_entry, site_of, wait

@@ -5,7 +5,7 @@ What they do is what `core_requests` would do with each. Alone at the port every
 
 from __future__ import annotations
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import charge, count_fetched, cycles_until, go_past, next_entry

@@ -5,7 +5,7 @@ What they do is what `l2_words` would do with each: it saves the host's time onl
 
 from __future__ import annotations
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import cycles_until

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import bytes_of, site_of, stall

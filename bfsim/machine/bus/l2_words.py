@@ -6,7 +6,7 @@ saves the host's time only. Where buffers lie in L2, nearly all that the bus doe
 
 from __future__ import annotations
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_jobs import charge_site, cycles_until

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import MutableSequence
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 
 State = MutableSequence[int]
 """The array, an int64 one, as compiled code sees it."""

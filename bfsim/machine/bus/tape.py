@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.calls import work as numbers
 from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w

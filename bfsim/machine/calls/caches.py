@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 from bfsim.chip.block_spec import CacheSpec
 from bfsim.chip.memory_map import Region
 from bfsim.errors import FirmwareError, LinkError
-from bfsim.kernel.calls.access_trace import MAX_REGIONS, CachedRegion, CacheSize, Policy
+from bfsim.kernel.calls.access_log import MAX_REGIONS, Policy
+from bfsim.kernel.calls.access_trace import CachedRegion, CacheSize
 from bfsim.linker import LinkMap
 from bfsim.machine.memories import Memories
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus.state import FETCH_BYTES, State
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from bfsim.chip.block_spec import CacheSpec
 from bfsim.kernel import Work
-from bfsim.kernel.calls.access_trace import FUNCTION, AccessTrace
+from bfsim.kernel.calls.access_log import FUNCTION
+from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.calls.python_calls import log_of
 from bfsim.kernel.costs.counters import Counter
 from bfsim.kernel.native.entries import NativeEntry

@@ -10,7 +10,7 @@ import simpy
 from bfsim.chip.spec import ChipSpec
 from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.core.handovers import Handovers
 from bfsim.machine.core.interrupts import Interrupts

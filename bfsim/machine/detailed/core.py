@@ -14,7 +14,7 @@ from typing import Any
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.memory_owners import owner_for

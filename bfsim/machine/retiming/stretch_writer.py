@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.block_spec import EventSpec
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at

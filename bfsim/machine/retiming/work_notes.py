@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel.calls import access_trace as log
+from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.memories import Row

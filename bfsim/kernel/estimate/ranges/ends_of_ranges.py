@@ -6,17 +6,13 @@ Of a value that goes round a loop it knows only what the loop makes of it, whate
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from bfsim.kernel.estimate.ranges.unsigned_ranges import said_between
+from bfsim.kernel.estimate.ranges.said import Said, said_before, said_between
 from bfsim.kernel.estimate.ranges.value_ranges import LARGEST, LEAST, Range
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.ir.widths import WORD
 
 ANY = LEAST, LARGEST
-Said = tuple[str, str, str]
-"""What a test says: a value, a relation, and another value."""
 
 
 class EndsOfRanges:
@@ -50,7 +46,7 @@ class EndsOfRanges:
             arms = [self._on_way(value, way, label) for way, value in arms_of(each).items()]
             return min(low for low, _ in arms), max(high for _, high in arms)
         if each.opcode in ("add", "sub") and is_number(each.operands[1]):
-            low, high = self._within(each.operands[0], [*self._said_before(label)])
+            low, high = self._within(each.operands[0], [*said_before(self.flow, label)])
             more = int(each.operands[1]) * (1 if each.opcode == "add" else -1)
             return max(low + more, LEAST), min(high + more, LARGEST)  # it does not overflow
         if each.opcode == "and" and is_number(each.operands[1]) and int(each.operands[1]) >= 0:
@@ -61,15 +57,7 @@ class EndsOfRanges:
 
     def _on_way(self, value: str, label: str, behind: str) -> Range:
         """Return the range of a value on the way from a block to the one `behind`."""
-        return self._within(value, [*self._said_before(label), *said_between(self.flow, label, behind)])
-
-    def _said_before(self, label: str) -> Iterator[Said]:
-        """What tests on the only way to a block say."""
-        seen = {label}
-        while len(before := self.flow.predecessors[label]) == 1 and before[0] not in seen:
-            yield from said_between(self.flow, before[0], label)
-            label = before[0]
-            seen.add(label)
+        return self._within(value, [*said_before(self.flow, label), *said_between(self.flow, label, behind)])
 
     def _within(self, value: str, said: list[Said]) -> Range:
         """Return what is left of the range of a value for which that is said."""

@@ -6,7 +6,7 @@ counts for what is computed of it there, and not for the value: when GCC makes i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from bfsim.kernel.estimate.arithmetic.remainders import quotient_of_rest
 from bfsim.kernel.estimate.ranges.range_arithmetic import (
@@ -20,8 +20,9 @@ from bfsim.kernel.estimate.ranges.range_arithmetic import (
     widened,
     within,
 )
+from bfsim.kernel.estimate.ranges.said import Said, said_before, said_between
 from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.text import INVERTED, SWAPPED, Instruction, arms_of, is_number, predicate
+from bfsim.kernel.ir.text import Instruction, arms_of, is_number
 
 MOST_ROUNDS = 12
 """[ours] So often a range may grow before it is widened."""
@@ -35,22 +36,10 @@ class UnsignedRanges:
     def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
         self.found: dict[str, Range] = {}
-        self.said: dict[str, Facts] = {}
-        for label in flow.order:
-            self.said[label] = self._said_before(label)
+        self.said = {label: _facts([*said_before(flow, label)]) for label in flow.order}
         rounds = 0
         while self._grow(rounds >= MOST_ROUNDS):
             rounds += 1
-
-    def _said_before(self, label: str) -> Facts:
-        """Return what tests on the only way to a block say."""
-        before = self.flow.predecessors[label]
-        if len(before) != 1 or before[0] not in self.said:
-            return {}
-        found = {value: list(said) for value, said in self.said[before[0]].items()}
-        for value, relation, other in said_between(self.flow, before[0], label):
-            found.setdefault(value, []).append((relation, other))
-        return found
 
     def _grow(self, widens: bool) -> bool:
         """Go through the routine once more, and return whether any range grew."""
@@ -108,12 +97,9 @@ class UnsignedRanges:
         return found
 
 
-def said_between(flow: ControlFlow, label: str, behind: str) -> Iterator[tuple[str, str, str]]:
-    """What the test at the end of a block says where that leads on to `behind`: a value, a relation, and another value."""
-    end, ways = flow.blocks[label].terminator, flow.blocks[label].successors
-    test = flow.instruction(end.operands[0]) if end.opcode == "br" and end.operands else None
-    if test is not None and test.opcode == "icmp" and len(set(ways)) == 2:
-        relation = predicate(test) if ways[0] == behind else INVERTED[predicate(test)]
-        one, other = test.operands[:2]
-        yield one, relation, other
-        yield other, SWAPPED[relation], one
+def _facts(said: Sequence[Said]) -> Facts:
+    """Return what tests say by the values that they say it of, what the first test on the way says first."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for value, relation, other in reversed(said):
+        found.setdefault(value, []).append((relation, other))
+    return found

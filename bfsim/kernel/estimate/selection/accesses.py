@@ -6,8 +6,7 @@ from dataclasses import replace
 
 from bfsim.kernel import operations
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
-from bfsim.kernel.estimate.selection.calls import Calls
-from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.ir.control_flow import pointee_nbytes
 from bfsim.kernel.ir.text import Instruction
@@ -19,12 +18,12 @@ LOADS = {8: Op.LOAD8, 16: Op.LOAD16, 32: Op.LOAD32}
 STORES = {8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
 
 
-class Accesses(Calls):
-    """Emits instructions into the block `label`; here those of loads, stores and addresses."""
+class Accesses:
+    """Loads, stores and addresses."""
 
-    def __init__(self, context: Context) -> None:
-        super().__init__(context)
-        self.flow = context.flow
+    def __init__(self, emitter: Emitter) -> None:
+        self.emitter, self.append = emitter, emitter.append
+        self.context, self.flow = emitter.context, emitter.context.flow
         self.beside: dict[str, list[str]] = {}
         """Blocks in which the pointer of a variable is computed from its neighbour's."""
 
@@ -67,10 +66,10 @@ class Accesses(Calls):
         """Compute a pointer from another one, once on each way; what is subtracted goes through the data registers."""
         known = self.beside.setdefault(variable.name, [])
         for label in known:
-            if label in self.flow.dominators[self.label]:
+            if label in self.flow.dominators[self.emitter.label]:
                 return f"{variable.name}.{label}"
-        known.append(self.label)
-        address = f"{variable.name}.{self.label}"
+        known.append(self.emitter.label)
+        address = f"{variable.name}.{self.emitter.label}"
         if len(variable.distance) == 1 and variable.distance[0][1] != -1:
             self.append(
                 Op.ALU, each, address, POINTER, (neighbour, POINTER), (self._scaled(variable, each), POINTER)
@@ -86,8 +85,8 @@ class Accesses(Calls):
         if times == 1:
             return name
         distance, entering = f"{variable.name}.distance", self.flow.entering(variable.loop)
-        if not any(instruction.result == distance for instruction in self.code.of[entering]):
-            self.code.add(
+        if not any(instruction.result == distance for instruction in self.emitter.code.of[entering]):
+            self.emitter.code.add(
                 entering,
                 MachineInstruction(Op.SHIFT, each.line, distance, DATA, ((self.context.name(name), DATA),)),
             )
@@ -123,16 +122,16 @@ class Accesses(Calls):
         for each in self.context.counters.eliminated.values():
             variable = each.variable
             if label == variable.loop.header and not each.is_stepped:
-                self.code.add(
+                self.emitter.code.add(
                     label,
                     MachineInstruction(Op.MOVE, variable.line, None, POINTER, ((variable.name, POINTER),)),
                 )
             if label in each.blocks:
                 terms = ((variable.name, POINTER), (self.context.name(variable.root), POINTER))
                 step = MachineInstruction(Op.ALU, variable.line, each.name, POINTER, terms)
-                self.code.add(label, step)
+                self.emitter.code.add(label, step)
                 if each.sums > 1:
-                    self.code.add(label, replace(step, uses=((each.name, POINTER),)))
+                    self.emitter.code.add(label, replace(step, uses=((each.name, POINTER),)))
 
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
@@ -143,15 +142,15 @@ class Accesses(Calls):
             entering, latch = self.flow.entering(variable.loop), variable.loop.latch
             if not variable.start:
                 start = MachineInstruction(Op.MOVE, line, variable.name, POINTER, ((variable.root, ANY),))
-                self.code.add(entering, start)
+                self.emitter.code.add(entering, start)
             total = self.context.name(variable.root)
             for name, times in variable.start:
                 op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
                 terms = ((total, POINTER), (self.context.name(name), POINTER))
-                self.code.add(entering, MachineInstruction(op, line, variable.name, POINTER, terms))
+                self.emitter.code.add(entering, MachineInstruction(op, line, variable.name, POINTER, terms))
                 total = variable.name
             if variable.offset_apart:
-                self.code.add(
+                self.emitter.code.add(
                     entering,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, ((variable.name, POINTER),)),
                 )
@@ -163,7 +162,7 @@ class Accesses(Calls):
                     each.variable is variable and not each.is_stepped
                     for each in self.context.counters.eliminated.values()
                 )
-                self.code.add(
+                self.emitter.code.add(
                     variable.loop.header if kept else latch,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, uses),
                 )
@@ -173,6 +172,6 @@ class Accesses(Calls):
                 )
                 if loose and self.context.profile.applies(Rule.POINTER_COPIES):
                     # the exits see the pointer before and after its step
-                    self.code.add(
+                    self.emitter.code.add(
                         latch, MachineInstruction(Op.MOVE, line, None, POINTER, ((variable.name, POINTER),))
                     )

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from bfsim.kernel.estimate.unoptimised.computing import Computing
 from bfsim.kernel.estimate.unoptimised.expressions import Expr, const, simplified
 from bfsim.kernel.estimate.unoptimised.registers import MODIFIERS
 from bfsim.kernel.ir.widths import WORD
 from bfsim.kernel.operations import ADD_IMMEDIATE, Op
 
-if TYPE_CHECKING:
-    from bfsim.kernel.estimate.unoptimised.values import ExpressionCode
-
 BYTE_MASKS = (0xFF, 0xFFFF)
 
 
-def offset_of(code: ExpressionCode, index: Expr, size: int) -> bool:
+def offset_of(code: Computing, index: Expr, size: int) -> bool:
     """Compute `index * size`; return whether it is in a pointer register.
 
     Factors of the index merge with the size, and a number that is added to the index is added to the product then.
@@ -39,7 +35,7 @@ def offset_of(code: ExpressionCode, index: Expr, size: int) -> bool:
     return pointer
 
 
-def _converted(code: ExpressionCode, index: Expr, *, to_pointer: bool) -> bool:
+def _converted(code: Computing, index: Expr, *, to_pointer: bool) -> bool:
     """Convert an index: a copy of what was computed, none of what was just loaded or extended."""
     if index.op in ("local", "load", "widen", "register") or index.unsigned:
         return code.value(index)
@@ -50,7 +46,7 @@ def _converted(code: ExpressionCode, index: Expr, *, to_pointer: bool) -> bool:
     return to_pointer or pointer
 
 
-def _converted_mask(code: ExpressionCode, index: Expr) -> bool:
+def _converted_mask(code: Computing, index: Expr) -> bool:
     """Conversions pass through masks."""
     inner, mask = index.args
     if mask.value in BYTE_MASKS or inner.is_leaf or inner.unsigned:

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from bfsim.kernel.costs.charges import Charge
 from bfsim.kernel.estimate.arithmetic.powers import by_power
+from bfsim.kernel.estimate.unoptimised.computing import Computing
 from bfsim.kernel.estimate.unoptimised.constants import product, unsigned_quotient
 from bfsim.kernel.estimate.unoptimised.expressions import Expr
 from bfsim.kernel.operations import COSTS, REGISTER_ARGUMENTS, SCRATCH_DATA_REGISTERS, Op
 
-if TYPE_CHECKING:
-    from bfsim.kernel.estimate.unoptimised.values import ExpressionCode
 
-
-def call(code: ExpressionCode, each: Expr) -> None:
+def call(code: Computing, each: Expr) -> None:
     """Call another kernel; its result is in R0."""
     _arguments(code, each.args)
     code.op(Op.CALL)
 
 
-def divide(code: ExpressionCode, each: Expr) -> None:
+def divide(code: Computing, each: Expr) -> None:
     """Divide: unsigned by a constant and signed by a power of two without a call, as GCC does; else by the library."""
     left, right = each.args
     if each.is_call:
@@ -38,7 +34,7 @@ def divide(code: ExpressionCode, each: Expr) -> None:
         code.op(*(plan.ops if plan else (Op.IMM, Op.MUL32)), Op.ALU)
 
 
-def _library(code: ExpressionCode, op: str) -> list[Charge]:
+def _library(code: Computing, op: str) -> list[Charge]:
     library = code.profile.library
     routine = {
         "sdiv": library.divide_signed, "udiv": library.divide_unsigned,
@@ -52,7 +48,7 @@ def _library(code: ExpressionCode, op: str) -> list[Charge]:
     ]
 
 
-def _arguments(code: ExpressionCode, given: tuple[Expr, ...]) -> None:
+def _arguments(code: Computing, given: tuple[Expr, ...]) -> None:
     """Compute what is no variable, then put everything in its place.
 
     What is computed first must not be in the way: it is moved to its register last.

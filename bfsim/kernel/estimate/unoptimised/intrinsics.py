@@ -5,15 +5,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from bfsim.kernel.estimate.unoptimised.computing import Computing
 from bfsim.kernel.estimate.unoptimised.expressions import Expr
 from bfsim.kernel.intrinsics import BY_NAME
 from bfsim.kernel.operations import Op
 from bfsim.kernel.types import PAIR
-
-if TYPE_CHECKING:
-    from bfsim.kernel.estimate.unoptimised.values import ExpressionCode
 
 THROUGH_MEMORY = (Op.STORE32, Op.LOAD32)
 TO_LONG_LONG = (
@@ -24,7 +20,7 @@ TO_LONG_LONG = (
 UPPER_WORD = (Op.LOAD32, Op.SHIFT, Op.STORE32, Op.IMM, *THROUGH_MEMORY)
 
 
-def intrinsic(code: ExpressionCode, each: Expr) -> None:
+def intrinsic(code: Computing, each: Expr) -> None:
     """Compute the operands, then let them and the result through memory."""
     found = BY_NAME[each.name]
     for value in each.args:
@@ -35,6 +31,6 @@ def intrinsic(code: ExpressionCode, each: Expr) -> None:
     code.op(*(TO_LONG_LONG if found.gives is PAIR else THROUGH_MEMORY))
 
 
-def word(code: ExpressionCode, each: Expr) -> None:
+def word(code: Computing, each: Expr) -> None:
     """Take one word of two."""
     code.op(*(UPPER_WORD if each.name == "upper" else (Op.LOAD32,)))

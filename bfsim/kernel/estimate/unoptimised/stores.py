@@ -5,20 +5,16 @@ The last operation, of an assignment to an array, comes after the address of the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from bfsim.kernel.estimate.unoptimised.computing import Computing
 from bfsim.kernel.estimate.unoptimised.expressions import BITWISE, Expr, TreeStatement
 from bfsim.kernel.ir.widths import PAIR
 from bfsim.kernel.operations import ADD_IMMEDIATE, Op
-
-if TYPE_CHECKING:
-    from bfsim.kernel.estimate.unoptimised.values import ExpressionCode
 
 STORES = {1: Op.STORE8, 8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
 FOLDED = ("+", "-", "*", "<<", "neg", "inverse")  # low bits of these come of low bits alone
 
 
-def assign(code: ExpressionCode, each: TreeStatement) -> None:
+def assign(code: Computing, each: TreeStatement) -> None:
     """Compute and store."""
     code.line = each.line
     target = each.target
@@ -38,7 +34,7 @@ def assign(code: ExpressionCode, each: TreeStatement) -> None:
         code.makes(target)
 
 
-def _store_low_bits(code: ExpressionCode, value: Expr, target: Expr) -> None:
+def _store_low_bits(code: Computing, value: Expr, target: Expr) -> None:
     """Store in an array of bytes or halves. Only unsigned types wrap, so a sum for a signed one is converted again."""
     value = _stripped(value, target.bits)
     pointer = low_bits_of(code, value, target, late=target.unsigned)
@@ -50,7 +46,7 @@ def _store_low_bits(code: ExpressionCode, value: Expr, target: Expr) -> None:
     code.makes(target)
 
 
-def low_bits_of(code: ExpressionCode, value: Expr, target: Expr, *, late: bool) -> bool:
+def low_bits_of(code: Computing, value: Expr, target: Expr, *, late: bool) -> bool:
     """Compute as many bits of `value` as `target` has; return whether they are in a pointer register.
 
     The operands are converted, each by a copy. `late`: the operation comes after the address of an element, and its
@@ -89,7 +85,7 @@ def low_bits_of(code: ExpressionCode, value: Expr, target: Expr, *, late: bool) 
     return _operation(code, value, pointers)
 
 
-def _operation(code: ExpressionCode, value: Expr, pointers: list[bool]) -> bool:
+def _operation(code: Computing, value: Expr, pointers: list[bool]) -> bool:
     last = value.args[-1]
     if value.op == "+" and not last.is_const:
         return code.add(pointers, to_pointer=True)

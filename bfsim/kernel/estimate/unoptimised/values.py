@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from bfsim.kernel.estimate.unoptimised.addresses import offset_of
 from bfsim.kernel.estimate.unoptimised.calls import call, divide
+from bfsim.kernel.estimate.unoptimised.computing import Computing
 from bfsim.kernel.estimate.unoptimised.constants import product
 from bfsim.kernel.estimate.unoptimised.expressions import BITWISE, DIVISIONS, Expr, rotated
 from bfsim.kernel.estimate.unoptimised.intrinsics import intrinsic, word
-from bfsim.kernel.estimate.unoptimised.registers import HALF, MODIFIERS, Registers
+from bfsim.kernel.estimate.unoptimised.registers import HALF, MODIFIERS
 from bfsim.kernel.estimate.unoptimised.stores import low_bits_of
 from bfsim.kernel.ir.widths import WORD
 from bfsim.kernel.operations import ADD_IMMEDIATE, COMPARE_IMMEDIATE, COMPARE_UNSIGNED_IMMEDIATE, Op
@@ -21,14 +22,10 @@ ZERO_EXTENSIONS = (0xFF, 0xFFFF)  # R.B (Z), R.L (Z)
 OPERATIONS = {"-": Op.ALU, "neg": Op.ALU, "inverse": Op.ALU, "abs": Op.DSP_ALU}
 
 
-class ExpressionCode(Registers):
-    """Computes expressions. A method that returns a truth value tells whether the result is in a pointer register."""
+class ExpressionCode(Computing):
+    """Computes expressions: of each kind of them, its operations."""
 
     def value(self, each: Expr, *, adds: bool = False, waits: bool = False, outermost: bool = False) -> bool:
-        """Compute `each`. `adds`: an addition or a copy takes it; `waits`: others are computed before it is used.
-
-        `outermost`: it is all that an assignment computes.
-        """
         match each.op:
             case "const":
                 self.number(each.value, pointer=adds)
@@ -218,7 +215,6 @@ class ExpressionCode(Registers):
         self.makes(each)
 
     def address(self, element: Expr) -> None:
-        """Put the address of an element into a pointer register."""
         self.op(Op.LOAD32)
         index, size = element.args[0], element.bits // 8
         if not index.is_const:

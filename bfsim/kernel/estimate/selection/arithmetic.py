@@ -1,0 +1,157 @@
+"""Arithmetic: sums, shifts, logic, products, and extensions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bfsim.kernel import operations
+from bfsim.kernel.estimate.arithmetic.multiples import multiple
+from bfsim.kernel.estimate.selection.divisions import Divisions
+from bfsim.kernel.estimate.selection.emitter import Emitter
+from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.ir.text import Instruction, is_number
+from bfsim.kernel.operations import Op
+from bfsim.kernel.rules import Rule
+
+ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
+EXTENDING_MASKS = {"255": 8, "65535": 16}
+
+
+class Arithmetic:
+    """Arithmetic on words."""
+
+    def __init__(self, emitter: Emitter, divisions: Divisions) -> None:
+        self.emitter, self.append = emitter, emitter.append
+        self.context, self.flow = emitter.context, emitter.context.flow
+        self.divisions = divisions
+
+    def add(self, each: Instruction) -> None:
+        if self.context.folding.in_shifted_sum(each):
+            return
+        if (product := self.context.folding.accumulates(each)) is not None:
+            sum_before = next(operand for operand in each.operands if operand != product.result)
+            factors = ((operand, DATA) for operand in product.operands[:2])
+            self.append(Op.MAC, each, each.result, DATA, (sum_before, DATA), *factors)
+            return
+        if (plan := self.context.folding.shift_add(each)) is not None:
+            shifted, other = plan
+            self.append(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
+            return
+        if (division := self.context.folding.remainder(each)) is not None:
+            rest = replace(each, opcode=division.opcode.replace("div", "rem"), operands=division.operands)
+            self.divisions.divide(rest)
+            return
+        left, right = each.operands[:2]
+        if (total := self.context.folding.added_flag(each)) is not None:
+            self.append(Op.ALU, each, each.result, ANY, (total, ANY))
+            return
+        if self.context.narrow.narrowed(each):
+            self.append(Op.MOVE, each, None, DATA)
+            self.append(Op.ALU, each, None, DATA, (left, DATA))
+        if is_number(right) and int(right) in operations.ADD_IMMEDIATE and each.opcode == "add":
+            self.append(Op.ALU, each, each.result, ANY, (left, ANY), overwrites=(left,))
+        elif each.opcode == "sub" and left == "0":
+            self.append(Op.ALU, each, each.result, DATA, (right, DATA))
+        else:
+            self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
+
+    def shift(self, each: Instruction) -> None:
+        if self.context.is_alias(each):
+            return
+        if self.context.folding.in_shift_add(each) or self._is_half_extension(each):
+            return
+        if (word := self.context.folding.counted_bits(each)) is not None:
+            self.append(Op.ALU, each, each.result, DATA, (word, DATA))
+            self.append(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+            return
+        value, amount = each.operands[:2]
+        if (pair := self.context.folding.shifted_sum(each)) is not None:
+            self.append(Op.ADD_SHIFT, each, each.result, ANY, (pair[0], ANY), (pair[1], ANY), overwrites=pair)
+        elif each.opcode == "ashr" and (source := self.context.folding.extension_of(each)):
+            self.append(Op.EXTEND, each, each.result, DATA, (source, DATA))
+        elif amount.isdigit():
+            near = int(amount) in operations.ADDRESS_SHIFTS and each.opcode != "ashr"
+            kept = len(self.flow.users.get(value, [])) > 1  # three operands take the long form
+            where = ANY if near else DATA
+            nbytes = operations.LONG_FORM_BYTES if kept else None
+            self.append(Op.SHIFT, each, each.result, where, (value, where), nbytes=nbytes)
+        else:
+            self.append(Op.SHIFT, each, each.result, DATA, (value, DATA), (amount, DATA), overwrites=(value,))
+
+    def _is_half_extension(self, each: Instruction) -> bool:
+        users = self.flow.users.get(each.result or "", [])
+        return each.opcode == "shl" and bool(users) and all(
+            self.context.folding.extension_of(user) == each.operands[0] for user in users
+        )  # fmt: skip
+
+    def logic(self, each: Instruction) -> None:
+        left, right = each.operands[:2]
+        folding = self.context.folding
+        if folding.in_bit_test(each) or folding.is_shift_mask(each) or folding.in_sunk_mask(each):
+            return
+        if each.opcode == "and" and right in EXTENDING_MASKS:
+            self.append(Op.EXTEND, each, each.result, DATA, (left, DATA))
+        elif self._is_single_bit(each.opcode, right):
+            self.append(Op.ALU, each, each.result, DATA, (left, DATA), overwrites=(left,))
+        else:
+            self.append(Op.ALU, each, each.result, DATA, (left, DATA), (right, DATA))
+
+    def _is_single_bit(self, opcode: str, right: str) -> bool:
+        """Whether BITSET, BITCLR, BITTGL or NOT does it."""
+        if not is_number(right) or not self.context.profile.applies(Rule.SINGLE_BITS):
+            return False
+        mask = int(right)
+        bits = ~mask if opcode == "and" else mask
+        return (opcode == "xor" and mask == -1) or (bits & 0xFFFFFFFF).bit_count() == 1
+
+    def multiply(self, each: Instruction) -> None:
+        left, right = each.operands[:2]
+        if self._steps_along(each) or self.context.folding.accumulated(each) is not None:
+            return
+        if (
+            is_number(right)
+            and (plan := multiple(int(right))) is not None
+            and (self.context.narrow.in_narrow_tree(each) or not self._short(each))
+        ):
+            value = left
+            for number, op in enumerate(plan):
+                result = each.result if number == len(plan) - 1 else f"{each.result}.{number}"
+                is_sum = (
+                    Op.SHIFT in plan[max(number - 1, 0) : number]
+                )  # of (x << 7) + x: its shift is free in either bank
+                bank = POINTER if op is Op.ADD_SHIFT and not is_sum else ANY
+                self.append(op, each, result, bank, (value, bank), (left, bank))
+                value = result or ""
+        elif self._short(each) or self.context.narrow.in_narrow_tree(each):
+            for factor in dict.fromkeys((left, right)):
+                if self.context.narrow.extended_for_product(factor):
+                    self.append(Op.EXTEND, each, None, DATA, (factor, DATA))
+            self.append(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
+        else:
+            self.append(
+                Op.MUL32, each, each.result, DATA, (left, DATA), (right, DATA), overwrites=(left, right)
+            )
+
+    def _steps_along(self, each: Instruction) -> bool:
+        """A product of a counter: an addition per iteration takes its place (strength reduction)."""
+        loop, increment = self.flow.innermost(self.emitter.label), self.context.demanded.stepped(each)
+        if loop is None or increment is None:
+            return False
+        stride = f"{each.result}.stride"
+        self.emitter.code.add(
+            self.flow.entering(loop), MachineInstruction(Op.IMM, each.line, each.result, ANY)
+        )
+        uses = (
+            ((each.result or "", ANY), (stride, ANY)) if increment.symbolic else ((each.result or "", ANY),)
+        )
+        self.emitter.code.add(loop.latch, MachineInstruction(Op.ALU, each.line, each.result, ANY, uses))
+        return True
+
+    def _short(self, each: Instruction) -> bool:
+        return all(self.context.folding.is_short(operand) for operand in each.operands[:2])
+
+    def extend(self, each: Instruction) -> None:
+        if " i1 " in each.text:
+            self.append(Op.CC_MOVE, each, each.result, DATA)
+        elif not self.context.is_alias(each):
+            self.append(Op.EXTEND, each, each.result, DATA, (each.operands[0], DATA))

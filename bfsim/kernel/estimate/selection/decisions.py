@@ -1,0 +1,167 @@
+"""Decisions: comparisons, conditions, and choices without a branch."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bfsim.kernel import operations
+from bfsim.kernel.estimate.choices.if_conversion import ConversionKind, ConvertedIf
+from bfsim.kernel.estimate.conditions.joined_tests import Range
+from bfsim.kernel.estimate.selection.constants import load_constant
+from bfsim.kernel.estimate.selection.emitter import Emitter
+from bfsim.kernel.estimate.selection.machine_code import RegisterBank
+from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
+from bfsim.kernel.ir.widths import WORD
+from bfsim.kernel.operations import Op
+from bfsim.kernel.rules import Rule
+
+ANY, DATA = RegisterBank.ANY, RegisterBank.DATA
+SIGNS = {("slt", "0"), ("sgt", "-1")}
+"""Tests of a sign, which is a shift."""
+
+
+class Decisions:
+    """Comparisons, and what is chosen or told by them."""
+
+    def __init__(self, emitter: Emitter) -> None:
+        self.emitter, self.append = emitter, emitter.append
+        self.context, self.flow = emitter.context, emitter.context.flow
+
+    def compare(self, each: Instruction) -> None:
+        if self.context.folding.bit_tested(each) is not None:
+            masked = self.context.folding.bit_tested(each) or ""
+            self.append(Op.BIT_TEST, each, None, DATA, (masked, DATA))
+            return
+        if (joined := self.context.ranges.get(self.emitter.label)) is not None and _decides(
+            self.flow.blocks[self.emitter.label].terminator, each
+        ):
+            if self.emitter.label == joined.first:
+                self._in_range(each, joined)
+            return
+        left, right = self.context.folding.compared(each)
+        if is_number(right) and _is_near(predicate(each), int(right)):
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY))
+        elif is_number(right) and self.context.profile.applies(Rule.COMPARED):
+            self.emitter.code.add(
+                self.emitter.label, load_constant(f"#{right}", each.line, f"{each.result}.bound")
+            )
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
+        else:
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
+
+    def _in_range(self, each: Instruction, tested: Range) -> None:
+        """The distance from the lower end, compared as an unsigned number."""
+        value, distance, length = tested.value, f"{each.result}.distance", tested.high - tested.low
+        if -tested.low in operations.ADD_IMMEDIATE and tested.low:
+            self.append(Op.ALU, each, distance, ANY, (value, ANY), overwrites=(value,))
+        elif tested.low:
+            self.append(Op.ALU, each, distance, ANY, (value, ANY), (f"#{-tested.low}", ANY))
+        value = distance if tested.low else value
+        if length in operations.COMPARE_UNSIGNED_IMMEDIATE:
+            self.append(Op.COMPARE, each, None, DATA, (value, ANY))
+        else:
+            self.emitter.code.add(
+                self.emitter.label, load_constant(f"#{length}", each.line, f"{each.result}.bound")
+            )
+            self.append(Op.COMPARE, each, None, DATA, (value, ANY), (f"{each.result}.bound", ANY))
+
+    def choose(self, each: Instruction) -> None:
+        """A select that LLVM itself formed."""
+        if each.text.split(",")[1].strip().startswith("i1"):
+            self.joined(each)
+        else:
+            yes, no = each.operands[1:3]
+            self.append(
+                Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=self._either(yes, no)
+            )
+
+    def joined(self, each: Instruction) -> None:
+        """`and` or `or` of two conditions: in C, a branch of its own."""
+        if all(user.opcode == "br" for user in self.flow.users.get(each.result or "", [])):
+            self.append(Op.BRANCH_NOT_TAKEN, each, None, DATA)
+        else:
+            self.append(Op.CC_MOVE, each, each.result, DATA)
+            self.append(Op.ALU, each, each.result, DATA)
+
+    def differ(self, each: Instruction) -> None:
+        """Whether two conditions differ: both are moved to registers, which are compared, or one of them is inverted."""
+        if each.operands[1] == "true":
+            return
+        flags = [f"{each.result}.{number}" for number in range(2)]
+        for flag in flags:
+            self.append(Op.CC_MOVE, each, flag, DATA)
+        decides = all(user.opcode == "br" for user in self.flow.users.get(each.result or "", []))
+        uses = ((flag, DATA) for flag in flags)
+        self.append(Op.COMPARE if decides else Op.ALU, each, None if decides else each.result, DATA, *uses)
+
+    def converted(self, each: Instruction, conversion: ConvertedIf) -> None:
+        """An `if` without a branch: its operation stands in the block that tests."""
+        result = self.context.converted(conversion)
+        if conversion.kind is ConversionKind.ABSOLUTE:
+            self.append(Op.DSP_ALU, each, result, DATA, (conversion.operands[0], DATA))
+            if self.context.folding.is_short(conversion.operands[0]):
+                self.append(Op.EXTEND, each, result, DATA, (result, DATA))
+        elif conversion.kind is ConversionKind.EXTREME:
+            self.append(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in conversion.operands))
+        elif conversion.kind is ConversionKind.CLAMP:
+            *inner, bound = conversion.operands
+            self.append(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))
+            self.append(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
+        elif conversion.kind is ConversionKind.FLAG:
+            self._flag(each, result, conversion)
+        elif conversion.kind is ConversionKind.SHIFTED_FLAG:
+            self._flag(each, f"{result}.flag", conversion)
+            op = Op.ALU if "-1" in conversion.operands else Op.SHIFT
+            self.append(op, each, result, DATA, (f"{result}.flag", DATA))
+        else:
+            if conversion is not self.context.if_conversion.by_label[conversion.label]:
+                self._test_again()
+            uses = tuple((value, ANY) for value in conversion.operands)
+            over = self._either(*conversion.operands)
+            self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=over)
+
+    def _flag(self, each: Instruction, result: str, conversion: ConvertedIf) -> None:
+        """The condition as 0 or 1: what no comparison says is the opposite of what one does [cstoresi4 in bfin.md]."""
+        self.append(Op.CC_MOVE, each, result, DATA)
+        test = self.flow.instruction(self.flow.blocks[conversion.label].terminator.operands[0])
+        tells = test is not None and test.opcode == "icmp" and conversion.label not in self.context.ranges
+        if test is None or not tells or not self.context.profile.applies(Rule.OPPOSITE_FLAGS):
+            return
+        relation = predicate(test) if conversion.operands[1] == "0" else INVERTED[predicate(test)]
+        if self.context.folding.bit_tested(test) is not None:
+            is_opposite = relation == "eq"
+        elif is_number(test.operands[1]):
+            is_opposite = (
+                relation[1:] in ("gt", "ge") and (predicate(test), test.operands[1]) not in SIGNS
+            ) or (relation == "ne" and conversion.kind is ConversionKind.FLAG and conversion.phi.bits < WORD)
+        else:
+            is_opposite = relation == "ne"
+        if is_opposite:
+            self.append(Op.ALU, each, result, DATA, (result, DATA), overwrites=(result,))
+
+    def _test_again(self) -> None:
+        """Each of several conditional moves has a comparison of its own [noce_emit_cmove in ifcvt.cc]."""
+        tests = [
+            each
+            for each in self.emitter.code.of.get(self.emitter.label, ())
+            if each.op in (Op.COMPARE, Op.BIT_TEST)
+        ]
+        for each in tests[-1:]:
+            self.emitter.code.add(self.emitter.label, replace(each))
+
+    def _either(self, yes: str, no: str) -> tuple[str, ...]:
+        """What a conditional move may overwrite: to GCC, either operand."""
+        return (yes, no) if self.context.profile.applies(Rule.CONDITIONAL_MOVES) else (no,)
+
+
+def _decides(branch: Instruction, test: Instruction) -> bool:
+    return branch.operands[:1] == (test.result,)
+
+
+def _is_near(relation: str, bound: int) -> bool:
+    """Whether a comparison takes its bound as an immediate; x < 4 may be written x <= 3."""
+    if relation in ("eq", "ne"):
+        return bound in operations.COMPARE_IMMEDIATE
+    allowed = operations.COMPARE_UNSIGNED_IMMEDIATE if relation[0] == "u" else operations.COMPARE_IMMEDIATE
+    other = bound - 1 if relation.endswith(("lt", "ge")) else bound + 1
+    return bound in allowed or other in allowed
