@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
 WORD_BYTES = 4
@@ -13,3 +15,17 @@ REGISTERS = ("R0", "R1", "R2")
 RESULT = "R0"
 KEPT = ("R4", "R5", "R6", "R7", "P3", "P4", "P5", "FP", "SP")
 """[GCC] Registers that a function leaves as they were."""
+GIVEN = frozenset({*REGISTERS, "SP", "FP", "RETS", "PC", "SYSCFG", "CLOCK", "CYCLES_OFFSET", "CYCLES2"})
+"""Registers that are set before code is called as a function. All others are 0 then, the lengths of circular buffers among them [GCC]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contract:
+    """What holds for code that is called as one function, with `GIVEN`.
+
+    `read`: registers that are read when it has returned, and may be no 0 when it is called. `is_trusted`: the compiler made it of a kernel
+    in Python, so that it returns to where it was called and its accesses are aligned. Other code is left where it does not keep to that.
+    """
+
+    read: frozenset[str]
+    is_trusted: bool

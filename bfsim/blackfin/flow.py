@@ -77,6 +77,13 @@ def _edges(code: Code, block: Block, targets: Sequence[int]) -> Iterator[Edge]:
         yield Edge(start, block.end, Way.FALLS)
 
 
+def is_closed(code: Code) -> bool:
+    """Whether control comes in at one entry alone, and goes nowhere that code computes but back from functions."""
+    return len(code.entries) == 1 and all(
+        each.returns or not each.is_computed for each in code.blocks.values()
+    )
+
+
 def returns(code: Code) -> Mapping[int, frozenset[int]]:
     """Return of each block that ends a function by a return where it goes: behind the calls of the function that are seen."""
     onward = _onward(edges(code))

@@ -27,8 +27,9 @@ Blocks = Mapping[int, ir.Block]
 class Jumps:
     """Ends the native code of blocks.
 
-    `returns`: of a block that returns, where it most likely goes. `at_once`: loops that are made at once, by their heads. `says_from`:
-    FROM says which instruction has made a jump to a computed address.
+    `returns`: of a block that returns, where it most likely goes. `is_closed`: a computed address is one that is likely, or not of the
+    code: control comes to no other block from elsewhere, so that LLVM sees loops as loops. `at_once`: loops that are made at once, by
+    their heads. `says_from`: FROM says which instruction has made a jump to a computed address.
     """
 
     def __init__(
@@ -38,11 +39,13 @@ class Jumps:
         counting: Counting,
         *,
         returns: Mapping[int, frozenset[int]],
+        is_closed: bool,
         at_once: Mapping[int, AtOnce],
         says_from: bool,
     ) -> None:
         self._function, self._code, self._counting = function, code, counting
         self._returns, self._at_once, self._says_from = returns, at_once, says_from
+        self._is_closed, self._unknown = is_closed, function.new_block("unknown")
         self.at: Blocks = {start: function.new_block(f"at_{start:08x}") for start in code.blocks}
         self.last_turns: list[Blocks] = []
         """Of each loop that is made at once the copies of its blocks, for the last turn."""
@@ -72,19 +75,17 @@ class Jumps:
             builder.branch(self.at[flow.target])
 
     def dispatch(self) -> None:
-        """Go from anywhere to the address in PC."""
+        """Go from anywhere, or from outside alone, to the address in PC."""
         builder = ir.IRBuilder(self._function.dispatch)
-        unknown = self._function.new_block("unknown")
-        choice = builder.switch(self._function.read(builder, "PC"), unknown)
-        for each in self._code.targets:
+        choice = builder.switch(self._function.read(builder, "PC"), self._unknown)
+        for each in self._code.entries if self._is_closed else self._code.targets:
             choice.add_case(I32(each), self.at[each])
-        builder.position_at_end(unknown)
-        self._function.leave_for(builder, Event.UNKNOWN_TARGET)
+        self._function.leave_for(ir.IRBuilder(self._unknown), Event.UNKNOWN_TARGET)
 
     def _jump(self, builder: ir.IRBuilder, source: Block, target: ir.Value, likely: Blocks) -> None:
         """Go from the end of a block to a computed address, which is most likely one of a few."""
         self._function.write(builder, "PC", target)
-        others = self._function.dispatch
+        others = self._unknown if self._is_closed else self._function.dispatch
         if self._says_from:
             others = self._function.new_block("others")
             said = ir.IRBuilder(others)

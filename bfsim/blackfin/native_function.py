@@ -5,7 +5,7 @@ Registers are slots on its stack, which LLVM turns into its own; in a large prog
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from llvmlite import ir
 
@@ -53,16 +53,20 @@ class NativeFunction:
         builder.store(I32(event), self.event)
         builder.branch(self.leave)
 
-    def fetch_registers(self, builder: ir.IRBuilder) -> None:
-        """Fetch the registers that the code touches."""
+    def fetch_registers(self, builder: ir.IRBuilder, given: Container[str]) -> None:
+        """Fetch the registers that the code touches, those that are `given`: others are 0, so that LLVM need not care for what they hold."""
         for name, slot in self._copied():
+            kind = ir.IntType(width(name))
+            if name not in given:
+                builder.store(kind(0), slot)
+                continue
             value = builder.load(self.place(builder, name), typ=I64, align=8)
-            builder.store(value if width(name) == 64 else builder.trunc(value, ir.IntType(width(name))), slot)
+            builder.store(value if kind == I64 else builder.trunc(value, kind), slot)
 
-    def give_registers_back(self, builder: ir.IRBuilder, results: frozenset[str] | None) -> None:
-        """Give back the registers that are read, all if it is not said which: LLVM need not keep what others hold, most of the flags."""
+    def give_registers_back(self, builder: ir.IRBuilder, read: Container[str]) -> None:
+        """Give back the registers that are `read`: LLVM need not keep what others hold, most of the flags."""
         for name, slot in self._copied():
-            if results is not None and name not in results:
+            if name not in read:
                 continue
             value = builder.load(slot)
             whole = value if width(name) == 64 else builder.zext(value, I64)

@@ -25,6 +25,7 @@ from bfsim.machine_code.native_code import native_code
 
 if TYPE_CHECKING:
     from bfsim.blackfin.blocks import Code
+    from bfsim.blackfin.convention import Contract
     from bfsim.blackfin.counters import Counted
 
 NAME = "blackfin"
@@ -32,10 +33,6 @@ NAME = "blackfin"
 OUTSIDE = 0xFFFFFFFE
 """[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
 
-
-LOOP_BLOCKS = 50
-"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth some of LLVM's effort: all of it takes nearly
-twice as long, and the code gains an eighth, for a compiler has optimised it already. For what is longer that takes ten times as long."""
 COUNT_BYTES = 4
 """Of the number of counters before machine code that is kept."""
 
@@ -102,8 +99,7 @@ class Processor:
     code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `effort`: of LLVM, if
     not by the code's size. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
     `tracing`: how accesses to memory are reported. `explore`: finds the code that can be reached from entries, if not from them alone.
-    `results`: registers that are read when it has run, if not all; others are not kept. `aligned`: code is left where an access is to
-    an address that is no multiple of its size, as the Blackfin does by an exception.
+    `contract`: of code that is called as one function, from its first address.
     """
 
     space: AddressSpace
@@ -116,8 +112,7 @@ class Processor:
     name: str = ""
     tracing: Tracing | None = None
     explore: Callable[[frozenset[int]], Counted] | None = None
-    results: frozenset[str] | None = None
-    aligned: bool = False
+    contract: Contract | None = None
 
     def prepared(self) -> Translated:
         """Return the native code of all that can be reached from the entries."""
@@ -132,7 +127,7 @@ class Processor:
         return self.run()
 
     def run(self) -> Event:
-        """Go on at PC until an event that is not a jump to code.
+        """Go on at PC until an event that is not a jump to code; code with a contract is left at that, too.
 
         Raises InstructionError where control comes to what is no instruction, and AccessError for an access where there is no memory;
         what the registers were by then is not known.
@@ -154,7 +149,7 @@ class Processor:
                 from bfsim.blackfin.decode import InstructionError  # few runs decode
 
                 raise InstructionError(self._refusal(self.state["PC"]))
-            if event is not Event.UNKNOWN_TARGET or self.state["PC"] == OUTSIDE:
+            if event is not Event.UNKNOWN_TARGET or self.state["PC"] == OUTSIDE or self.contract:
                 return event
 
     def _enter(self, translated: Translated) -> Event:
@@ -191,21 +186,20 @@ class Processor:
 
     def _module(self, found: Counted, symbol: str) -> tuple[str, Effort]:
         """Return the LLVM module of code, whose function is called `symbol`, and how much LLVM is to do for it."""
-        from bfsim.blackfin.translate import is_large, translate  # most starts find all native code
+        from bfsim.blackfin.translate import is_large, is_small, translate  # most starts find all native code
 
         text = translate(
             found,
             symbol,
             fuel=self.fuel is not None,
             tracing=self.tracing,
-            results=self.results,
-            aligned=self.aligned,
+            contract=self.contract,
         )
         if self.effort is not None:
             return text, self.effort
         if is_large(found.code):
             return text, Effort.NONE
-        return text, Effort.SOME if len(found.code.blocks) <= LOOP_BLOCKS else Effort.SELECTION
+        return text, Effort.SOME if is_small(found.code) else Effort.SELECTION
 
     def faulted_at(self) -> list[int]:
         """Return the addresses of the instructions of which one has made the access that was the last fault; most often that is known."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.convention import KEPT, RESULT, STACK, STACK_BYTES
+from bfsim.blackfin.convention import KEPT, RESULT, STACK, STACK_BYTES, Contract
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.image import Image
 from bfsim.blackfin.placed import ARRAYS, ARRAYS_BYTES, joined_ranges
@@ -24,6 +24,9 @@ from bfsim.errors import KernelError
 if TYPE_CHECKING:
     from bfsim.blackfin.blocks import Code
     from bfsim.blackfin.counters import Counted
+
+TRUSTED = Contract(frozenset({RESULT}), is_trusted=True)
+CHECKED = Contract(frozenset({RESULT, *KEPT, "FROM"}), is_trusted=False)
 
 
 @dataclass(eq=False)
@@ -62,8 +65,7 @@ class LoadedImage:
             {address},
             name=name,
             explore=partial(self._counted_from, timing),
-            results=frozenset({RESULT, *KEPT, "FROM"}) if is_checked else frozenset({RESULT}),
-            aligned=is_checked,
+            contract=CHECKED if is_checked else TRUSTED,
         )
         return Subroutine(symbol, address, processor, self.image)
 

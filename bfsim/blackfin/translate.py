@@ -14,17 +14,19 @@ from llvmlite import ir
 
 from bfsim.blackfin.alignment import Alignment
 from bfsim.blackfin.blocks import Block, Code, accesses_memory
+from bfsim.blackfin.convention import GIVEN, Contract
 from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.counting import Counting
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.effects import I32, I64, POINTER, Effects
 from bfsim.blackfin.event import Event
-from bfsim.blackfin.flow import returns
+from bfsim.blackfin.flow import is_closed, returns
 from bfsim.blackfin.host_places import HostPlaces
 from bfsim.blackfin.implied import implied
 from bfsim.blackfin.jumps import Jumps
 from bfsim.blackfin.loops_at_once import loops_at_once
 from bfsim.blackfin.native_function import NativeFunction
+from bfsim.blackfin.registers import SLOTS
 from bfsim.blackfin.reports import reports_of
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.tracing import Tracing
@@ -34,14 +36,20 @@ ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
 
-SMALL_PROGRAM_BLOCKS = 50
-"""[ours] Code of more blocks reports every access without asking first, and finds the way back from a function by its table: anything else
-takes LLVM up to twice the time there, two seconds of a cold start of the built-in firmware, and such code seldom runs."""
+SMALL_PROGRAM_BLOCKS = 200
+"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth some of LLVM's effort: all of it takes nearly twice
+as long, and the code gains an eighth, for a compiler has optimised it already. Longer code reports every access without asking first, and
+LLVM does less for it: anything else takes twice the time there, and such code seldom runs."""
 
 
 def is_large(code: Code) -> bool:
     """Whether registers stay in the state and LLVM does not optimise."""
     return len(code.blocks) > LARGE_PROGRAM_BLOCKS
+
+
+def is_small(code: Code) -> bool:
+    """Whether native code is to be fast, not soon there."""
+    return len(code.blocks) <= SMALL_PROGRAM_BLOCKS
 
 
 def translate(
@@ -50,48 +58,56 @@ def translate(
     *,
     fuel: bool = False,
     tracing: Tracing | None = None,
-    results: frozenset[str] | None = None,
-    aligned: bool = False,
+    contract: Contract | None = None,
 ) -> str:
     """Return the LLVM module of code; its function is called `symbol`. With `fuel`, the FUEL of the state is how many blocks it may run.
 
     With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
-    `results`: registers that somebody reads when it is left, if not all. `aligned`: it is left at an access that is not, and says which
-    instruction has made an access or a jump for which it is left.
+    `contract`: of code that is called as a function. Where that is not trusted, it says which instruction has made an access or a jump for
+    which it is left.
     """
-    read = None if results is None else results | ALWAYS_READ
-    return str(_Translation(of, symbol, fuel=fuel, tracing=tracing, aligned=aligned).module(read))
+    return str(_Translation(of, symbol, fuel=fuel, tracing=tracing, contract=contract).module())
 
 
 class _Translation:
     """The function while it is made."""
 
     def __init__(
-        self, of: Counted, symbol: str, *, fuel: bool, tracing: Tracing | None, aligned: bool
+        self,
+        of: Counted,
+        symbol: str,
+        *,
+        fuel: bool,
+        tracing: Tracing | None,
+        contract: Contract | None,
     ) -> None:
         self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
-        is_small = len(of.code.blocks) <= SMALL_PROGRAM_BLOCKS
+        self.given = contract.read | GIVEN if contract else SLOTS
+        self.read = contract.read | ALWAYS_READ if contract else SLOTS
+        is_checked = contract is not None and not contract.is_trusted
+        goes_back = contract is not None and contract.is_trusted and is_closed(of.code)
         self.function = NativeFunction(symbol, keeps_state=is_large(of.code))
-        self.places = HostPlaces(self.function.module, self.function.function) if aligned else None
-        self.alignment = Alignment(self.function) if aligned else None
+        self.places = HostPlaces(self.function.module, self.function.function) if is_checked else None
+        self.alignment = Alignment(self.function) if is_checked else None
         self.reports = None
         if tracing:
             entry = ir.IRBuilder(self.function.entry)
             block_at = entry.load(self.function.place(entry, "TRACE"), typ=POINTER)
-            self.reports = reports_of(entry, block_at, asks=is_small)
+            self.reports = reports_of(entry, block_at, asks=is_small(of.code))
         self.counting = Counting(self.function, of, () if fuel else implied(of.code), self.reports)
         self.jumps = Jumps(
             self.function,
             of.code,
             self.counting,
-            returns=returns(of.code) if is_small else {},
+            returns=returns(of.code) if goes_back or is_small(of.code) else {},
+            is_closed=goes_back,
             at_once={} if fuel else loops_at_once(of.code),
-            says_from=aligned,
+            says_from=is_checked,
         )
         self.values: dict[str, ir.Value] = {}
         """Registers behind the instructions of the block so far."""
 
-    def module(self, results: frozenset[str] | None) -> ir.Module:
+    def module(self) -> ir.Module:
         for block in self.code.blocks.values():
             self._block(block)
         first = self.jumps.at
@@ -101,7 +117,7 @@ class _Translation:
                 self._block(self.code.blocks[start])
         self.jumps.at = first
         self.jumps.dispatch()
-        self._leave(results)
+        self._leave()
         self._enter()
         return self.function.module
 
@@ -195,16 +211,16 @@ class _Translation:
                 found = again.choose(start, found)
         return found
 
-    def _leave(self, results: frozenset[str] | None) -> None:
+    def _leave(self) -> None:
         builder = ir.IRBuilder(self.function.leave)
         self.counting.work_out(builder)
         self.function.write(builder, "CLOCK", self.counting.clock(builder).ir)
         self.function.write(builder, "WAITED", self.counting.waited(builder))
-        self.function.give_registers_back(builder, results)
+        self.function.give_registers_back(builder, self.read)
         builder.ret(builder.load(self.function.event))
 
     def _enter(self) -> None:
         builder = ir.IRBuilder(self.function.entry)
-        self.function.fetch_registers(builder)
+        self.function.fetch_registers(builder, self.given)
         self.counting.begin(builder, self.function.read(builder, "CLOCK"))
         builder.branch(self.function.dispatch)
