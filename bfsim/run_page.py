@@ -17,6 +17,7 @@ from bfsim.mapping import map_memory
 from bfsim.recording import RecordingReader
 from bfsim.report.digest import cycle_digest
 from bfsim.report.heat import HeatedFrames, stages_of
+from bfsim.report.html.chosen import Chosen
 from bfsim.report.html.frames import MOST
 from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.pictures import Pictures
@@ -25,6 +26,7 @@ from bfsim.report.save import require_apart, require_no_source, require_place, w
 from bfsim.report.target import Target
 from bfsim.running.inputs import calibration_of, files_of_run
 from bfsim.running.watchers import Watchers, calling
+from bfsim.seen import SeenFrame
 from bfsim.trace import BudgetRow, Identity, RunRecord
 
 _PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
@@ -45,16 +47,21 @@ def require_page(path: Path, others: Iterable[Path | None]) -> None:
 @contextmanager
 def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[str, Any]) -> Iterator[None]:
     """Have `watchers` write a page to `path` of the run that `what`, arguments of `simulate`, describes."""
-    with Pictures() as pictures, Gantts() as gantts:
-        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_heat])
+    chosen = Chosen()
+    with Pictures() as pictures, Gantts(chosen.has) as gantts:
+
+        def draw(frame: SeenFrame) -> None:
+            if chosen.has(frame.index):
+                pictures.add_with_heat(frame)
 
         def make_room(_identity: Identity, frames: int) -> None:
             pictures.frames = min(frames, MOST)
 
-        watchers.before.extend((make_room, gantts.begin, heats.begin))
-        watchers.seen.extend((pictures.add, heats.add))
-        watchers.spans.extend((gantts.add, heats.add_spans))
-        watchers.done.append(partial(_write, path, target, pictures, gantts, what))
+        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [draw])
+        watchers.before.extend((make_room, chosen.begin, gantts.begin, heats.begin))
+        watchers.seen.append(heats.add)
+        watchers.spans.extend((chosen.add, gantts.add, heats.add_spans))  # what is chosen is drawn
+        watchers.done.append(partial(_write, path, target, chosen, pictures, gantts, what))
         yield
 
 
@@ -86,6 +93,7 @@ def _rows(firmware: Firmware | str) -> tuple[BudgetRow, ...]:
 def _write(
     path: Path,
     target: Target | None,
+    chosen: Chosen,
     pictures: Pictures,
     gantts: Gantts,
     what: Mapping[str, Any],
@@ -101,6 +109,7 @@ def _write(
         accuracy=shipped.accuracy_on("In short"),
         unmodelled=shipped.accuracy_on("What is not modelled"),
         memory_map=_map_of(run, what),
+        frames=chosen.frames,
         target=target,
     )
     write_text(path, page.chunks())

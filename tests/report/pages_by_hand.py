@@ -22,6 +22,7 @@ def page_of(
             accuracy="- **Good**: as far as it goes.",
             unmodelled="- The rest.",
             memory_map=a_map(a_segment("L2")),
+            frames=len(run.frames),
             target=target,
         )
         return "".join(page.chunks())

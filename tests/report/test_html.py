@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from io import BytesIO
+from random import Random
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from PIL import Image
 
 from bfsim.report.budget import budget_of
 from bfsim.report.html import charts, frames
+from bfsim.report.html.chosen import Chosen
 from bfsim.report.html.frames import facts_of, told_of, worst_of
 from bfsim.report.html.gantt import SLICES, Gantts
 from bfsim.report.html.pictures import Pictures, webp_of
@@ -39,18 +41,54 @@ def values_of(spec: charts.Spec) -> list[dict[str, float]]:
 def test_all_frames_are_told_up_to_the_limit() -> None:
     """From one more on some are left out."""
     run = edge_run(*range(1, 11))
-    assert told_of(run, 10) == run.frames
-    assert len(told_of(run, 9)) == 9
+    assert told_of(run, 10, 10) == run.frames
+    assert len(told_of(run, 10, 9)) == 6  # the five worst, of which one is the last, and the first
 
 
 @given(st.lists(st.integers(1, 1000), min_size=1, max_size=200), st.integers(8, 40))
 def test_of_many_frames_the_worst_the_first_and_the_last_are_told(used: list[int], most: int) -> None:
     """In their order, and no one twice."""
     run = edge_run(*used)
-    told = [each.index for each in told_of(run, most)]
+    told = [each.index for each in told_of(run, len(used), most)]
     assert told == sorted(set(told))
     assert len(told) <= most
     assert {0, len(used) - 1, *(each.index for each in worst_of(run))} <= set(told)
+
+
+def ends_of(record: FrameRecord) -> list[Span]:
+    """What a timeline tells of a frame, as far as it matters to whether it is one of the worst."""
+    return [
+        span
+        for core in record.cores
+        for span in (
+            Span(SpanKind.IDLE, core.core, "idle", 0, sum(each.idle_cclk for each in core.stages)),
+            Span(SpanKind.FRAME, core.core, "frame", core.begin_cclk, core.end_cclk, value=record.index),
+        )
+    ]
+
+
+@given(st.lists(st.integers(1, 50), min_size=101, max_size=150), st.data())
+def test_what_is_told_was_drawn_as_it_ended(used: list[int], data: st.DataObject) -> None:
+    """Of a run that was cut short by Ctrl-C, too."""
+    run = edge_run(*used)
+    left = run.frames[: data.draw(st.integers(1, len(used)))]
+    chosen, drawn = Chosen(), set[int]()
+    chosen.begin(run.identity, len(used))
+    for each in left:
+        chosen.add(ends_of(each))
+        if chosen.has(each.index):
+            drawn.add(each.index)
+    assert {each.index for each in told_of(replace(run, frames=left), len(used))} <= drawn
+
+
+def test_of_a_thousand_frames_few_are_drawn() -> None:
+    """A hundred are told; the worst five so far are others some 5 ln(1000 / 5) times where frames come in any order."""
+    run, chosen, drawn = edge_run(*Random(1).sample(range(1, 1001), 1000)), Chosen(), 0
+    chosen.begin(run.identity, 1000)
+    for each in run.frames:
+        chosen.add(ends_of(each))
+        drawn += chosen.has(each.index)
+    assert 100 <= drawn < 130
 
 
 def test_the_worst_frame_is_the_one_that_used_most_of_a_core() -> None:
@@ -179,8 +217,7 @@ def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.Mo
         pictures.frames = frames.MOST
         run = edge_run(*range(1000, 1000 + frames.MOST))
         for each in run.frames:
-            pictures.add(seen_frame(each.index))
-            pictures.add_heat(seen_frame(each.index))
+            pictures.add_with_heat(seen_frame(each.index))
             gantts.add(restless(each))
         gantts.finish()
         text = page_of(run, pictures, Target(1), gantts)

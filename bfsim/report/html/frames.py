@@ -52,15 +52,22 @@ def worst_of(run: RunRecord, count: int = WORST) -> tuple[FrameRecord, ...]:
     return tuple(sorted(run.frames, key=lambda frame: -_used_cclk(frame))[:count])
 
 
-def told_of(run: RunRecord, most: int = MOST) -> tuple[FrameRecord, ...]:
-    """Return the frames that are told in full, in their order."""
-    if len(run.frames) <= most:
-        return run.frames
-    told = {each.index for each in (*worst_of(run), run.frames[0], run.frames[-1])}
-    others = [frame.index for frame in run.frames if frame.index not in told]
-    room = most - len(told)
-    told |= {others[number * len(others) // room] for number in range(room)}
-    return tuple(frame for frame in run.frames if frame.index in told)
+def told_of(run: RunRecord, frames: int, most: int = MOST) -> tuple[FrameRecord, ...]:
+    """Return the frames that are told in full, in their order, of a run that was to have so many `frames`."""
+    worst = {each.index for each in worst_of(run)}
+    return tuple(
+        frame
+        for place, frame in enumerate(run.frames)
+        if is_spaced(place, frames, most) or frame.index in worst
+    )
+
+
+def is_spaced(place: int, frames: int, most: int = MOST) -> bool:
+    """Whether a frame is told in full wherever it is not among the worst: the first and the last one, and others evenly spaced."""
+    if frames <= most or place in (0, frames - 1):
+        return True
+    room = most - WORST - 2
+    return place * room // frames > (place - 1) * room // frames
 
 
 def facts_of(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -48,10 +48,12 @@ class _Window:
 class Gantts:
     """The Gantt chart of each frame, by its index. A context manager.
 
-    In memory are the spans of some two frames. Raises ConfigError where there is no room for its file.
+    In memory are the spans of some two frames; `is_wanted` says of which a chart is drawn. Raises ConfigError where there is
+    no room for its file.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, is_wanted: Callable[[int], bool] = lambda _index: True) -> None:
+        self._is_wanted = is_wanted
         self.tracks: tuple[str, ...] = ()
         self.meanings: set[str] = set()
         self._cclk_hz = 1.0
@@ -101,11 +103,12 @@ class Gantts:
 
     def _draw(self, index: int) -> None:
         window = self._windows.pop(index)
-        inside = [span for span in self._spans if span.begin_cclk < window.end_cclk]
-        chart = chart_of(inside, window.begin_cclk, window.end_cclk, self._cclk_hz)
-        self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=_order))
-        self.meanings.update(meaning for meaning, _ in chart["keys"])
-        self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
+        if self._is_wanted(index):
+            inside = [span for span in self._spans if span.begin_cclk < window.end_cclk]
+            chart = chart_of(inside, window.begin_cclk, window.end_cclk, self._cclk_hz)
+            self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=_order))
+            self.meanings.update(meaning for meaning, _ in chart["keys"])
+            self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
         following = min((each.begin_cclk for each in self._windows.values()), default=window.end_cclk)
         self._spans = [span for span in self._spans if span.end_cclk > following]
 

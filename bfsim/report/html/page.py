@@ -35,7 +35,7 @@ from bfsim.trace import RunRecord
 class Page:
     """All that a page shows of a run of at least one frame.
 
-    `accuracy` is what to say of how far to trust the numbers, and `unmodelled` what was left out, both in Markdown;
+    `frames`: how many it was to have, which chose those that are drawn. `accuracy` is what to say of how far to trust the numbers, and `unmodelled` what was left out, both in Markdown;
     `memory_map` is where everything lay.
     """
 
@@ -45,6 +45,7 @@ class Page:
     accuracy: str
     unmodelled: str
     memory_map: MemoryMap
+    frames: int
     target: Target | None = None
 
     def chunks(self) -> Iterator[str]:
@@ -54,7 +55,7 @@ class Page:
     def _content(self) -> Mapping[str, Any]:
         run, hz = self.run, self.run.identity.cclk_hz
         budget = budget_of(without_start_up(run))
-        told = told_of(run)
+        told = told_of(run, self.frames)
         charts = {
             f"{name}-{core.core}": spec
             for number, core in enumerate(budget.cores)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from dataclasses import replace
 from io import BytesIO
 from typing import Self
 
@@ -51,8 +52,9 @@ class Pictures:
             frame.index, webp_of(overlay_of(frame, LAYERS, _PANEL_WIDTH), self._room_bytes(1 - HEAT_SHARE))
         )
 
-    def add_heat(self, frame: SeenFrame) -> None:
-        """Draw the heat of a frame whose cameras have theirs."""
+    def add_with_heat(self, frame: SeenFrame) -> None:
+        """Draw what was seen in a frame whose cameras have their heat, and the heat."""
+        self.add(replace(frame, cameras=tuple(replace(each, heat=None) for each in frame.cameras)))
         self._heats.put(
             frame.index, webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), self._room_bytes(HEAT_SHARE))
         )

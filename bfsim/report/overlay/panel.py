@@ -108,8 +108,10 @@ def _with_edges(
         large = _with_map(large, seen.map)
     if seen.heat and hottest_us:
         large = heated(large, seen.heat, hottest_us)
-    paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
     edges = seen.edges
+    if not len(edges.y_px):
+        return np.asarray(large)
+    paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
     paint[edges.y_px, edges.x_px, :3] = colours.EDGE
     paint[edges.y_px, edges.x_px, 3] = np.clip(edges.gradients / FULL_GRADIENT, FAINTEST, 1)
     for each in edges_3d:

@@ -1,0 +1,49 @@
+"""Which frames of a long run are drawn for its page, chosen as they end: of thousands, the page tells a hundred in full."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from heapq import nlargest
+
+from bfsim.report.html.frames import WORST, is_spaced
+from bfsim.spans import Span, SpanKind
+from bfsim.trace import Identity
+
+_ENDING = 4
+"""Frames that a core may have ended, and another one not yet."""
+
+
+class Chosen:
+    """The frames evenly spaced over a run, and the worst so far: some of these are drawn for nothing."""
+
+    def __init__(self) -> None:
+        self.frames = 1
+        self._places: dict[int, int] = {}  # in the run, by index in the recording
+        self._used_cclk: dict[int, int] = {}  # of the worst, and of those that are ending, by index
+        self._idle_cclk: Counter[str] = Counter()
+
+    def begin(self, _identity: Identity, frames: int) -> None:
+        """Take note of how many frames there will be, unless some are missed."""
+        self.frames = frames
+
+    def add(self, spans: Iterable[Span]) -> None:
+        """Take what happened next."""
+        for each in spans:
+            if each.kind is SpanKind.IDLE:
+                self._idle_cclk[each.where] += each.elapsed_cclk
+            elif each.kind is SpanKind.FRAME:
+                self._end(each.value, each.elapsed_cclk - self._idle_cclk.pop(each.where, 0))
+
+    def has(self, index: int) -> bool:
+        """Whether a frame that all cores have ended may be told in full: asked of the next one first, the worst may be others."""
+        return is_spaced(self._places[index], self.frames) or index in self._worst()
+
+    def _end(self, index: int, used_cclk: int) -> None:
+        self._places.setdefault(index, len(self._places))
+        self._used_cclk[index] = max(used_cclk, self._used_cclk.get(index, 0))
+        kept = {*self._worst(), *list(self._places)[-_ENDING:]}
+        self._used_cclk = {each: cclk for each, cclk in self._used_cclk.items() if each in kept}
+
+    def _worst(self) -> list[int]:
+        return nlargest(WORST, self._used_cclk, key=lambda each: self._used_cclk[each])
