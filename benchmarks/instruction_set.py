@@ -27,8 +27,8 @@ from benchmarks.instructions.sequences import (
     random_start,
     translated,
 )
-from bfsim.blackfin.decode import disassemble
-from bfsim.blackfin.text import text
+from bfsim.blackfin.instructions.decode import disassemble
+from bfsim.blackfin.instructions.text import text
 
 TESTSUITE = "sim/testsuite/bfin"
 STARTS = 24

@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from benchmarks.given_names import given_names
 from benchmarks.twins.measure import FLAGS, SOURCES
-from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.event import Event
-from bfsim.blackfin.linking import link
-from bfsim.blackfin.objects import read_object
-from bfsim.blackfin.processor import Processor
+from bfsim.blackfin.elf.linking import link
+from bfsim.blackfin.elf.objects import read_object
+from bfsim.blackfin.execution.address_space import AddressSpace
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.instructions.event import Event
 
 MEMORY_BYTES = 0x8000000
 """Of the GNU simulator, from address 0; the stack begins at its end."""

@@ -97,6 +97,19 @@ MACHINE = _sets(
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 
 
+BLACKFIN = _sets(
+    {
+        "elf": "",
+        "instructions": "",
+        "control_flow": "elf instructions",
+        "timing": "elf instructions control_flow",
+        "translation": "instructions control_flow timing",
+        "execution": "elf instructions control_flow timing translation",
+    }
+)
+"""Each part of the Blackfin and what it imports of the others, from the bottom to the top."""
+
+
 KERNEL = _sets(
     {
         "keys": "",

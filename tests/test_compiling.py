@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.toolchain.keep import FOLDER, programs, recipes
 from bfsim import compiling
-from bfsim.blackfin.objects import read_object
+from bfsim.blackfin.elf.objects import read_object
 from bfsim.compiling.object_code import PROGRAMS, InC, object_code
 from bfsim.compiling.recipes import KEPT_COMPILER
 from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer

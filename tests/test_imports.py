@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rooms import ESTIMATE, KERNEL, MACHINE, MAY_IMPORT, READ_VERSION
+from tests.rooms import BLACKFIN, ESTIMATE, KERNEL, MACHINE, MAY_IMPORT, READ_VERSION
 
 ROOT = Path(__file__).parent.parent
 
@@ -92,7 +92,9 @@ def test_a_block_of_the_machine_imports_only_what_it_is_wired_to() -> None:
             assert other == block or other in MACHINE[block], f"{path} imports {module}"
 
 
-@pytest.mark.parametrize(("folder", "parts"), [("kernel", KERNEL), ("kernel/estimate", ESTIMATE)])
+@pytest.mark.parametrize(
+    ("folder", "parts"), [("blackfin", BLACKFIN), ("kernel", KERNEL), ("kernel/estimate", ESTIMATE)]
+)
 def test_parts_stand_above_those_that_they_import(folder: str, parts: dict[str, set[str]]) -> None:
     """The table of the parts of a room goes from the bottom to the top, and names all that each imports of the others."""
     name, found = f"bfsim.{folder.replace('/', '.')}.", {each: set[str]() for each in parts}
@@ -196,7 +198,7 @@ def test_the_simulator_knows_no_robot() -> None:
 
 
 def test_the_page_names_every_room() -> None:
-    """docs/architecture.md says of each room, and of each part of the kernel, what is in it."""
+    """docs/architecture.md says of each room, and of each part of the Blackfin and of the kernel, what is in it."""
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    rooms = {each for each in (*MAY_IMPORT, *KERNEL, *ESTIMATE) if not each.startswith("__")}
+    rooms = {each for each in (*MAY_IMPORT, *BLACKFIN, *KERNEL, *ESTIMATE) if not each.startswith("__")}
     assert {each for each in rooms if f"`{each}`" not in page} == set()

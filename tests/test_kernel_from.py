@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from bfsim.api import Kernel, i32, kernel_from, u8
-from bfsim.blackfin import lines, pointers
+from bfsim.blackfin.control_flow import pointers
+from bfsim.blackfin.elf import lines
 from bfsim.errors import KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.api import f32, i32, kernel_from, u8
-from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.placed import ARRAYS, placed
+from bfsim.blackfin.execution.address_space import AddressSpace
+from bfsim.blackfin.execution.placed import ARRAYS, placed
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import ConfigError, KernelError
 from bfsim.kernel import GCC_O2

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from bfsim.api import i32, kernel_from, u8
-from bfsim.blackfin.linking import link
-from bfsim.blackfin.objects import read_object
-from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.blackfin.elf.linking import link
+from bfsim.blackfin.elf.objects import read_object
+from bfsim.blackfin.execution.subroutines import LoadedImage
 from bfsim.kernel import GCC_O2
 from tests.sums import DATA, ROW
 

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from bfsim.api import kernel as kernel_of_firmware
-from bfsim.blackfin.image import Use
-from bfsim.blackfin.objects import read_object
+from bfsim.blackfin.elf.image import Use
+from bfsim.blackfin.elf.objects import read_object
 from bfsim.compiling.loaded_code import LoadedCode
 from bfsim.compiling.object_code import _shipped_programs, object_code
 from bfsim.errors import BfsimWarning
@@ -49,8 +49,8 @@ FEW_CALLED = ("suppress_row", "gauss3_row", "clear_segments")
 
 MAKERS = (
     "elftools",
-    "bfsim.blackfin.decode",
-    "bfsim.blackfin.translate",
+    "bfsim.blackfin.instructions.decode",
+    "bfsim.blackfin.translation.translate",
     "bfsim.kernel.language.language",
     "bfsim.kernel.c",
 )

@@ -27,14 +27,14 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.instructions.control import PROGRAMS, assembled
-from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.blocks import COMPUTED, DIRECT, EVENTS
-from bfsim.blackfin.decode import InstructionError, Operation, decode
-from bfsim.blackfin.form import Beside, Form
-from bfsim.blackfin.forms import TABLE
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.registers import ENCODED
-from bfsim.blackfin.text import text
+from bfsim.blackfin.control_flow.blocks import COMPUTED, DIRECT, EVENTS
+from bfsim.blackfin.execution.address_space import AddressSpace
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.instructions.decode import InstructionError, Operation, decode
+from bfsim.blackfin.instructions.form import Beside, Form
+from bfsim.blackfin.instructions.forms import TABLE
+from bfsim.blackfin.instructions.registers import ENCODED
+from bfsim.blackfin.instructions.text import text
 
 CODE, ROOM_BYTES, MEMORY, MEMORY_BYTES = 0x1000, 0x10000, 0x20000, 256
 STARTED = [each for each in ENCODED[:54] if each and each != "ASTAT"]

@@ -20,10 +20,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks.instructions.memory_sequences import encoded
-from bfsim.blackfin.decode import InstructionError, decode
-from bfsim.blackfin.form import Form
-from bfsim.blackfin.forms import TABLE
-from bfsim.blackfin.text import text
+from bfsim.blackfin.instructions.decode import InstructionError, decode
+from bfsim.blackfin.instructions.form import Form
+from bfsim.blackfin.instructions.forms import TABLE
+from bfsim.blackfin.instructions.text import text
 
 ADDRESS = 0x1000
 ROW = re.compile(r"\s*([0-9a-f]+):\t([0-9a-f ]+?)\s*\t(.*)")

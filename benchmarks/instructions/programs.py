@@ -18,11 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
-from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.decode import InstructionError
-from bfsim.blackfin.event import Event
-from bfsim.blackfin.objects import Use, read_object
-from bfsim.blackfin.processor import AccessError, Processor
+from bfsim.blackfin.elf.objects import Use, read_object
+from bfsim.blackfin.execution.address_space import AddressSpace
+from bfsim.blackfin.execution.processor import AccessError, Processor
+from bfsim.blackfin.instructions.decode import InstructionError
+from bfsim.blackfin.instructions.event import Event
 from bfsim.machine_code import Effort
 
 STACK = 128 << 20

@@ -14,10 +14,11 @@ from random import Random
 
 import numpy as np
 
-from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.event import Event
-from bfsim.blackfin.form import Beside, Form
-from bfsim.blackfin.forms import (
+from bfsim.blackfin.execution.address_space import AddressSpace
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.instructions.event import Event
+from bfsim.blackfin.instructions.form import Beside, Form
+from bfsim.blackfin.instructions.forms import (
     accumulators,
     arithmetic,
     bitfields,
@@ -30,9 +31,8 @@ from bfsim.blackfin.forms import (
     sums,
     video,
 )
-from bfsim.blackfin.operands import Operand
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.registers import ACCUMULATORS, DAG, DATA, ENCODED
+from bfsim.blackfin.instructions.operands import Operand
+from bfsim.blackfin.instructions.registers import ACCUMULATORS, DAG, DATA, ENCODED
 from bfsim.machine_code import Effort
 
 POINTERS = tuple(f"P{number}" for number in range(5))

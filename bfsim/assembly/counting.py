@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.assembly.finding import KernelCode
-from bfsim.blackfin.edge_counts import CountedEvent
+from bfsim.blackfin.control_flow.edge_counts import CountedEvent
 from bfsim.kernel import Kernel
 from bfsim.kernel.objects.calls import ObjectCall
 from bfsim.kernel.objects.compiled import CompiledObject

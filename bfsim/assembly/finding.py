@@ -6,9 +6,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 
-from bfsim.blackfin.image import Routine
-from bfsim.blackfin.subroutines import LoadedImage
-from bfsim.blackfin.timing import Timing
+from bfsim.blackfin.elf.image import Routine
+from bfsim.blackfin.execution.subroutines import LoadedImage
+from bfsim.blackfin.timing.tables import Timing
 from bfsim.compiling.file_code import FileCode
 from bfsim.compiling.loaded_code import LoadedCode
 from bfsim.compiling.object_code import LEVELS, object_code

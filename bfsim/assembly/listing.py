@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from bfsim.assembly.finding import KernelCode
-from bfsim.blackfin.blocks import CALLS, Block, Code, does
-from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.edge_counts import CountedEvent, times_gone
-from bfsim.blackfin.flow import Edge, Loop, edges, loops
-from bfsim.blackfin.interlocks import Wait
-from bfsim.blackfin.stalls import Stalls, stalls
-from bfsim.blackfin.text import text
-from bfsim.blackfin.timing import Timing
-from bfsim.blackfin.turns import Chain, Turn, longest_chain, turns
+from bfsim.blackfin.control_flow.blocks import CALLS, Block, Code, does
+from bfsim.blackfin.control_flow.edge_counts import CountedEvent, times_gone
+from bfsim.blackfin.control_flow.flow import Edge, Loop, edges, loops
+from bfsim.blackfin.instructions.decode import Instruction
+from bfsim.blackfin.instructions.text import text
+from bfsim.blackfin.timing.interlocks import Wait
+from bfsim.blackfin.timing.stalls import Stalls, stalls
+from bfsim.blackfin.timing.tables import Timing
+from bfsim.blackfin.timing.turns import Chain, Turn, longest_chain, turns
 from bfsim.trace.assembly import Assembly, AssemblyInstruction, AssemblyLoop, SourceText
 
 CHAIN, ISSUE, JUMPS, WAITS = (

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
-from bfsim.blackfin.image import Image
-from bfsim.blackfin.prototypes import CPrototype, CType, prototype_of
+from bfsim.blackfin.elf.image import Image
+from bfsim.blackfin.elf.prototypes import CPrototype, CType, prototype_of
 from bfsim.errors import KernelError
 from bfsim.files import store
 from bfsim.kernel import keys

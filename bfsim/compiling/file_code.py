@@ -9,10 +9,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from bfsim.blackfin.image import Image, Routine, Use
-from bfsim.blackfin.linking import link
-from bfsim.blackfin.objects import MOST_BYTES, read_object
-from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.blackfin.elf.image import Image, Routine, Use
+from bfsim.blackfin.elf.linking import link
+from bfsim.blackfin.elf.objects import MOST_BYTES, read_object
+from bfsim.blackfin.execution.subroutines import LoadedImage
 from bfsim.compiling.declared import require_declared
 from bfsim.compiling.recipes import AS_BYTES, Recipe, code_of
 from bfsim.compiling.toolchain import blackfin_compiler

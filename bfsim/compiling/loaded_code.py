@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field
 
-from bfsim.blackfin.image import Image, packed, unpacked
-from bfsim.blackfin.subroutines import LoadedImage
-from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.elf.image import Image, packed, unpacked
+from bfsim.blackfin.execution.subroutines import LoadedImage
+from bfsim.blackfin.timing.tables import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
 from bfsim.files import store
 from bfsim.kernel import keys
@@ -62,8 +62,8 @@ def _linked(octets: bytes) -> Image:
     key = keys.object_key(hashlib.sha256(octets).hexdigest(), "", "", "image")
     kept = store.load(key)
     if kept is None:
-        from bfsim.blackfin.linking import link  # most starts find all images
-        from bfsim.blackfin.objects import read_object
+        from bfsim.blackfin.elf.linking import link  # most starts find all images
+        from bfsim.blackfin.elf.objects import read_object
 
         kept = packed(link(read_object(octets, "kernels.o")))
         store.save(key, kept)

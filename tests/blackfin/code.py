@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.execution.address_space import AddressSpace
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.timing.tables import GNU, Timing
 
 CODE, DATA, NBYTES = 0x1000, 0x8000, 0x1000
 ISQRT = "0960 1830 f14f 0060 8268 b2e00820 8850 9309 084e 031c d352 0850 114e 1000"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from bfsim.blackfin.event import Event
-from bfsim.blackfin.processor import OUTSIDE, Processor
-from bfsim.blackfin.subroutines import CHECKED, TRUSTED
-from bfsim.blackfin.timing import ADI, GNU, Timing
+from bfsim.blackfin.execution.processor import OUTSIDE, Processor
+from bfsim.blackfin.execution.subroutines import CHECKED, TRUSTED
+from bfsim.blackfin.instructions.event import Event
+from bfsim.blackfin.timing.tables import ADI, GNU, Timing
 from tests.blackfin.code import CODE, ISQRT, processor
 from tests.blackfin.test_divisions import PAIRS, UDIVSI3
 

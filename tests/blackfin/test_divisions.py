@@ -7,10 +7,10 @@ from random import Random
 
 import pytest
 
-from bfsim.blackfin.divisions import LARGEST_DIVISOR, division
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.registers import SLOTS
-from bfsim.blackfin.timing import ADI, GNU, Timing
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.instructions.registers import SLOTS
+from bfsim.blackfin.timing.tables import ADI, GNU, Timing
+from bfsim.blackfin.translation.divisions import LARGEST_DIVISOR, division
 from tests.blackfin.code import CODE, processor
 
 UDIVSI3 = "0069 a3e00900 0360 82c608c0 82c60bc6 8b52 8b09 1a06 82c608c0 c043 1000"

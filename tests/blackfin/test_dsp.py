@@ -7,9 +7,9 @@ from itertools import product
 
 import pytest
 
-from bfsim.blackfin.decode import decode
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.text import text
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.instructions.decode import decode
+from bfsim.blackfin.instructions.text import text
 from tests.blackfin.code import CODE, processor
 
 HALT = "c4f8"

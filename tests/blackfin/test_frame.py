@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from bfsim.blackfin import blocks
-from bfsim.blackfin.decode import InstructionError, decode, disassemble
-from bfsim.blackfin.event import Event
-from bfsim.blackfin.processor import OUTSIDE, AccessError
-from bfsim.blackfin.text import text
+from bfsim.blackfin.control_flow import blocks
+from bfsim.blackfin.execution.processor import OUTSIDE, AccessError
+from bfsim.blackfin.instructions.decode import InstructionError, decode, disassemble
+from bfsim.blackfin.instructions.event import Event
+from bfsim.blackfin.instructions.text import text
 from tests.blackfin.code import CODE, DATA, processor
 
 SUM = "2860 5068 a2e0 0300 0964 0850 1000"

@@ -6,11 +6,11 @@ import math
 from functools import partial
 from typing import NamedTuple
 
-from bfsim.blackfin.blocks import Code
-from bfsim.blackfin.counters import Counted
-from bfsim.blackfin.implied import implied
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.timing import GNU
+from bfsim.blackfin.control_flow.blocks import Code
+from bfsim.blackfin.control_flow.implied import implied
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.timing.tables import GNU
+from bfsim.blackfin.translation.counters import Counted
 from tests.blackfin.code import CODE, ISQRT, processor
 
 CLOCKED = ISQRT.replace("1000", "be31 1000")

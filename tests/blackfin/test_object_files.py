@@ -10,10 +10,10 @@ import pytest
 from elftools.elf.constants import SH_FLAGS
 from elftools.elf.elffile import ELFFile
 
-from bfsim.blackfin.image import Use, packed, unpacked
-from bfsim.blackfin.lines import Line, calls_inlined_in, lines_of
-from bfsim.blackfin.linking import BASE, link
-from bfsim.blackfin.objects import MOST_BYTES, read_object
+from bfsim.blackfin.elf.image import Use, packed, unpacked
+from bfsim.blackfin.elf.lines import Line, calls_inlined_in, lines_of
+from bfsim.blackfin.elf.linking import BASE, link
+from bfsim.blackfin.elf.objects import MOST_BYTES, read_object
 from bfsim.errors import KernelError
 
 DATA = Path(__file__).parent / "data"

@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from bfsim.blackfin.decode import decode
-from bfsim.blackfin.origins import Origin, made_by
+from bfsim.blackfin.instructions.decode import decode
+from bfsim.blackfin.instructions.origins import Origin, made_by
 from bfsim.kernel import Kernel
 from bfsim.kernel.build import Build
 from bfsim.kernel.calls.access_log import KIND_BIT, KIND_MASK, LOG, STORE

@@ -8,10 +8,10 @@ from random import Random
 
 import pytest
 
-from bfsim.blackfin.processor import Processor
-from bfsim.blackfin.registers import SLOTS
-from bfsim.blackfin.roots import FIRST_BIT, root
-from bfsim.blackfin.timing import ADI, GNU, Timing
+from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.instructions.registers import SLOTS
+from bfsim.blackfin.timing.tables import ADI, GNU, Timing
+from bfsim.blackfin.translation.roots import FIRST_BIT, root
 from tests.blackfin.code import CODE, ISQRT, processor
 
 IN_OTHER_REGISTERS = "0a60 2830 f24f 0060 8268 a2e00820 1051 a509 084e 0318 6553 1050 124e 1000"

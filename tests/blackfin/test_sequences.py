@@ -6,8 +6,8 @@ from pathlib import Path
 
 from benchmarks.instructions.recorded import replayed
 from benchmarks.instructions.sequences import DSP_GROUPS, translated
-from bfsim.blackfin.decode import disassemble
-from bfsim.blackfin.text import text
+from bfsim.blackfin.instructions.decode import disassemble
+from bfsim.blackfin.instructions.text import text
 
 RECORDED = replayed(Path(__file__).parent / "data/sequences.json")
 

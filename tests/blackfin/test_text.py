@@ -7,10 +7,10 @@ import random
 from pathlib import Path
 
 from benchmarks.instructions.printed import plain
-from bfsim.blackfin.decode import InstructionError, decode
-from bfsim.blackfin.form import Beside
-from bfsim.blackfin.forms import TABLE
-from bfsim.blackfin.text import text
+from bfsim.blackfin.instructions.decode import InstructionError, decode
+from bfsim.blackfin.instructions.form import Beside
+from bfsim.blackfin.instructions.forms import TABLE
+from bfsim.blackfin.instructions.text import text
 
 RECORDED = json.loads((Path(__file__).parent / "data/text.json").read_text(encoding="utf-8"))
 """Address, bytes and objdump's text of one instruction of each form, by `benchmarks/instructions/printed.py`."""

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bfsim.blackfin.decode import Instruction, decode
-from bfsim.blackfin.image import Image, Routine
-from bfsim.blackfin.interlocks import NOTHING, issued_in_turn
-from bfsim.blackfin.timing import ADI, GNU, Timing
+from bfsim.blackfin.elf.image import Image, Routine
+from bfsim.blackfin.instructions.decode import Instruction, decode
+from bfsim.blackfin.timing.interlocks import NOTHING, issued_in_turn
+from bfsim.blackfin.timing.tables import ADI, GNU, Timing
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2
 from bfsim.kernel.objects.timing import timing_of
 from bfsim.kernel.profile import GCC, GCC_ADI

@@ -13,13 +13,13 @@ import pytest
 from elftools.elf.elffile import ELFFile
 
 from bfsim.api import Kernel, i32, kernel_from, u8
-from bfsim.blackfin.blocks import Block
-from bfsim.blackfin.decode import decode
-from bfsim.blackfin.image import Image, Use
-from bfsim.blackfin.linking import link
-from bfsim.blackfin.objects import RELOCATION, VISUALDSP, ObjectFile, Relocation, read_object
-from bfsim.blackfin.relocations import HALF_BYTES, PUSH, PUSH_CONSTANT, SECOND_HALF, RelocationKind
-from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.blackfin.control_flow.blocks import Block
+from bfsim.blackfin.elf.image import Image, Use
+from bfsim.blackfin.elf.linking import link
+from bfsim.blackfin.elf.objects import RELOCATION, VISUALDSP, ObjectFile, Relocation, read_object
+from bfsim.blackfin.elf.relocations import HALF_BYTES, PUSH, PUSH_CONSTANT, SECOND_HALF, RelocationKind
+from bfsim.blackfin.execution.subroutines import LoadedImage
+from bfsim.blackfin.instructions.decode import decode
 from bfsim.errors import KernelError
 from bfsim.kernel.objects.sources import SourceFiles
 

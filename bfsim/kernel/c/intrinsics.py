@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 
-from bfsim.blackfin.decode import Instruction, Operation
-from bfsim.blackfin.form import Form
-from bfsim.blackfin.forms import TABLE
-from bfsim.blackfin.operands import Operand
-from bfsim.blackfin.text import text
+from bfsim.blackfin.instructions.decode import Instruction, Operation
+from bfsim.blackfin.instructions.form import Form
+from bfsim.blackfin.instructions.forms import TABLE
+from bfsim.blackfin.instructions.operands import Operand
+from bfsim.blackfin.instructions.text import text
 from bfsim.kernel.intrinsics import Intrinsic
 from bfsim.kernel.intrinsics.intrinsic import RESULT, Step
 from bfsim.kernel.language import tree

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from inspect import signature
 
-from bfsim.blackfin.operands import Operand
+from bfsim.blackfin.instructions.operands import Operand
 from bfsim.kernel.operations import Op
 from bfsim.kernel.types import PAIR, IntType, PairType
 
@@ -17,7 +17,7 @@ RESULT, LOWER = "R4", "R5"
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """An instruction: its row in the instruction table (`bfsim.blackfin.forms`), by what it does and its operands."""
+    """An instruction: its row in the instruction table (`bfsim.blackfin.instructions.forms`), by what it does and its operands."""
 
     does: str
     operands: Mapping[str, Operand]

@@ -1,4 +1,4 @@
-"""Intrinsics as LLVM's functions, made of the semantics of their instructions (`bfsim.blackfin.semantics`)."""
+"""Intrinsics as LLVM's functions, made of the semantics of their instructions (`bfsim.blackfin.instructions.semantics`)."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Iterable
 
 from llvmlite import ir
 
-from bfsim.blackfin.effects import Effects
-from bfsim.blackfin.registers import width
-from bfsim.blackfin.semantics import SEMANTICS
-from bfsim.blackfin.value import Value
+from bfsim.blackfin.instructions.effects import Effects
+from bfsim.blackfin.instructions.registers import width
+from bfsim.blackfin.instructions.semantics import SEMANTICS
+from bfsim.blackfin.instructions.value import Value
 from bfsim.kernel.intrinsics import BY_NAME, PREFIX
 from bfsim.kernel.intrinsics.intrinsic import Intrinsic
 from bfsim.kernel.types import PAIR, IntType

@@ -8,8 +8,8 @@ first, it is that which the assembler writes first.
 
 from __future__ import annotations
 
-from bfsim.blackfin.multipliers import ADDS, MULTIPLIES, RESTS
-from bfsim.blackfin.operands import Operand
+from bfsim.blackfin.instructions.multipliers import ADDS, MULTIPLIES, RESTS
+from bfsim.blackfin.instructions.operands import Operand
 from bfsim.kernel.intrinsics import fract, video
 from bfsim.kernel.intrinsics.intrinsic import LOWER, RESULT, Intrinsic, Step
 from bfsim.kernel.operations import Op

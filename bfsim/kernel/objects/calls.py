@@ -10,13 +10,13 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.convention import STACK, STACK_BYTES
-from bfsim.blackfin.event import Event
-from bfsim.blackfin.guard import catch_always
-from bfsim.blackfin.object_calls import Counts, subroutine_call
-from bfsim.blackfin.placed import Placed, placed
-from bfsim.blackfin.subroutines import Subroutine
-from bfsim.blackfin.tracing import Followed, block_of
+from bfsim.blackfin.control_flow.convention import STACK, STACK_BYTES
+from bfsim.blackfin.execution.guard import catch_always
+from bfsim.blackfin.execution.object_calls import Counts, subroutine_call
+from bfsim.blackfin.execution.placed import Placed, placed
+from bfsim.blackfin.execution.subroutines import Subroutine
+from bfsim.blackfin.instructions.event import Event
+from bfsim.blackfin.translation.tracing import Followed, block_of
 from bfsim.errors import KernelError
 from bfsim.kernel.calls import crashes
 from bfsim.kernel.calls.access_trace import AccessTrace

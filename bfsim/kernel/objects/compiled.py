@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.subroutines import LoadedImage, Subroutine
-from bfsim.blackfin.timing import Timing
-from bfsim.blackfin.tracing import Tracing
+from bfsim.blackfin.execution.subroutines import LoadedImage, Subroutine
+from bfsim.blackfin.timing.tables import Timing
+from bfsim.blackfin.translation.tracing import Tracing
 from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.calls.access_log import WRITE
@@ -86,7 +86,7 @@ def compiled_object(
     arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
     def made() -> Costs:
-        from bfsim.blackfin.pointers import arrays_accessed  # most starts find all costs
+        from bfsim.blackfin.control_flow.pointers import arrays_accessed  # most starts find all costs
         from bfsim.kernel.objects.counted import calls, counters
 
         counted = subroutine.processor.counted()

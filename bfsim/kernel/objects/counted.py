@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from bfsim.blackfin.blocks import BRANCHES, CALLS, DIRECT, Code, accesses_memory, does
-from bfsim.blackfin.counters import Counter as BlockCounter
-from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.interlocks import Wait
-from bfsim.blackfin.pointers import Accesses
-from bfsim.blackfin.stalls import Waits
-from bfsim.blackfin.timing import Timing
+from bfsim.blackfin.control_flow.blocks import BRANCHES, CALLS, DIRECT, Code, accesses_memory, does
+from bfsim.blackfin.control_flow.pointers import Accesses
+from bfsim.blackfin.instructions.decode import Instruction
+from bfsim.blackfin.timing.interlocks import Wait
+from bfsim.blackfin.timing.stalls import Waits
+from bfsim.blackfin.timing.tables import Timing
+from bfsim.blackfin.translation.counters import Counter as BlockCounter
 from bfsim.kernel.costs.charges import Access, Charge, instead, merged
 from bfsim.kernel.costs.counters import Counter
 from bfsim.kernel.costs.routine_calls import RoutineCall

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from bfsim.blackfin.subroutines import LoadedImage
+    from bfsim.blackfin.execution.subroutines import LoadedImage
     from bfsim.kernel.objects.compiled import CompiledObject
 
 

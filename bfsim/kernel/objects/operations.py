@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.blackfin.decode import Instruction, Operation
+from bfsim.blackfin.instructions.decode import Instruction, Operation
 from bfsim.kernel.operations import Op
 
 OF_FORM = {

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from bfsim.blackfin.image import Image, Routine
+from bfsim.blackfin.elf.image import Image, Routine
 from bfsim.files import store
 from bfsim.kernel import keys
 from bfsim.kernel.ir.text import SourceLine
@@ -17,7 +17,7 @@ from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, file_
 from bfsim.kernel.types import Number
 
 if TYPE_CHECKING:
-    from bfsim.blackfin.lines import Line, LineTable
+    from bfsim.blackfin.elf.lines import Line, LineTable
 
 
 @dataclass
@@ -40,7 +40,7 @@ class Places:
     def lines(self) -> LineTable:
         """What the debugging information says of addresses, which takes seconds to read where libraries have some."""
         # most starts find all that depends on it
-        from bfsim.blackfin.lines import Line, LineTable, Row, lines_of
+        from bfsim.blackfin.elf.lines import Line, LineTable, Row, lines_of
 
         key = keys.object_key(self.image.digest, "", "", "lines")
         rows = store.kept(key, lambda: [(each.address, each.line) for each in lines_of(self.image).rows])
@@ -90,7 +90,7 @@ class Places:
     @cached_property
     def _lines_of_calls(self) -> Mapping[int, Line]:
         """The line of the innermost call in a file of kernels that an instruction, by its address, is in the place of."""
-        from bfsim.blackfin.lines import calls_inlined_in
+        from bfsim.blackfin.elf.lines import calls_inlined_in
 
         found: dict[int, Line] = {}
         for each in reversed(calls_inlined_in(self.image) if self.of_file else ()):

@@ -9,13 +9,13 @@ from functools import partial
 from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING
 
-from bfsim.blackfin.image import Image, Routine
+from bfsim.blackfin.elf.image import Image, Routine
 from bfsim.files import store
 from bfsim.files.content import lines_of
 from bfsim.kernel import keys
 
 if TYPE_CHECKING:
-    from bfsim.blackfin.lines import LineTable
+    from bfsim.blackfin.elf.lines import LineTable
 
 MOST_BYTES = 1 << 20
 """[ours] Of a source file that is shown."""
@@ -99,8 +99,11 @@ def disassembly(image: Image, routine: Routine) -> Source:
 
 def _disassembled(image: Image, routine: Routine) -> list[tuple[int, str]]:
     """Return the address and the text of each instruction of a function."""
-    from bfsim.blackfin.decode import InstructionError, disassemble  # most starts find all that they show
-    from bfsim.blackfin.text import text
+    from bfsim.blackfin.instructions.decode import (  # most starts find all that they show
+        InstructionError,
+        disassemble,
+    )
+    from bfsim.blackfin.instructions.text import text
 
     rows = []
     try:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from bfsim.blackfin.timing import ADI, GNU, Timing
+from bfsim.blackfin.timing.tables import ADI, GNU, Timing
 from bfsim.kernel.profile import CompilerProfile, FloatLibrary, Library
 
 COMPARISONS = tuple(f"___{each}sf2" for each in ("eq", "ne", "lt", "le", "gt", "ge", "unord"))

@@ -1,0 +1,1 @@
+"""Native code of the Blackfin as it runs: its memory, its calls, and how it ends."""

@@ -1,0 +1,37 @@
+"""The instruction table, grouped as the programming reference groups it; where two rows could be meant, the first counts."""
+
+from bfsim.blackfin.instructions.forms import (
+    accumulators,
+    arithmetic,
+    bitfields,
+    conditions,
+    control,
+    immediates,
+    loads,
+    loads_dag,
+    moves,
+    multiplications,
+    pseudo,
+    shifts,
+    sums,
+    system,
+    video,
+)
+
+TABLE = (
+    *control.FORMS,
+    *moves.FORMS,
+    *immediates.FORMS,
+    *conditions.FORMS,
+    *arithmetic.FORMS,
+    *loads.FORMS,
+    *loads_dag.FORMS,
+    *multiplications.FORMS,
+    *sums.FORMS,
+    *accumulators.FORMS,
+    *video.FORMS,
+    *shifts.FORMS,
+    *bitfields.FORMS,
+    *system.FORMS,
+    *pseudo.FORMS,
+)

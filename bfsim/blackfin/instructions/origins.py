@@ -1,0 +1,153 @@
+"""What an instruction makes of pointers: from which registers the values that it writes, and the addresses that it accesses, come.
+
+The semantics are called once, with values that know their origins instead of numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from llvmlite import ir
+
+from bfsim.blackfin.instructions.decode import Instruction
+from bfsim.blackfin.instructions.effects import I32, Effects
+from bfsim.blackfin.instructions.registers import width
+from bfsim.blackfin.instructions.semantics import SEMANTICS
+from bfsim.blackfin.instructions.value import Value
+
+NOWHERE = frozenset[str]()
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a value comes from: registers, by their names, and words that the instruction has loaded, as "load 0", "load 1" ...
+
+    `less`: what was subtracted from it: a pointer less a pointer into the same array is a number. `base`: what it is, but for the
+    constant `offset`.
+    """
+
+    of: frozenset[str] = NOWHERE
+    less: frozenset[str] = NOWHERE
+    base: str = ""
+    offset: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class MemoryAccess:
+    """A load, or a store of `stored`, of some bytes at an address."""
+
+    address: Origin
+    nbytes: int
+    stored: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What an instruction makes: values of registers, and its accesses, the loads numbered in their order."""
+
+    writes: Mapping[str, Origin]
+    accesses: tuple[MemoryAccess, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """A value in the place of one of LLVM's."""
+
+    type: ir.IntType
+    origin: Origin
+
+
+class _Builder:
+    """Makes origins where LLVM's builder makes instructions."""
+
+    def add(self, one: Any, other: Any) -> _Known:
+        return self._sum(one, other, 1)
+
+    def sub(self, one: Any, other: Any) -> _Known:
+        return self._sum(one, other, -1)
+
+    def select(self, _condition: Any, one: Any, other: Any) -> _Known:
+        return _mixed(one.type, one, other)
+
+    def icmp_signed(self, *_operands: Any) -> _Known:
+        return _Known(ir.IntType(1), Origin())
+
+    icmp_unsigned = icmp_signed
+
+    def __getattr__(self, _name: str) -> Callable[..., _Known]:
+        return _converted
+
+    @staticmethod
+    def _sum(one: Any, other: Any, sign: int) -> _Known:
+        left, right = _origin(one), _origin(other)
+        if isinstance(other, ir.Constant):
+            step = other.constant - (1 << one.type.width) * (other.constant >> one.type.width - 1)
+            return _Known(one.type, Origin(left.of, left.less, left.base, left.offset + sign * step))
+        if sign < 0:
+            return _Known(one.type, Origin(left.of, left.less | right.of))
+        if isinstance(one, ir.Constant):
+            return _Builder._sum(other, one, 1)
+        return _mixed(one.type, one, other)
+
+
+def _converted(*operands: Any) -> _Known:
+    """An operation on some values, perhaps to another type."""
+    kinds = [each for each in operands if isinstance(each, ir.IntType)]
+    values = [each for each in operands if not isinstance(each, ir.IntType)]
+    return _mixed(kinds[0] if kinds else values[0].type, *values)
+
+
+def _mixed(kind: ir.IntType, *values: Any) -> _Known:
+    origins = [_origin(each) for each in values]
+    of = frozenset(name for each in origins for name in each.of)
+    less = frozenset(name for each in origins for name in each.less)
+    same = origins[0] if len(set(origins)) == 1 else Origin()
+    return _Known(kind, Origin(of, less, same.base, same.offset))
+
+
+def _origin(value: Any) -> Origin:
+    return value.origin if isinstance(value, _Known) else Origin()
+
+
+@dataclass(slots=True)
+class _Tracking(Effects):
+    """Effects that keep origins."""
+
+    accesses: list[MemoryAccess] = field(default_factory=list)
+
+    def load(self, address: Value, nbytes: int) -> Value:
+        loaded = f"load {sum(each.stored is None for each in self.accesses)}"
+        self.accesses.append(MemoryAccess(_origin(address.ir), nbytes))
+        return _named(self.builder, loaded, 8 * nbytes)
+
+    def store(self, address: Value, value: Value) -> None:
+        self.accesses.append(MemoryAccess(_origin(address.ir), value.bits // 8, _origin(value.ir)))
+
+    def _fetched(self, register: str) -> Value:
+        return _named(self.builder, register, width(register))
+
+
+def _named(builder: Any, name: str, bits: int) -> Value:
+    return Value(builder, _Known(ir.IntType(bits), Origin(frozenset({name}), NOWHERE, name)))
+
+
+_known: dict[tuple[object, ...], Made] = {}
+
+
+def made_by(instruction: Instruction) -> Made:
+    """Return what an instruction makes; of a bundle, what all of it does."""
+    key = tuple((id(each.form), *each.operands.values()) for each in instruction.operations)
+    if key not in _known:
+        builder: Any = _Builder()
+        clock = Value(builder, ir.Constant(ir.IntType(64), 0))
+        following = Value(builder, I32(instruction.end))
+        effects = _Tracking(
+            builder, lambda _: None, None, lambda: clock, instruction.address, lambda: following
+        )
+        for each in instruction.operations:
+            SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
+        writes = {name: _origin(value.ir) for name, value in effects.pending.items()}
+        _known[key] = Made(writes, tuple(effects.accesses))
+    return _known[key]

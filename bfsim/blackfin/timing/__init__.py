@@ -1,0 +1,1 @@
+"""What code costs: instructions, waits between them, turns of loops."""

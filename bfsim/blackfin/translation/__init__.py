@@ -1,0 +1,1 @@
+"""The translator: object code → one native function that counts what it does."""

@@ -1,0 +1,100 @@
+"""What native code counts while it runs, and the cycles that this makes.
+
+The counts lie in memory (`counts`); some follow from others, and are worked out when the function is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from llvmlite import ir
+
+from bfsim.blackfin.control_flow.edge_counts import CountedEvent
+from bfsim.blackfin.control_flow.flow import Edge
+from bfsim.blackfin.control_flow.implied import Implied
+from bfsim.blackfin.instructions.effects import I64
+from bfsim.blackfin.instructions.value import Value
+from bfsim.blackfin.timing.stalls import Waits
+from bfsim.blackfin.translation.counters import Counted
+from bfsim.blackfin.translation.counts import add, make_writable, sum_of, without, work_out
+from bfsim.blackfin.translation.native_function import NativeFunction
+from bfsim.blackfin.translation.reports import Reports
+
+
+class Counting:
+    """Adds to the counts of a function. With `reports`, cycles pass for them as well."""
+
+    def __init__(
+        self, function: NativeFunction, counted: Counted, implied: Iterable[Implied], reports: Reports | None
+    ) -> None:
+        self._counts, self._counters, self._reports = function.counts, counted.counters, reports
+        make_writable(self._counts, len(self._counters))
+        self._numbers = {
+            (each.block.start, each.taken, each.along): number for number, each in enumerate(self._counters)
+        }
+        self._implied = {each.block: each for each in implied}
+        self._clock = self._sum(
+            function.module, "clock", [each.cclk + each.stall_cclk for each in self._counters]
+        )
+        self._waited = self._sum(function.module, "waited", [each.stall_cclk for each in self._counters])
+        self._base = ir.IRBuilder(function.entry).alloca(I64)
+
+    def _sum(self, module: ir.Module, name: str, factors: Iterable[int]) -> ir.Function:
+        """Return the function that adds up all counts, each times its factor."""
+        return sum_of(module, name, without(self._implied.values(), self._numbers, factors))
+
+    def waits(self, start: int) -> Waits:
+        """Return the waits of each instruction of a block."""
+        return self._counters[self._numbers[start, False, None]].waits
+
+    def executed(self, builder: ir.IRBuilder, start: int, cclk: int) -> None:
+        """Count an execution of a block, which takes so many cycles."""
+        if start not in self._implied:
+            self._add(builder, self._numbers[start, False, None], I64(1))
+        self.let_pass(builder, I64(cclk))
+
+    def branched(self, builder: ir.IRBuilder, start: int, taken: ir.Value) -> None:
+        """Count the branch of a block, if it is taken."""
+        number = self._numbers[start, True, None]
+        self._add(builder, number, taken)
+        self.let_pass(builder, builder.mul(taken, I64(self._counters[number].cclk)))
+
+    def went(self, builder: ir.IRBuilder, edge: Edge) -> None:
+        """Count a way from one block to another, if it makes other waits there."""
+        if (number := self._numbers.get((edge.target, False, edge))) is not None:
+            self._add(builder, number, I64(1))
+            self.let_pass(builder, I64(self._counters[number].stall_cclk))
+
+    def happened(self, builder: ir.IRBuilder, event: CountedEvent, times: ir.Value) -> None:
+        """Count what has happened so many times, if it is counted and does not follow from other counts."""
+        if (number := self._numbers.get(event)) is None:
+            return
+        counter = self._counters[number]
+        if counter.taken or counter.along or counter.block.start not in self._implied:
+            self._add(builder, number, times)
+        self.let_pass(builder, builder.mul(times, I64(counter.cclk + counter.stall_cclk)))
+
+    def let_pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
+        """Let cycles pass for what is reported."""
+        if self._reports:
+            self._reports.go_on(builder, cclk)
+
+    def clock(self, builder: ir.IRBuilder) -> Value:
+        """Add up the cycles of all that was executed: those before this call, and those of the counts; a function adds up these."""
+        counted = builder.call(self._clock, [self._counts])
+        return Value(builder, builder.add(builder.load(self._base), counted))
+
+    def begin(self, builder: ir.IRBuilder, clock: ir.Value) -> None:
+        """Take note of the cycles before this call."""
+        builder.store(builder.sub(clock, builder.call(self._clock, [self._counts])), self._base)
+
+    def work_out(self, builder: ir.IRBuilder) -> None:
+        """Store the counts that follow from others."""
+        work_out(builder, self._counts, self._implied.values(), self._numbers)
+
+    def waited(self, builder: ir.IRBuilder) -> ir.Value:
+        """Return the cycles of waits in all that was executed."""
+        return builder.call(self._waited, [self._counts])
+
+    def _add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
+        add(builder, self._counts, number, amount)

@@ -1,0 +1,81 @@
+"""The loop of libgcc's unsigned division: all of its turns but the last are one division of the host.
+
+Nearly every division of object code is this loop (`__udivsi3`, which `__divsi3`, `__modsi3` and `__umodsi3` call), of 32 turns with a
+bit of the quotient each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bfsim.blackfin.control_flow.blocks import Block
+from bfsim.blackfin.control_flow.edge_counts import CountedEvent
+from bfsim.blackfin.control_flow.flow import Edge, Way
+from bfsim.blackfin.instructions.text import text
+from bfsim.blackfin.instructions.value import Value
+from bfsim.blackfin.translation.at_once import HardwareLoop, Registers
+
+LOOP = (
+    "R0 = ROT R0 BY 0x1",
+    "R3 = ROT R3 BY 0x1",
+    "R2 = R3 - R1",
+    "CC = R3 < R1 (IU)",
+    "IF !CC R3 = R2",
+)
+"""[GCC] Bits of R0 go up into the remainder, R3; those of the quotient, each inverted, come in at the other end, through CC."""
+DIVIDING = ("R0", "R1", "R3", "CC")
+"""The registers that say what it does."""
+TURNS = 32
+AHEAD = TURNS - 1
+"""How many turns are made at once."""
+LARGEST_DIVISOR = 1 << 30
+"""With a larger one a difference may overflow, which the flag VS remembers."""
+
+
+def division(block: Block) -> Division | None:
+    """Return the division that a block is all turns of, if it is one."""
+    if len(block.instructions) != len(LOOP) or tuple(map(text, block.instructions)) != LOOP:
+        return None
+    return Division(HardwareLoop(block.start, block.instructions[-1].address, 0), (block,))
+
+
+@dataclass(frozen=True, slots=True)
+class Division:
+    """The loop of a division (`AtOnce`)."""
+
+    loop: HardwareLoop
+    blocks: tuple[Block, ...]
+
+    @property
+    def registers(self) -> tuple[str, ...]:
+        """What must be given."""
+        return *DIVIDING, *self.loop.registers
+
+    def can_be_made(self, registers: Registers) -> Value:
+        """Return whether registers are as at the loop's beginning, with a divisor that is neither 0 nor too large."""
+        is_first = self.loop.has_turns(registers, TURNS) & registers["R3"].equals(0)
+        return is_first & (registers["R1"] - 1).below(LARGEST_DIVISOR)
+
+    def before_last_turn(self, registers: Registers) -> dict[str, Value]:
+        """Return registers as they are before the loop's last turn, made of those at its beginning."""
+        divisor = registers["R1"]
+        upper = registers["R0"].shift_right(1)  # the lowest bit comes down in the last turn
+        quotient = Value(upper.builder, upper.builder.udiv(upper.ir, divisor.ir))
+        inverted = ~quotient
+        first_in = registers["CC"].zero_extended().shift_left(AHEAD - 1)
+        return {
+            "R0": registers["R0"].shift_left(AHEAD)
+            | first_in
+            | inverted.shift_right(1) & (1 << AHEAD - 1) - 1,
+            "R3": upper - quotient * divisor,
+            "CC": inverted.low(1),
+            self.loop.count: divisor.constant(1),
+        }
+
+    def times(self, registers: Registers) -> dict[CountedEvent, Value]:
+        """Return how often control went each way."""
+        head, ahead = self.loop.head, registers["R0"].constant(AHEAD, 64)
+        return {
+            CountedEvent(head): ahead,
+            CountedEvent(head, along=Edge(head, head, Way.REPEATS)): ahead,
+        }

@@ -1,0 +1,226 @@
+"""Object code → one native function of all that can be reached, with counters of its blocks.
+
+The function is `int(memory, state, counts)`: it goes on from the address in the PC of the state until it meets an event
+(`event.Event`), which it returns; registers are in the state again then, and the counts are added to. Registers are slots on its
+stack (`native_function`); within a block they are values, and slots are written at its end. Where it goes from there is said in `jumps`,
+and what it counts in `counting`. Whoever runs the code may translate it anew with an address that it did not know among its entries.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from llvmlite import ir
+
+from bfsim.blackfin.control_flow.blocks import Block, Code, accesses_memory
+from bfsim.blackfin.control_flow.convention import GIVEN, Contract
+from bfsim.blackfin.control_flow.flow import is_closed, returns
+from bfsim.blackfin.control_flow.implied import implied
+from bfsim.blackfin.instructions.decode import Instruction
+from bfsim.blackfin.instructions.effects import I32, I64, POINTER, Effects
+from bfsim.blackfin.instructions.event import Event
+from bfsim.blackfin.instructions.registers import SLOTS
+from bfsim.blackfin.instructions.semantics import SEMANTICS
+from bfsim.blackfin.instructions.value import Value
+from bfsim.blackfin.translation.alignment import Alignment
+from bfsim.blackfin.translation.counters import Counted
+from bfsim.blackfin.translation.counting import Counting
+from bfsim.blackfin.translation.host_places import HostPlaces
+from bfsim.blackfin.translation.jumps import Jumps
+from bfsim.blackfin.translation.loops_at_once import loops_at_once
+from bfsim.blackfin.translation.native_function import NativeFunction
+from bfsim.blackfin.translation.reports import reports_of
+from bfsim.blackfin.translation.tracing import Tracing
+
+ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
+LARGE_PROGRAM_BLOCKS = 500
+"""[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
+
+SMALL_PROGRAM_BLOCKS = 200
+"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth some of LLVM's effort: all of it takes nearly twice
+as long, and the code gains an eighth, for a compiler has optimised it already. Longer code reports every access without asking first, and
+LLVM does less for it: anything else takes twice the time there, and such code seldom runs."""
+
+
+def is_large(code: Code) -> bool:
+    """Whether registers stay in the state and LLVM does not optimise."""
+    return len(code.blocks) > LARGE_PROGRAM_BLOCKS
+
+
+def is_small(code: Code) -> bool:
+    """Whether native code is to be fast, not soon there."""
+    return len(code.blocks) <= SMALL_PROGRAM_BLOCKS
+
+
+def translate(
+    of: Counted,
+    symbol: str,
+    *,
+    fuel: bool = False,
+    tracing: Tracing | None = None,
+    contract: Contract | None = None,
+) -> str:
+    """Return the LLVM module of code; its function is called `symbol`. With `fuel`, the FUEL of the state is how many blocks it may run.
+
+    With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
+    `contract`: of code that is called as a function. Where that is not trusted, it says which instruction has made an access or a jump for
+    which it is left.
+    """
+    return str(_Translation(of, symbol, fuel=fuel, tracing=tracing, contract=contract).module())
+
+
+class _Translation:
+    """The function while it is made."""
+
+    def __init__(
+        self,
+        of: Counted,
+        symbol: str,
+        *,
+        fuel: bool,
+        tracing: Tracing | None,
+        contract: Contract | None,
+    ) -> None:
+        self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
+        self.given = contract.read | GIVEN if contract else SLOTS
+        self.read = contract.read | ALWAYS_READ if contract else SLOTS
+        is_checked = contract is not None and not contract.is_trusted
+        goes_back = contract is not None and contract.is_trusted and is_closed(of.code)
+        self.function = NativeFunction(symbol, keeps_state=is_large(of.code))
+        self.places = HostPlaces(self.function.module, self.function.function) if is_checked else None
+        self.alignment = Alignment(self.function) if is_checked else None
+        self.reports = None
+        if tracing:
+            entry = ir.IRBuilder(self.function.entry)
+            block_at = entry.load(self.function.place(entry, "TRACE"), typ=POINTER)
+            self.reports = reports_of(entry, block_at, asks=is_small(of.code))
+        self.counting = Counting(self.function, of, () if fuel else implied(of.code), self.reports)
+        self.jumps = Jumps(
+            self.function,
+            of.code,
+            self.counting,
+            returns=returns(of.code) if goes_back or is_small(of.code) else {},
+            is_closed=goes_back,
+            at_once={} if fuel else loops_at_once(of.code),
+            says_from=is_checked,
+        )
+        self.values: dict[str, ir.Value] = {}
+        """Registers behind the instructions of the block so far."""
+
+    def module(self) -> ir.Module:
+        for block in self.code.blocks.values():
+            self._block(block)
+        first = self.jumps.at
+        for copied in self.jumps.last_turns:
+            self.jumps.at = {**first, **copied}
+            for start in copied:
+                self._block(self.code.blocks[start])
+        self.jumps.at = first
+        self.jumps.dispatch()
+        self._leave()
+        self._enter()
+        return self.function.module
+
+    def _block(self, block: Block) -> None:
+        builder = ir.IRBuilder(self.jumps.at[block.start])
+        self.values.clear()
+        written: dict[str, None] = {}
+        if self.fuel:
+            self._burn(builder, block.start)
+        flow = None
+        cclk = 0
+        for instruction, wait in zip(block.instructions, self.counting.waits(block.start), strict=True):
+            cclk += wait.cclk
+            effects = self._instruction(builder, instruction, block.start, cclk)
+            for register, value in effects.pending.items():
+                self.values[register] = value.ir
+                written[register] = None
+            flow = effects.flow
+            cclk += self.timing.of(instruction)
+        if self.alignment:
+            self.alignment.hold(builder)
+        for register in written:
+            self.function.write(builder, register, self.values[register])
+        self.counting.executed(builder, block.start, cclk)
+        if flow and flow.condition and block.branches:
+            self.counting.branched(builder, block.start, flow.condition.zero_extended(64).ir)
+        self.jumps.end(builder, block, flow)
+
+    def _burn(self, builder: ir.IRBuilder, start: int) -> None:
+        """Leave native code before a block if there is no fuel left."""
+        left = self.function.read(builder, "FUEL")
+        empty, enough = self.function.new_block("empty"), self.function.new_block("enough")
+        builder.cbranch(builder.icmp_unsigned("==", left, I64(0)), empty, enough)
+        builder.position_at_end(empty)
+        self.function.leave_for(builder, Event.FUEL, I32(start))
+        builder.position_at_end(enough)
+        self.function.write(builder, "FUEL", builder.sub(left, I64(1)))
+
+    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, block: int, cclk: int) -> Effects:
+        """Add an instruction that is issued `cclk` cycles after its block, at the address `block`, has begun."""
+        effects = Effects(
+            builder,
+            partial(self._value, builder),
+            self.function.memory,
+            lambda: self.counting.clock(builder),
+            instruction.address,
+            lambda: self._following(builder, instruction),
+            report=partial(self._access, builder, instruction, block, cclk),
+            mark=self.places.of(instruction.address)
+            if self.places and accesses_memory(instruction)
+            else None,
+        )
+        for each in instruction.operations:
+            SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
+        return effects
+
+    def _value(self, builder: ir.IRBuilder, register: str) -> ir.Value:
+        """Return what a register is behind the instructions of the block so far."""
+        if register not in self.values:
+            self.values[register] = self.function.read(builder, register)
+        return self.values[register]
+
+    def _access(
+        self,
+        builder: ir.IRBuilder,
+        instruction: Instruction,
+        block: int,
+        cclk: int,
+        address: Value,
+        nbytes: int,
+        *,
+        writes: bool,
+    ) -> None:
+        """Report an access, and take note of whether it is aligned, where that is asked for."""
+        if self.tracing and self.reports:
+            access = nbytes + self.tracing.write * writes
+            site = self.tracing.site_of(block, instruction.address)
+            self.reports.report(builder, address.zero_extended(64).ir, access, cclk, site)
+        if self.alignment:
+            self.alignment.note(builder, address, nbytes, instruction.address)
+
+    def _following(self, builder: ir.IRBuilder, instruction: Instruction) -> Value:
+        """Return the address of what is executed behind an instruction that does not jump: at a loop's end perhaps its start."""
+        found = Value(builder, I32(instruction.end))
+        for counter in (0, 1):
+            if (instruction.address, counter) in self.code.loop_starts:
+                left, end, start = (
+                    Value(builder, self._value(builder, f"{each}{counter}")) for each in ("LC", "LB", "LT")
+                )
+                again = found.constant(1).below(left) & end.equals(instruction.address)
+                found = again.choose(start, found)
+        return found
+
+    def _leave(self) -> None:
+        builder = ir.IRBuilder(self.function.leave)
+        self.counting.work_out(builder)
+        self.function.write(builder, "CLOCK", self.counting.clock(builder).ir)
+        self.function.write(builder, "WAITED", self.counting.waited(builder))
+        self.function.give_registers_back(builder, self.read)
+        builder.ret(builder.load(self.function.event))
+
+    def _enter(self) -> None:
+        builder = ir.IRBuilder(self.function.entry)
+        self.function.fetch_registers(builder, self.given)
+        self.counting.begin(builder, self.function.read(builder, "CLOCK"))
+        builder.branch(self.function.dispatch)
