@@ -26,7 +26,6 @@ from bfsim.report.save import require_apart, require_no_source, require_place, w
 from bfsim.report.target import Target
 from bfsim.running.inputs import calibration_of, files_of_run
 from bfsim.running.watchers import Watchers, calling
-from bfsim.seen import SeenFrame
 from bfsim.trace import BudgetRow, Identity, RunRecord
 
 _PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
@@ -48,16 +47,12 @@ def require_page(path: Path, others: Iterable[Path | None]) -> None:
 def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[str, Any]) -> Iterator[None]:
     """Have `watchers` write a page to `path` of the run that `what`, arguments of `simulate`, describes."""
     chosen = Chosen()
-    with Pictures() as pictures, Gantts(chosen.has) as gantts:
-
-        def draw(frame: SeenFrame) -> None:
-            if chosen.has(frame.index):
-                pictures.add_with_heat(frame)
+    with Pictures(chosen.has) as pictures, Gantts(chosen.has) as gantts:
+        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_with_heat])
 
         def make_room(_identity: Identity, frames: int) -> None:
             pictures.frames = min(frames, MOST)
 
-        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [draw])
         watchers.before.extend((make_room, chosen.begin, gantts.begin, heats.begin))
         watchers.seen.append(heats.add)
         watchers.spans.extend((chosen.add, gantts.add, heats.add_spans))  # what is chosen is drawn

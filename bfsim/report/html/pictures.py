@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Callable
 from dataclasses import replace
 from io import BytesIO
 from typing import Self
@@ -31,10 +32,12 @@ _LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
 class Pictures:
     """The overlay of each frame of a run and its heat map, as small as a page of `frames` of them needs it. A context manager.
 
-    In memory there is one at a time. Raises ConfigError where there is no room for its file.
+    In memory there is one at a time. `is_wanted` says which frames are drawn with their heat. Raises ConfigError where there
+    is no room for its file.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, is_wanted: Callable[[int], bool] = lambda _index: True) -> None:
+        self._is_wanted = is_wanted
         self.frames = 1
         self._overlays = Spool()
         self._heats = Spool()
@@ -53,7 +56,9 @@ class Pictures:
         )
 
     def add_with_heat(self, frame: SeenFrame) -> None:
-        """Draw what was seen in a frame whose cameras have their heat, and the heat."""
+        """Draw what was seen in a frame whose cameras have their heat, and the heat, if it is wanted."""
+        if not self._is_wanted(frame.index):
+            return
         self.add(replace(frame, cameras=tuple(replace(each, heat=None) for each in frame.cameras)))
         self._heats.put(
             frame.index, webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), self._room_bytes(HEAT_SHARE))
