@@ -30,7 +30,7 @@ WHOLE_COMMANDS = (TESTS, TESTS / "cli")
 """Folders of tests that do what users do."""
 COMPILES = (
     TESTS / "firmware" / "test_areas.py",
-    TESTS / "kernel" / "test_firmware_twins.py",
+    TESTS / "kernel" / "estimate" / "test_firmware_twins.py",
     TESTS / "test_verifying.py",
 )
 """Their tests compile the built-in firmware as it is estimated, and its kernels as -O2 estimates them, which takes up to a minute."""

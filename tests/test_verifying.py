@@ -26,8 +26,8 @@ from bfsim.verifying.sample import Sample
 from bfsim.verifying.verify import compared
 from tests.eyes import FIRMWARE, record
 from tests.kernel import c_kernels
+from tests.kernel.c.test_c import drawn
 from tests.kernel.host_c import COMPILER, needs_compiler
-from tests.kernel.test_c import drawn
 from tests.sums import SUMS, sums
 
 WITHOUT_OVERFLOW = ("last_of_loop", "moving_stop", "left_first", "sometimes", "floats", "choices", "unsigned")

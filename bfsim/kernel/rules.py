@@ -227,8 +227,8 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.STEPPED_COUNTERS: ("percentiles",),
     Rule.CONSTANT_MOVES: ("hamming_pairs",),
     Rule.KEPT_RESULTS: ("morton",),
-    Rule.EVEN_ADDRESSES: (),  # tests/kernel/test_searches_by_halves.py
-    Rule.OPPOSITE_FLAGS: (),  # from kernels that are not measured here: tests/kernel/test_flags.py
+    Rule.EVEN_ADDRESSES: (),  # tests/kernel/estimate/loops/test_searches_by_halves.py
+    Rule.OPPOSITE_FLAGS: (),  # from kernels that are not measured here: tests/kernel/estimate/choices/test_flags.py
     Rule.SINGLE_BITS: ("heap_sort",),
     Rule.BIT_COUNTS: ("popcount_words",),
     Rule.COPIED_HEADERS: ("run_tasks", "mu_law_block"),
@@ -238,48 +238,48 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.ROTATED_ONCE: ("segment_row",),
     Rule.SPLIT_TESTS: ("ray_length", "unpack_runs", "lzss_expand"),
     Rule.COPIED_BREAKS: ("match_features",),
-    Rule.FREQUENT_COUNTERS: (),  # tests/kernel/test_gcc_shapes.py
+    Rule.FREQUENT_COUNTERS: (),  # tests/kernel/estimate/loops/test_gcc_shapes.py
     Rule.LAGGING_COUNTERS: ("border_strength",),
     Rule.PARALLEL_COUNTS: ("nearest_words",),
     Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
     Rule.FINAL_VALUES: ("two_sums",),
-    Rule.PARTIAL_REDUNDANCIES: (),  # from kernels that are not measured here: tests/kernel/test_partial_redundancies.py
+    Rule.PARTIAL_REDUNDANCIES: (),  # from kernels that are not measured here: tests/kernel/estimate/redundancies/test_partial_redundancies.py
     Rule.CONDITIONAL_MOVES: ("ring_put", "nearest_words"),
     Rule.BUNDLES: ("dilate_grey_row", "crc16_table"),
-    Rule.EXTREMES: (),  # from kernels that are not measured here: tests/kernel/test_extremes.py
+    Rule.EXTREMES: (),  # from kernels that are not measured here: tests/kernel/estimate/choices/test_extremes.py
     Rule.SUNK_STORES: (),
     Rule.NARROW_CHOICES: (),
-    Rule.SKIPPED_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_threaded_jumps.py
+    Rule.SKIPPED_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/estimate/jump_threading/test_threaded_jumps.py
     Rule.THREADED_HINTS: (),
-    Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/test_predictive_commoning.py
+    Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/estimate/memory/test_predictive_commoning.py
     Rule.COUNTER_REGISTERS: (),
     Rule.STEPPED_BETWEEN: (),
     Rule.NARROW_TREES: (),
-    Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/test_register_classes.py
+    Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_register_classes.py
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
-    Rule.COPIES_IN_FRONT: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_pictures.py
+    Rule.COPIES_IN_FRONT: (),  # from kernels that are not measured here: tests/kernel/estimate/memory/test_rows_of_pictures.py
     Rule.STRENGTH_REDUCTION: (),
     Rule.SUMMED_INDICES: (),
-    Rule.SHIFTED_PRODUCTS: (),  # from kernels that are not measured here: tests/kernel/test_rows_of_numbers.py
+    Rule.SHIFTED_PRODUCTS: (),  # from kernels that are not measured here: tests/kernel/estimate/arithmetic/test_rows_of_numbers.py
     Rule.OWN_OPERATIONS: (),
     Rule.ARGUMENT_LOADS: (),
-    Rule.STAYING_ARGUMENTS: (),  # from kernels that are not measured here: tests/kernel/test_saved_registers.py
+    Rule.STAYING_ARGUMENTS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_saved_registers.py
     Rule.EXPANSION_ORDER: (),
     Rule.BYTE_ADDRESSES: (),
     Rule.NARROW_BITS: (),
-    Rule.CODE_HOISTING: (),  # from kernels that are not measured here: tests/kernel/test_code_that_decides.py
+    Rule.CODE_HOISTING: (),  # from kernels that are not measured here: tests/kernel/estimate/conditions/test_code_that_decides.py
     Rule.THREADED_CHOICES: (),
-    Rule.KEPT_BOUNDS: (),  # from kernels that are not measured here: tests/kernel/test_kept_bounds.py
-    Rule.ENDS_OF_RANGES: (),  # from kernels that are not measured here: tests/kernel/test_rings.py
-    Rule.COMPUTED_STARTS: (),  # from kernels that are not measured here: tests/kernel/test_computed_starts.py
-    Rule.FIRST_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/test_first_iterations.py
-    Rule.CROSS_JUMPS: (),  # tests/kernel/test_ends_of_loops.py
-    Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/test_either_bank.py
+    Rule.KEPT_BOUNDS: (),  # from kernels that are not measured here: tests/kernel/estimate/jump_threading/test_kept_bounds.py
+    Rule.ENDS_OF_RANGES: (),  # from kernels that are not measured here: tests/kernel/estimate/ranges/test_rings.py
+    Rule.COMPUTED_STARTS: (),  # from kernels that are not measured here: tests/kernel/estimate/loops/test_computed_starts.py
+    Rule.FIRST_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/estimate/jump_threading/test_first_iterations.py
+    Rule.CROSS_JUMPS: (),  # tests/kernel/estimate/loops/test_ends_of_loops.py
+    Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_either_bank.py
     Rule.SPILLED_SUMS: (),
-    Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/test_field_addresses.py
-    Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/test_pointer_differences.py
+    Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_field_addresses.py
+    Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_pointer_differences.py
     Rule.BIT_TESTS: (),
     Rule.CONSTANT_TABLES: (),
     Rule.STATE_MACHINES: (),
-    Rule.JUMP_TABLES: (),  # from kernels that are not measured here: tests/kernel/test_switches.py
+    Rule.JUMP_TABLES: (),  # from kernels that are not measured here: tests/kernel/estimate/switches/test_switches.py
 }

@@ -1,7 +1,7 @@
 """An index is added up before it becomes an address: LLVM makes a[i + j] to an address j elements behind the one i elements behind a.
 
 C compilers add up what the source adds up: the sum of two words is an index, and its address one instruction. Only the address of a byte
-that one access uses is such a sum of three in GCC 12's code, too [fitted: tests/kernel/test_rows_of_pictures.py]. It is left as it is, and so
+that one access uses is such a sum of three in GCC 12's code, too [fitted: tests/kernel/estimate/memory/test_rows_of_pictures.py]. It is left as it is, and so
 are addresses that a loop steps along, or that do not change in it: they cost the same either way.
 """
 

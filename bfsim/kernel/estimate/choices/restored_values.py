@@ -1,6 +1,6 @@
 """A value is itself again where ways meet: LLVM puts 0 in place of x where a test has found x to be 0, and chooses between 0 and x behind.
 
-Such a choice is x, as GCC 12 has it [measured: borders in tests/kernel/test_rows_of_pictures.py]. Unless that is seen, the counter of a
+Such a choice is x, as GCC 12 has it [measured: borders in tests/kernel/estimate/memory/test_rows_of_pictures.py]. Unless that is seen, the counter of a
 loop with `if x > 0` in it is none.
 """
 

@@ -32,7 +32,7 @@ def test_ir_and_counters_do_not_depend_on_hash_seed_folder_or_cache(tmp_path: Pa
         kernel = getattr(cost_kernels, name)
         digest = hashlib.sha256(optimised(kernel.function, VDSP_O2).encode()).hexdigest()
         here.append(f"{digest} {kernel.compile(VDSP_O2).counters}")
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     there = subprocess.run(
         [sys.executable, "-c", PRINT, str(root)],
         cwd=tmp_path,
