@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from bfsim.errors import ConfigError, WorkError
+from bfsim.kernel import Kernel
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
 from tests.eyes import FIRMWARE, record
@@ -67,6 +68,16 @@ def work(folder: Path, plain: Run) -> Path:
 def test_a_recorded_run_is_played_as_it_was(work: Path, plain: Run) -> None:
     """Every record is the same: frames, owners, stalls by site, traffic, results, messages, identity."""
     assert differing(plain, simulate(frames=FRAMES, work=work)) <= HOSTS_OWN
+
+
+def test_a_play_makes_no_kernel_ready_to_run(work: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the calls cost was recorded. That they were bound to their rows, and their machine code loaded, was a fifth of a short play."""
+
+    def refused(*_: object, **__: object) -> Any:
+        raise AssertionError("a play wants to call a kernel")
+
+    monkeypatch.setattr(Kernel, "prepare", refused)
+    assert simulate(frames=FRAMES, work=work).frames
 
 
 @pytest.mark.parametrize("seed", [0, *exhaustive(1, 2, 3)])

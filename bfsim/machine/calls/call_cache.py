@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +67,24 @@ class KnownCall:
     stays_in_l1: bool
     is_alone: bool
     handed_over: tuple[str, ...]
+
+
+class _CallOnRows(NamedTuple):
+    """A call as it is counted: the group that it belongs to, its rows, which of them lie outside of L1, and the stack if that does.
+
+    `is_traced`: whether its code reports accesses.
+    """
+
+    group: CallGroup
+    rows: list[Row]
+    outside: list[Row]
+    stack: NDArray[np.uint8] | None
+    is_traced: bool
+
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether neither its accesses nor its code can leave L1."""
+        return not (self.outside or self.stack is not None or self.group.fetched)
 
 
 KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, KnownCall]]
@@ -166,22 +185,24 @@ class CallCache:
         """Return what conflicts in L1 cost calls that have `accessed` it in `elapsed_cclk`, all since this was asked last."""
         return self._subbanks.charge(accessed, elapsed_cclk, self._ledger.conflicts_at)
 
-    def prepare(
-        self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool = False
-    ) -> KnownCall:
-        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced.
-
-        `was_traced`: some lay there when it was recorded, so that its sites are numbered as those of traced code.
-        """
+    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
+        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced."""
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
-        call = self._prepared(kernel, arguments, was_traced=was_traced)
+        call = self._prepared(kernel, self._on_rows(kernel, arguments))
         rows_of, calls = self.known.setdefault(kernel, (kernel.arrays_of, {}))
         calls[rows_of(arguments)] = call
         self.made.append(call)
         self.on_prepared(kernel, arguments)
         return call
+
+    def expect(self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool) -> bool:
+        """Count a call from now on that is played, not made; return whether it stays in L1.
+
+        `was_traced`: some of its rows lay outside when it was recorded, so that its sites are numbered as those of traced code.
+        """
+        return self._on_rows(kernel, arguments, was_traced=was_traced).stays_in_l1
 
     @property
     def events(self) -> NDArray[np.int64]:
@@ -206,7 +227,10 @@ class CallCache:
         buffers = tuple(each.buffer for each in self._owners)
         return CoreRecords(self._core, tuple(self._groups.values()), self._ledger.reported, buffers)
 
-    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool) -> KnownCall:
+    def _on_rows(
+        self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool = False
+    ) -> _CallOnRows:
+        """Return a call as it is counted under the present stage. Raises KernelError or FirmwareError for wrong arguments."""
         for each in arguments:
             if isinstance(each, Generator):
                 wait = f"{getattr(each, '__name__', 'wait')}(...)"
@@ -225,19 +249,21 @@ class CallCache:
             rows.append(row)
         outside = [each for each in rows if self._is_traced(each)]
         stack = self._stack if self._build.has_code(kernel) else None
-        leaves_l1 = bool(outside) or stack is not None
-        traced = leaves_l1 or was_traced
-        group = self._group(kernel, tuple(self._owners.of(each.offset) for each in rows), traced)
+        is_traced = bool(outside) or stack is not None or was_traced
+        group = self._group(kernel, tuple(self._owners.of(each.offset) for each in rows), is_traced)
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
-        access_trace = self._access_trace if traced else None
+        return _CallOnRows(group, rows, outside, stack, is_traced)
+
+    def _prepared(self, kernel: Kernel, call: _CallOnRows) -> KnownCall:
+        group, outside = call.group, call.outside
         run = kernel.prepare(
             group.code,
-            [each.array for each in rows],
+            [each.array for each in call.rows],
             group.totals,
-            access_trace,
+            self._access_trace if call.is_traced else None,
             group.first_site,
-            stack,
+            call.stack,
             self._memory,
         ).run
         if group.fetches:
@@ -249,10 +275,10 @@ class CallCache:
             len(self.made),
             run,
             words_at(run),
-            stays_in_l1=not (leaves_l1 or group.fetched),
+            stays_in_l1=call.stays_in_l1,
             is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
             handed_over=tuple(
-                dict.fromkeys(each.buffer for each in rows if each.buffer in self._handed_over)
+                dict.fromkeys(each.buffer for each in call.rows if each.buffer in self._handed_over)
             ),
         )
 

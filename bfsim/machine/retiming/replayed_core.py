@@ -210,7 +210,7 @@ class ReplayedCore(Core):
             else (0 if isinstance(each.type, IntType) else 0.0)
             for each in parameters
         ]
-        call = self._parts.calls.prepare(kernel, tuple(arguments), was_traced=not all(in_l1))
+        stays_in_l1 = self._parts.calls.expect(kernel, tuple(arguments), was_traced=not all(in_l1))
         given = [each for each in arguments if isinstance(each, Row)]
         moved_out = [each.buffer for each, was in zip(given, in_l1, strict=True) if was and not each.is_in_l1]
         if moved_out:
@@ -218,7 +218,7 @@ class ReplayedCore(Core):
                 f"{', '.join(dict.fromkeys(moved_out))} must be in L1, for it was when the run was recorded, and of what lies there "
                 "the accesses are not; record a run with this LDF, which can be played where it is in L1, too"
             )
-        self._know(np.append(self._kinds, w.RUN if call.stays_in_l1 else w.ACCESS))
+        self._know(np.append(self._kinds, w.RUN if stays_in_l1 else w.ACCESS))
 
     def _offset(self, place: Place) -> int:
         return int(self._firsts[place.owner]) + place.first
