@@ -73,7 +73,8 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
     if output and json_path != STDOUT:
         file = shlex.quote(str(output))
         click.echo(
-            f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it."
+            f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it,\n"
+            "with the other options that were given here."
             if placed.ldf
             else f"{output} was not written: {placed.start} is as good."
         )

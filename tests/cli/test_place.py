@@ -101,7 +101,7 @@ def test_from_sdram_to_l1(home: Path) -> None:
         "% simulated",
         "% predicted",
         "What moved, 6 of 10",
-        "Written: `bfsim run --ldf placed.ldf`",
+        "Written: `bfsim run --ldf placed.ldf` runs it, `bfsim ldf placed.ldf` draws it, with the other options that were given here.",
     ):
         assert words in said
     assert max(map(len, done.stdout.splitlines())) <= 80
