@@ -54,6 +54,15 @@ _FOOTER = struct.Struct("<BQQQI")
 _TAIL_BYTES = _FOOTER.size + len(MCAP0_MAGIC)
 _CRC_BYTES = 4
 
+_MADE_BY = "`bfsim record import` makes a recording from images, raw frames, a video or a bag"
+_OTHER_FILES = {
+    ".py": "firmware goes behind `--firmware`, and a board behind `--board`",
+    ".ldf": "an LDF goes behind `--ldf`",
+    ".json": "a script goes behind `--script`",
+    ".toml": "a script goes behind `--script`, a baseline behind `bfsim check --baseline`, and `bfsim sweep` takes a sweep",
+}
+"""What to say of files of a user that are given in the place of a recording."""
+
 
 class McapContainer:
     """An open MCAP file. Raises RecordingError, on opening and reading, for all that is wrong with it."""
@@ -168,10 +177,8 @@ class McapContainer:
         head = self._stream.read(len(MCAP0_MAGIC))
         if head != MCAP0_MAGIC:
             start = f"one that starts with {head!r}" if head else "an empty one"
-            raise RecordingError(
-                f"{self.path}: recording must be an MCAP file, not {start}; "
-                "`bfsim record import` makes a recording from images, raw frames, a video or a bag"
-            )
+            advice = _OTHER_FILES.get(self.path.suffix.lower(), _MADE_BY)
+            raise RecordingError(f"{self.path}: recording must be an MCAP file, not {start}; {advice}")
         self._stream.seek(max(0, self.size_bytes - _TAIL_BYTES))
         tail = self._stream.read()
         if len(tail) < _TAIL_BYTES or not tail.endswith(MCAP0_MAGIC):

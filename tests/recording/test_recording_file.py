@@ -211,6 +211,16 @@ def test_not_an_mcap(tmp_path: Path, content: bytes, message: str) -> None:
         RecordingReader(tmp_path / "x.mcap")
 
 
+@pytest.mark.parametrize(
+    ("name", "advice"), [("mine.py", "--firmware"), ("placed.LDF", "--ldf"), ("orders.json", "--script"), ("budget.toml", "--baseline")]
+)  # fmt: skip
+def test_another_file_of_the_user_is_told_where_it_goes(tmp_path: Path, name: str, advice: str) -> None:
+    """`bfsim run mine.py` is a slip of whoever begins: no recording is to be made of it."""
+    (tmp_path / name).write_text("firmware = 3\n")
+    with pytest.raises(RecordingError, match=rf"must be an MCAP file, not one .*goes behind .*{advice}"):
+        RecordingReader(tmp_path / name)
+
+
 def test_a_pipe_is_told_as_one(tmp_path: Path) -> None:
     """It could only be read from its begin to its end; one that nobody writes to is not waited for."""
     os.mkfifo(tmp_path / "a.mcap")
