@@ -98,6 +98,7 @@ def test_resize_and_force(folder: Path) -> None:
             ("--resize", "16x12"),
             "Scaled by a triangle filter from 64x24; 50 % of each is cut off, `--resize 16x6` keeps all\n",
         ),
+        (("--resize", "2x2"), "Scaled by a triangle filter from 64x24; 62 % of each is cut off\n"),
         (("--crop", "32x12"), "Cut from 64x24; 75 % of each is cut off, `--resize 32x12` keeps all\n"),
     ],
 )

@@ -29,8 +29,13 @@ def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
         return f"{text}; up to {max(cuts):.0%} of a picture is cut off".replace("%", " %")
     text = f"{text}; {cuts[0]:.0%} of each is cut off".replace("%", " %")
     width, height = summary.source_sizes[0]
-    kept = f"{summary.width}x{max(2 * round(summary.width * height / width / 2), 2)}"
-    return f"{text}, `--resize {kept}` keeps all"
+    kept = summary.width, max(2 * round(summary.width * height / width / 2), 2)
+    if is_scaled and kept == (
+        summary.width,
+        summary.height,
+    ):  # of a few pixels, whose shape no other even height is nearer to
+        return text
+    return f"{text}, `--resize {kept[0]}x{kept[1]}` keeps all"
 
 
 def skipped_texts(skipped: Sequence[Skipped]) -> Iterator[str]:
