@@ -30,11 +30,8 @@ def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
     text = f"{text}; {cuts[0]:.0%} of each is cut off".replace("%", " %")
     width, height = summary.source_sizes[0]
     kept = summary.width, max(2 * round(summary.width * height / width / 2), 2)
-    if is_scaled and kept == (
-        summary.width,
-        summary.height,
-    ):  # of a few pixels, whose shape no other even height is nearer to
-        return text
+    if is_scaled and kept == (summary.width, summary.height):
+        return text  # a few pixels, whose shape no other even height is nearer to
     return f"{text}, `--resize {kept[0]}x{kept[1]}` keeps all"
 
 
