@@ -31,6 +31,7 @@ from bfsim.kernel.ir.text import (
     with_each_arm,
 )
 
+WHILE = re.compile(r"test(\.|$)")  # the test of a `while` by itself: what the loop steps would stand before it
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
 TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
@@ -77,6 +78,8 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
         return False
     if loop.latch.endswith(SECOND):
         return False  # LLVM had made one test of both, so they are at its end
+    if inside == [loop.latch] and WHILE.match(loop.latch):
+        return False  # it ended with its `break`: it is a do-while loop already [do_while_loop_p]
     way_out = next(way for way in header.successors if way not in loop.blocks)
     back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
     is_entered_once = len(flow.predecessors[loop.header]) == len(back) + 1

@@ -1,12 +1,13 @@
 """What may come of words of which the least and the largest number are known, as unsigned ones [range-op.cc of GCC 12].
 
-A sum or product of signed numbers does not overflow, nor does what is negated.
+A sum or product of signed numbers does not overflow, nor does what is negated, but for a u32.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from bfsim.kernel.emitting.values import WRAPPING
 from bfsim.kernel.ir.text import Instruction
 from bfsim.kernel.ir.widths import WORD
 
@@ -67,7 +68,8 @@ def computed(each: Instruction, ranges: Sequence[Range]) -> Range:
             _shifted_down(ranges[1], _difference((WORD, WORD), ranges[2])),
         )
     low, high = COMPUTED[name](*ranges[:2])
-    is_signed = " nsw " in each.text or (name == "sub" and ranges[0] == (0, 0))
+    negates = name == "sub" and ranges[0] == (0, 0) and WRAPPING not in (each.result or "")
+    is_signed = " nsw " in each.text or negates
     if is_signed and _is_positive_signed(name, *ranges):
         high = min(high, LARGEST)
     return (low, high) if 0 <= low <= high < WORDS else ANY
