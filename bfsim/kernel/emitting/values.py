@@ -21,7 +21,9 @@ InlinedCall = tuple[str, str, int]
 Site = tree.Load | tree.Store | tree.Binary | tree.For
 """An access, a division or a loop with a step that is no constant: what can go wrong in a run."""
 I1, I32 = ir.IntType(1), ir.IntType(32)
-WRAPPING = "wrapping"  # names negated u32: an i32 that was negative is positive then, for it does not overflow in C
+WRAPPING = (
+    "wrapping"  # names negated u32: an i32 that was negative is positive then, for it does not overflow in C
+)
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
 # [predict.def of GCC 12] hit rates 67 % (continue) and 66 % (early return); both sides even otherwise
 CONTINUES, RETURNS, GOES_ON = 33, 34, 67
@@ -147,7 +149,9 @@ class Values:
             return floats.binary(self.builder, node.op, left, right)
         unsigned = node.type is u32
         if node.op in SIMPLE:
-            negates = unsigned and node.op == "-" and isinstance(node.left, tree.Const) and not node.left.value
+            negates = (
+                unsigned and node.op == "-" and isinstance(node.left, tree.Const) and not node.left.value
+            )
             return getattr(self.builder, SIMPLE[node.op])(left, right, name=WRAPPING if negates else "")
         if node.op in ("<<", ">>"):
             return self._shift(node, left, right)

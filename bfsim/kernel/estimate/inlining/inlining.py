@@ -5,8 +5,7 @@ less than 30 and takes much less time, or by less than 70 and all calls of a sta
 all calls of a static kernel together save code, as the only call of it does. What is never inlined is what the compiler does
 not see (`Inlines`). A kernel cannot call itself, so that nothing is inlined without end.
 
-Not modelled: constants that make a callee smaller at one call, cloning and splitting of functions, limits of size
-that only functions of thousands of statements reach.
+Not modelled: cloning and splitting of functions, limits of size that only functions of thousands of statements reach.
 """
 
 from __future__ import annotations
@@ -62,6 +61,8 @@ class _Edge:
     frequency: float
     size: int
     time: float
+    spared_size: int
+    spared_time: float
 
 
 @dataclass(slots=True)
@@ -138,7 +139,15 @@ class Inliner:
 
     def _node(self, name: str, estimate: Estimate) -> _Node:
         edges = [
-            _Edge(each.callee, (name, each.line), each.frequency, each.size, each.time)
+            _Edge(
+                each.callee,
+                (name, each.line),
+                each.frequency,
+                each.size,
+                each.time,
+                each.spared_size,
+                each.spared_time,
+            )
             for each in estimate.calls
         ]
         gone = estimate.gone_size + KEPT_STATEMENTS, estimate.gone_time + RETURN_TIME
@@ -148,12 +157,12 @@ class Inliner:
         return (edge.site[0], edge.callee) not in self.unseen
 
     def _growth(self, edge: _Edge) -> int:
-        return self.nodes[edge.callee].size - edge.size
+        return self.nodes[edge.callee].size - edge.spared_size - edge.size
 
     def _early(self, name: str) -> None:
-        """Inline what is tiny; of a callee that calls others, what is tiny even if each of them is inlined too."""
+        """Inline what is tiny, whatever its arguments; of a callee that calls others, what is tiny even if each of them is inlined too."""
         for edge in list(self.nodes[name].edges):
-            growth, calls = self._growth(edge), len(self.nodes[edge.callee].edges)
+            growth, calls = self._growth(edge) + edge.spared_size, len(self.nodes[edge.callee].edges)
             if self._sees(edge) and (growth <= 0 or growth * (calls + 1) <= EARLY_STATEMENTS):
                 self._inline(name, edge, Why.SHRINKS if growth <= 0 else Why.SMALL)
 
@@ -180,8 +189,8 @@ class Inliner:
         return None
 
     def _gain(self, edge: _Edge) -> float:
-        """Time that is saved: that of the call, and of what is gone."""
-        return (edge.time + self.nodes[edge.callee].gone_time) * edge.frequency
+        """Time that is saved: that of the call, and of what is gone or spared."""
+        return (edge.time + self.nodes[edge.callee].gone_time + edge.spared_time) * edge.frequency
 
     def _is_much_faster(self, name: str, edge: _Edge) -> bool:
         """Whether the caller, with the time in the callee, gets faster by 30 % [big_speedup_p]."""
@@ -216,8 +225,8 @@ class Inliner:
     def _inline(self, name: str, edge: _Edge, why: Why) -> None:
         node, callee = self.nodes[name], self.nodes[edge.callee]
         self._note(edge, inlined=True, why=why)
-        node.size += callee.size - edge.size
-        node.time += (callee.time - edge.time) * edge.frequency
+        node.size += self._growth(edge)
+        node.time += (callee.time - edge.spared_time - edge.time) * edge.frequency
         place = next(index for index, each in enumerate(node.edges) if each is edge)
         node.edges[place : place + 1] = [
             replace(each, frequency=each.frequency * edge.frequency) for each in callee.edges

@@ -31,7 +31,9 @@ from bfsim.kernel.ir.text import (
     with_each_arm,
 )
 
-WHILE = re.compile(r"test(\.|$)")  # the test of a `while` by itself: what the loop steps would stand before it
+WHILE = re.compile(
+    r"test(\.|$)"
+)  # the test of a `while` by itself: what the loop steps would stand before it
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
 TYPE = re.compile(r"\b(i\d+|ptr|float)\b")

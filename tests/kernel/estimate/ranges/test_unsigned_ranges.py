@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -13,6 +14,7 @@ from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, COMPUTED, WORDS, 
 from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.reading import read_module
+from tests.kernel.beside_gcc import check_estimate
 
 Pair = tuple[Range, int]
 
@@ -143,3 +145,20 @@ def test_loops_and_tests_say_how_large_a_number_is() -> None:
     assert found["%i"] == (0, WORDS // 2 - 1)
     assert found["%sum"] == (7, 56)
     assert found["%found"] == (3, 56)
+
+
+MAGNITUDES = """
+def f(x: i32[:], n: i32) -> i32:
+    s = 0
+    for i in range(n):
+        v = u32(x[i])
+        if x[i] < 0:
+            v = 0 - v
+        s += i32(v // 10)
+    return s
+"""
+
+
+def test_a_negated_word_need_not_be_positive(tmp_path: Path) -> None:
+    """An i32 that is negated does not overflow in C, a u32 may be 2 ** 31: the estimate was 19 times as much, with a call for each division."""
+    check_estimate(MAGNITUDES, 2219, 0.10, tmp_path)

@@ -1,0 +1,74 @@
+"""What a call gives may answer tests of what is called: then less of it is inlined, and so it is inlined sooner."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bfsim.kernel import GCC_O2
+from bfsim.kernel.estimate.inlining.inlining import decisions
+from tests.kernel.beside_gcc import check_estimate
+from tests.kernel.modules import kernel_of
+
+WAVE = """
+@kernel
+def wave(a: i16[:], x: i32) -> i32:
+    p = x & 127
+    if p < 32:
+        return a[p] + 3
+    if p < 64:
+        return a[64 - p] - (a[p] >> 2)
+    if p < 96:
+        return (a[p] >> 1) - a[p - 64] + (a[p - 32] >> 2)
+    return -a[128 - p]
+
+
+"""
+IN_RANGE = """
+def f(a: i16[:], o: i32[:], n: i32) -> None:
+    for y in range(n >> 4):
+        for x in range(16):
+            o[x] += wave(a, 4 * x) * wave(a, 2 * x + 32)
+"""
+ANYWHERE = """
+def f(a: i16[:], o: i32[:], n: i32) -> None:
+    for y in range(n >> 4):
+        for x in range(16):
+            o[x] += wave(a, o[x]) * wave(a, y)
+"""
+SHAPED = """
+@kernel
+def shaped(a: u8[:], i: i32, kind: i32, width: i32) -> i32:
+    if kind == 0:
+        return (a[i] * 3 + a[i + 1]) >> 2
+    if kind == 1:
+        total = 0
+        for j in range(width):
+            total += a[i + j]
+        return total // width
+    low = a[i]
+    for j in range(width):
+        low = min(low, a[i + j])
+    return low
+
+
+"""
+OF_NUMBERS = """
+def f(a: u8[:], o: i32[:], n: i32) -> None:
+    for i in range(n - 8):
+        o[i] = shaped(a, i, 0, 4) + shaped(a, i + 2, 0, 4)
+"""
+
+
+CASES = [(IN_RANGE, WAVE, 5878, True), (ANYWHERE, WAVE, 15473, False), (OF_NUMBERS, SHAPED, 2343, True)]
+
+
+@pytest.mark.parametrize(("text", "helper", "cycles", "inlined"), CASES, ids=["range", "anything", "number"])
+def test_arguments_that_answer_tests_make_a_callee_small(
+    text: str, helper: str, cycles: int, inlined: bool, tmp_path: Path
+) -> None:
+    """A counter goes from one number to another, or a number says which of three ways; the estimates were 196 and 1,033 % above."""
+    found = decisions(kernel_of(text, tmp_path, helper).function, GCC_O2)
+    assert [each.inlined for each in found] == [inlined] * len(found)
+    check_estimate(text, cycles, 0.03, tmp_path, helper)
