@@ -20,7 +20,7 @@ from rich.table import Table
 from benchmarks.drawn.balls import BETWEEN_HUES, BRIGHT_FLOOR, DARK_BALL, MIDDLE_FLOOR, Condition, frame_of
 from benchmarks.seen_circles import see
 from bfsim.process.terminal import print_report, progress_bar
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from tinyphoon.stores.circles import CIRCLE_EDGES, CIRCLE_RADIUS, CIRCLE_TESTS, CIRCLE_X, RADIUS_PASSED
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.strategy.modes import INDOOR_FIELD

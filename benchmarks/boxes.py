@@ -19,7 +19,7 @@ from rich.table import Table
 from bfsim.api import Script
 from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from bfsim.run import simulate
 from tinyphoon import tinyphoon
 from tinyphoon.scenes.boxes import ANGLES_DEG, BOX, DISTANCES_MM

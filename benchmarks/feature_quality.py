@@ -18,7 +18,7 @@ from benchmarks.quality import blobs, edges, lines
 from benchmarks.quality.seen import Seen, see_recording
 from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report
-from bfsim.report.tables import new_table, stacked
+from bfsim.report.tables.table import new_table, stacked
 from bfsim.shipped import RECORDING
 
 FEATURES = edges, blobs, lines

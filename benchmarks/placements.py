@@ -14,8 +14,9 @@ from rich.table import Table
 
 from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report, progress_bar
-from bfsim.report.budget import Budget, budget_of, milliseconds
-from bfsim.report.tables import new_table, percent
+from bfsim.report.budget.budget import Budget, budget_of
+from bfsim.report.budget.times import milliseconds
+from bfsim.report.tables.table import new_table, percent
 from bfsim.run import simulate
 from bfsim.shipped import LDF_FOLDER
 from bfsim.trace import RunRecord, StallReason

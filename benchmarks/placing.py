@@ -15,7 +15,7 @@ from bfsim.errors import BfsimError
 from bfsim.placing.placed import Placed
 from bfsim.placing.search import place
 from bfsim.process.terminal import print_report, progress_bar
-from bfsim.report.tables import new_table, percent
+from bfsim.report.tables.table import new_table, percent
 from bfsim.run import simulate
 
 PLACEMENTS = ("sdram", "l2", "cache", "thesis")

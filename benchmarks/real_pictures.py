@@ -24,7 +24,7 @@ from benchmarks.real.sets import PICTURES, VIDEOS, PictureSet, read_recording, r
 from bfsim.api import Seen
 from bfsim.process.terminal import print_report, progress_bar
 from bfsim.report.overlay.files import OverlayWriter
-from bfsim.report.tables import new_table, stacked
+from bfsim.report.tables.table import new_table, stacked
 from bfsim.seen import SeenFrame
 from tinyphoon import ROWS, tinyphoon
 from tinyphoon.view.view import view

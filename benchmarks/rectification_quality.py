@@ -26,7 +26,7 @@ from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.lens import Lens
-from bfsim.report.tables import new_table, percent
+from bfsim.report.tables.table import new_table, percent
 from bfsim.shipped import RECORDING
 from tinyphoon import tinyphoon
 

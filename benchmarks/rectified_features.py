@@ -29,7 +29,7 @@ from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.lens import Lens, Misfit
-from bfsim.report.tables import new_table, percent, stacked
+from bfsim.report.tables.table import new_table, percent, stacked
 from bfsim.running.inputs import calibration_of
 from tinyphoon import rectified_features, tinyphoon
 

@@ -26,7 +26,7 @@ from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report, progress_bar
 from bfsim.recording import RecordingReader
 from bfsim.report.overlay.files import OverlayWriter
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame, SeenObject
 from tinyphoon.scenes.thesis import FIGURES

@@ -30,7 +30,7 @@ from rich.table import Table
 
 from benchmarks.seen_objects import Records, Seen, see
 from bfsim.process.terminal import print_report
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from tinyphoon.stages.blob_detection import hues
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.objects import (

@@ -18,7 +18,7 @@ from rich.table import Table
 
 from benchmarks.quality.seen import Lines, Picture, see_pictures
 from bfsim.process.terminal import print_report
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 
 Corners = Sequence[tuple[float, float]]
 

@@ -26,7 +26,7 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report, progress_bar
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from bfsim.running.inputs import calibration_of
 from tinyphoon.stages.stereo_lines import Correspondence
 from tinyphoon.strategy.modes import INDOOR_FIELD, Mode

@@ -19,7 +19,7 @@ from rich.table import Table
 
 from benchmarks.seen_objects import Records, Seen, see
 from bfsim.process.terminal import print_report, progress_bar
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from tinyphoon.stores.objects import OBJECT_MEASURES, OBJECT_MODEL, OBJECT_Z
 from tinyphoon.strategy.models import MODELS, Shape
 from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES

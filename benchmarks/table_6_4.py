@@ -22,7 +22,7 @@ import click
 
 from bfsim.api import Firmware
 from bfsim.process.terminal import print_report, progress_bar
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from bfsim.run import simulate
 
 # T Table 6.4 in ms: the recordings of its columns, and the rows

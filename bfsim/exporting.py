@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bfsim.errors import ConfigError, FirmwareError, listed
+from bfsim.files.save import write_text, writing
 from bfsim.kernel import Kernel
 from bfsim.kernel.c import CProgram, c_program, in_python
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernels import kernels_of, written_in_python
-from bfsim.report.save import write_text, writing
 
 MAKEFILE = """\
 # Exported by bfsim. `make` compiles the kernels for the Blackfin; `make CC=gcc CPU=` for this machine.

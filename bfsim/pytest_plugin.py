@@ -15,7 +15,7 @@ import pytest
 
 if TYPE_CHECKING:
     from bfsim.report.check.judge import Outcome
-    from bfsim.report.result_file import Result
+    from bfsim.report.results.result import Result
     from bfsim.result import Run
     from bfsim.seen import SeenFrame
 
@@ -79,7 +79,7 @@ def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]
     from bfsim.report.check.baseline_file import read_baseline
     from bfsim.report.check.choice import chosen
     from bfsim.report.check.judge import judge
-    from bfsim.report.check.tables import verdict_line
+    from bfsim.report.check.sentences import verdict_line
     from bfsim.result import Run
 
     def check(baseline: str = "budget.toml", case: str | None = None) -> dict[str, Run]:
@@ -117,7 +117,7 @@ def _once(config: pytest.Config, *recording: Any, **what: Any) -> Result:
 
 def _result(*recording: Any, on_seen: Callable[[SeenFrame], None] | None = None, **what: Any) -> Result:
     """Run firmware, and note the names of what it sees."""
-    from bfsim.report.result_file import result_of
+    from bfsim.report.results.result import result_of
     from bfsim.run import simulate
 
     seen: dict[int, dict[str, Any]] = {}
@@ -185,7 +185,7 @@ def _broken(result: Result, required: list[str]) -> str:
 def _told(outcome: Outcome) -> str:
     """Return what is broken, and why; nothing if nothing is."""
     from bfsim.report.check.cause import explanation
-    from bfsim.report.check.outputs import broken_lines
+    from bfsim.report.check.sentences import broken_lines
     from bfsim.result import Run
 
     if outcome.passed:

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console, RenderableType
 
 from bfsim.errors import ConfigError, shown
-from bfsim.report.run_tables import run_report
-from bfsim.report.screen import screen, verdict
-from bfsim.report.target import Target, target_of
+from bfsim.report.budget.target import Target, target_of
+from bfsim.report.run.full import run_report
+from bfsim.report.run.screen import screen, verdict
 from bfsim.spans import Span
 from bfsim.trace import RunRecord
 
 if TYPE_CHECKING:
-    from bfsim.report.columns import Columns
+    from bfsim.report.columns.tables import Columns
 
 WIDTH = 80
 HTML = '<pre style="white-space: pre; line-height: 1.2; font-family: monospace">{code}</pre>'
@@ -96,9 +96,9 @@ class Run(RunRecord):
         """Return the tables of the run by their names, each as lists by column: Polars, Arrow and others take them so.
 
         They are frames, results, stages, stalls, kernels, lines, owners, accesses, paths, buffers, traffic and spans;
-        `bfsim.report.cells` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
+        `bfsim.report.columns.cells` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
         """
-        from bfsim.report.columns import tables_of
+        from bfsim.report.columns.tables import tables_of
 
         return tables_of(self, spans)
 

@@ -11,19 +11,19 @@ from typing import Any
 
 from bfsim import shipped
 from bfsim.errors import ConfigError
+from bfsim.files.save import require_apart, require_no_source, require_place, write_text
 from bfsim.loading.firmware import load_firmware
 from bfsim.machine.program import Firmware
 from bfsim.mapping import map_memory
 from bfsim.recording import RecordingReader
-from bfsim.report.digest import cycle_digest
-from bfsim.report.heat import HeatedFrames, stages_of
+from bfsim.report.budget.target import Target
+from bfsim.report.heat.frames import HeatedFrames, stages_of
 from bfsim.report.html.chosen import Chosen
 from bfsim.report.html.frames import MOST
 from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.ldf.map import MemoryMap
-from bfsim.report.save import require_apart, require_no_source, require_place, write_text
-from bfsim.report.target import Target
+from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.running.inputs import calibration_of, files_of_run
 from bfsim.running.watchers import Watchers, calling
 from bfsim.trace import BudgetRow, Identity, RunRecord

@@ -31,16 +31,15 @@ MAY_IMPORT = _sets(
         "report": "errors files trace seen spans chip linker",  # the last two hold data: memories, a link
         "loading": "errors process files shipped fields chip kernel machine recording",
         "running": (
-            "errors process files trace seen spans shipped chip kernel compiling linker machine "
-            "recording report loading"
+            "errors process files trace seen spans shipped chip kernel compiling linker machine recording loading"
         ),
         "mapping": "chip linker machine report loading running",
-        "run_page": "errors trace shipped machine recording report loading running mapping",
+        "run_page": "errors files trace shipped machine recording report loading running mapping",
         "result": "errors trace spans report run_page",
         "explain": "errors trace kernel loading running",
         "assembly": "errors trace blackfin kernel compiling machine loading",
         "colouring": "errors seen machine recording loading running",
-        "exporting": "errors kernel report loading",
+        "exporting": "errors files kernel loading",
         "verifying": "trace kernel compiling machine",
         "placing": "errors trace shipped chip linker machine recording report loading running",
         "run": (
@@ -53,7 +52,7 @@ MAY_IMPORT = _sets(
             "errors process files trace shipped fields report loading running result run planning checking"
         ),
         "cli": (
-            "errors process trace seen spans shipped fields chip compiling recording report "
+            "errors process files trace seen spans shipped fields chip compiling recording report "
             "loading running mapping run_page explain assembly colouring exporting verifying "
             "placing run checking sweeping"
         ),
@@ -168,6 +167,33 @@ ESTIMATE = _sets(
     }
 )
 """Each part of `kernel/estimate` and what it imports of the others, from the bottom to the top."""
+
+
+REPORT = _sets(
+    {
+        "wording": "",
+        "jsonable": "",
+        "budget": "",
+        "tables": "budget",
+        "what_ran": "wording budget",
+        "run": "budget tables what_ran",
+        "profile": "wording jsonable budget tables what_ran run",
+        "columns": "budget profile",
+        "results": "jsonable budget what_ran run",
+        "diff": "wording jsonable budget tables profile results",
+        "check": "wording jsonable budget tables run results diff",
+        "sweep": "wording budget tables results check",
+        "kernels": "wording jsonable tables",
+        "boards": "tables",
+        "ldf": "wording jsonable tables",
+        "viewers": "budget run",
+        "heat": "",
+        "overlay": "",
+        "colours": "jsonable tables overlay",
+        "html": "wording budget what_ran run profile diff ldf overlay",
+    }
+)
+"""Each part of the reports and what it imports of the others, from the bottom to the top."""
 
 
 READ_VERSION = {"recording", "report", "running", "cli"}

@@ -12,7 +12,7 @@ import pytest
 from bfsim.checking import require_comparable
 from bfsim.errors import ConfigError, WorkError
 from bfsim.report.check.baseline import Case, Configuration, measured_on
-from bfsim.report.code import code_in_words
+from bfsim.report.what_ran.code import code_in_words
 from bfsim.run import simulate
 from tests.eyes import record
 from tests.sums import DATA

@@ -27,9 +27,9 @@ from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernel_named import load_kernel
 from bfsim.loading.kernels import entries_of, kernels_of
 from bfsim.machine.memories import Row
-from bfsim.report.code import MODEL_ERROR_PERCENT, code_in_words
 from bfsim.report.diff.result_side import result_side
-from bfsim.report.result_file import result_of
+from bfsim.report.results.result import result_of
+from bfsim.report.what_ran.code import MODEL_ERROR_PERCENT, code_in_words
 from bfsim.result import Run
 from bfsim.run import simulate
 from bfsim.running import building

@@ -18,7 +18,7 @@ import tinyphoon
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
 from bfsim.loading.firmware import load_firmware
 from bfsim.planning import planned
-from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.run import Feed, Fidelity, simulate
 from bfsim.shipped import LDF_FOLDER, RECORDING
 from tests.eyes import FIRMWARE, record, run_eyes
@@ -27,7 +27,7 @@ DIGESTS = """\
 import json, sys
 sys.modules["numba"] = None  # which cannot be imported then
 from pathlib import Path
-from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.loading.firmware import load_firmware
 from bfsim.run import Feed, Fidelity, simulate
 runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from bfsim.report.digest import cycle_digest
+from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.run import simulate
 
 

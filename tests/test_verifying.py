@@ -16,7 +16,7 @@ from bfsim.compiling.object_code import object_code
 from bfsim.compiling.toolchain import GCC, Toolchain, blackfin_toolchain
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, Kernel
-from bfsim.report.verification import verdict
+from bfsim.report.kernels.verification import verdict
 from bfsim.run import simulate
 from bfsim.trace.verification import Verification, VerifiedKernel
 from bfsim.verifying import Sampler, verify

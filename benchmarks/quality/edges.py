@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from benchmarks.quality.seen import Picture, Seen
-from bfsim.report.tables import percent
+from bfsim.report.tables.table import percent
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
 TITLE = f"Edges beside cv2.Canny {cv2.__version__}"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from benchmarks.quality.seen import Lines, Seen
 from benchmarks.table_6_1 import lsd_lines
 from bfsim.chip.boards import CM_BF561
-from bfsim.report.tables import percent
+from bfsim.report.tables.table import percent
 
 NEAR_PX = 2.0
 NEAR_DEGREES = 5.0

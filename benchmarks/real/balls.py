@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import soccer_msl
-from bfsim.report.tables import percent
+from bfsim.report.tables.table import percent
 from tinyphoon.stores.objects import OBJECT_TESTS
 
 TITLE = "Balls of a robot-soccer hall, by the width of their boxes"

@@ -20,7 +20,7 @@ from benchmarks.playing import Played
 from benchmarks.real.sets import Disparities, PictureSet
 from benchmarks.rectified.truths import truth_of
 from bfsim.api import Seen
-from bfsim.report.tables import percent
+from bfsim.report.tables.table import percent
 from tinyphoon.stages.stereo_lines import Correspondence
 from tinyphoon.strategy.modes import INDOOR_FIELD, THESIS_FIELD
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.quality.edges import NEAR, opencv_edges
 from bfsim.api import Seen
-from bfsim.report.tables import percent
+from bfsim.report.tables.table import percent
 
 TITLE = "Edges by thirds of the rows"
 COLUMNS = "edges", "prec. %", "recall: top", "middle", "low", "blind rows %", "lost"

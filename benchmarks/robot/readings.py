@@ -23,7 +23,7 @@ from benchmarks.robot.recordings import write_black, write_free
 from benchmarks.table_6_4 import COLUMNS, FITTED, FRAME, PLAIN, ROWS, Setting, Times, robot_times, times
 from bfsim.api import Firmware
 from bfsim.process.terminal import print_report
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from bfsim.shipped import LDF_FOLDER
 from tinyphoon import thesis, tinyphoon
 from tinyphoon.stages.circle_detection import circle_detection

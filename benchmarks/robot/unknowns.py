@@ -19,7 +19,7 @@ from bfsim.process.terminal import print_report
 from bfsim.recording import RecordingReader
 from bfsim.recording.scenes import Scene
 from bfsim.recording.scenes.studio import record_scene
-from bfsim.report.tables import new_table
+from bfsim.report.tables.table import new_table
 from tinyphoon.scenes.soccer import LIGHT
 from tinyphoon.scenes.thesis import BALL_BESIDE_GOAL, BALL_BESIDE_ROBOT, BALL_TOO_CLOSE
 from tinyphoon.stages.colour_reduction import BLACK, SINGLE_COLOURS, colour_row

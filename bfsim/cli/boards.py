@@ -16,7 +16,7 @@ from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
     from bfsim.chip.spec import BoardSpec
-    from bfsim.report.board_tables import Rows
+    from bfsim.report.boards import Rows
 
 
 @click.command(short_help="List the boards, or print every number of one.")
@@ -39,7 +39,7 @@ def boards(name: str | None, settings: dict[str, str]) -> None:
     """
     from bfsim.chip.boards import BOARDS
     from bfsim.loading.hardware import find_board
-    from bfsim.report.board_tables import board_report, boards_report
+    from bfsim.report.boards import board_report, boards_report
 
     if name is None:
         if settings:

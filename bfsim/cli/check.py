@@ -21,7 +21,7 @@ from bfsim.process.terminal import print_report
 if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case, Configuration
     from bfsim.report.check.judge import Outcome
-    from bfsim.report.result_file import Result
+    from bfsim.report.results.result import Result
 
 LOOSENED_LISTED = 6
 """So many limits of a run that loosen are listed where a reason is asked for."""
@@ -84,9 +84,9 @@ def check(
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
     from bfsim.checking import arguments_of, require_comparable, require_held
+    from bfsim.files.save import require_no_source
+    from bfsim.report.check.as_json import check_json
     from bfsim.report.check.history import read_history, trend_table
-    from bfsim.report.check.outputs import check_json
-    from bfsim.report.save import require_no_source
     from bfsim.running.inputs import files_of_run
 
     outputs = {each: what.pop(each) for each in OUTPUTS}
@@ -198,7 +198,7 @@ def _print(outcomes: Sequence[Outcome], path: Path) -> None:
 
 def _require_places(written: Sequence[Path | None], read: Sequence[Path | None]) -> None:
     """Raise ConfigError unless each file can be written and is none of the others."""
-    from bfsim.report.save import require_apart, require_place
+    from bfsim.files.save import require_apart, require_place
 
     for index, each in enumerate(written):
         if each:
@@ -210,14 +210,16 @@ def _write(
     outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path | None], history: Path | None
 ) -> None:
     """Write the files that were asked for, and a line for each run into the history."""
-    from bfsim.report.check import outputs as forms
+    from bfsim.files.save import write_text
+    from bfsim.report.check.as_json import benchmark_json
     from bfsim.report.check.history import append_history
-    from bfsim.report.save import write_text
+    from bfsim.report.check.junit import junit_xml
+    from bfsim.report.check.markdown import markdown
 
     texts: dict[str, Callable[[], str]] = {
-        "junit": lambda: forms.junit_xml(outcomes, path),
-        "markdown": lambda: forms.markdown(outcomes, path),
-        "benchmark": lambda: forms.benchmark_json(outcomes),
+        "junit": lambda: junit_xml(outcomes, path),
+        "markdown": lambda: markdown(outcomes, path),
+        "benchmark": lambda: benchmark_json(outcomes),
     }
     for name, file in outputs.items():
         if file:

@@ -79,8 +79,8 @@ def colours(
       bfsim colours ball.jpg --grey 40,200,64x32
     """
     from bfsim.colouring import coloured
-    from bfsim.report.naming import colours_json, colours_picture, colours_report
-    from bfsim.report.save import require_apart, require_place, write_bytes
+    from bfsim.files.save import require_apart, require_place, write_bytes
+    from bfsim.report.colours import colours_json, colours_picture, colours_report
 
     if out:
         if out.suffix.lower() != ".png":

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case
     from bfsim.report.diff.difference import Difference
     from bfsim.report.html.pictures import Pictures
-    from bfsim.report.result_file import Result
+    from bfsim.report.results.result import Result
 
 RESULT, BASELINE = ".json", ".toml"
 
@@ -93,8 +93,8 @@ def diff(
         difference = _difference(*results)
 
         def write() -> None:
+            from bfsim.files.save import write_text
             from bfsim.report.html.diff_page import DiffPage, PagedSide
-            from bfsim.report.save import write_text
 
             if html:
                 named = (PagedSide(*each) for each in zip((before, after), pictures, strict=True))
@@ -115,7 +115,7 @@ def diff(
 def _difference(before: Result | Case, after: Result | Case) -> Difference:
     from bfsim.report.check.kept import kept_side, whole_side
     from bfsim.report.diff.compare import difference_between, difference_of
-    from bfsim.report.result_file import Result
+    from bfsim.report.results.result import Result
 
     if isinstance(before, Result) and isinstance(after, Result):
         return difference_of(before, after)
@@ -126,7 +126,7 @@ def _difference(before: Result | Case, after: Result | Case) -> Difference:
 def _asked(text: str) -> Result | Case | dict[str, Any]:
     """Read a result or a run of a baseline, or what to run."""
     from bfsim.report.check.baseline_file import measured_case
-    from bfsim.report.result_file import read_result
+    from bfsim.report.results.reading import read_result
 
     file, name = _named(text)
     try:

@@ -60,8 +60,8 @@ def explain(
 def _explain_lines(kernel: str, *, runs: bool, json_path: Path | None, **what: Any) -> RunRecord | None:
     """Print a kernel line by line; return the run, if there was one."""
     from bfsim.explain import explain_named
-    from bfsim.report.explain_tables import explain_json, explain_report
-    from bfsim.report.library import in_callers
+    from bfsim.report.kernels.explanation import explain_json, explain_report
+    from bfsim.report.profile.library import in_callers
 
     named = kernel, what["firmware"], what["profile"]
     explanation = explain_named(*named)  # a slip in a name is told before the run
@@ -79,7 +79,7 @@ def _explain_code(kernel: str, *, runs: bool, json_path: Path | None, **what: An
     from bfsim.loading.firmware import load_firmware
     from bfsim.loading.hardware import find_profile
     from bfsim.loading.kernel_named import load_kernel
-    from bfsim.report.assembly_tables import assembly_json, assembly_report
+    from bfsim.report.kernels.assembly import assembly_json, assembly_report
 
     found = load_kernel(kernel, what["firmware"])
     firmware = load_firmware(what["firmware"])

@@ -61,11 +61,11 @@ def ldf(
       bfsim ldf l2 --size 640x480 --no-symbols
       bfsim ldf my.ldf --picture my.png -D USE_SDRAM -I vdk
     """
+    from bfsim.files.save import require_place, write_bytes
     from bfsim.mapping import map_memory
     from bfsim.report.ldf.lint import lint
     from bfsim.report.ldf.picture import format_of, picture_bytes
     from bfsim.report.ldf.tables import ldf_json, ldf_report
-    from bfsim.report.save import require_place, write_bytes
 
     if picture:
         format_of(picture)

@@ -52,9 +52,9 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
       bfsim run drive.mcap --ldf placed.ldf
       bfsim ldf placed.ldf --picture placed.png
     """
+    from bfsim.files.save import require_apart, require_place, write_text
     from bfsim.placing.search import place as found_by
     from bfsim.placing.tables import placed_json, placed_report
-    from bfsim.report.save import require_apart, require_place, write_text
     from bfsim.running.inputs import files_of_run
 
     if output:

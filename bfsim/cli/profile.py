@@ -16,7 +16,7 @@ from bfsim.process.terminal import print_report
 from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
-    from bfsim.report.target import Target
+    from bfsim.report.budget.target import Target
 
 
 @click.command(short_help="Print where the cycles go, down to source lines.")

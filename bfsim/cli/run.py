@@ -17,7 +17,7 @@ from bfsim.process.terminal import print_report
 from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
-    from bfsim.report.target import Target
+    from bfsim.report.budget.target import Target
 
 
 @click.command(short_help="Print what each frame costs: the timing budget.")
@@ -71,12 +71,12 @@ def run(
       bfsim run drive.mcap --record-work drive.work
       bfsim run drive.mcap --work drive.work --set clocks.cclk_hz=500e6
     """
+    from bfsim.files.save import require_apart
     from bfsim.loading.firmware import load_firmware
-    from bfsim.report.as_json import json_chunks
-    from bfsim.report.run_tables import run_report
-    from bfsim.report.save import require_apart
-    from bfsim.report.screen import screen
-    from bfsim.report.seen_json import SeenStore
+    from bfsim.report.results.as_json import json_chunks
+    from bfsim.report.results.seen_json import SeenStore
+    from bfsim.report.run.full import run_report
+    from bfsim.report.run.screen import screen
     from bfsim.running.inputs import files_of_run
 
     read = files_of_run(what)

@@ -229,7 +229,7 @@ def _run(sweep: Sweep, workers: Workers) -> bool:
 
 def _report(sweep: Sweep, before: AbstractSet[str], axes: Axes | None, top: int) -> None:
     """Write table and plot, and print what came out; `before` are the keys of what had been done."""
-    from bfsim.report.save import write_text
+    from bfsim.files.save import write_text
     from bfsim.report.sweep.figures import FRAME_RATE
     from bfsim.report.sweep.plot import PARETO, plot_svg
     from bfsim.report.sweep.screen import Shown, sweep_report

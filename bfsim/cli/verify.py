@@ -47,7 +47,7 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     from bfsim.loading.firmware import load_firmware
     from bfsim.loading.hardware import find_profile
     from bfsim.loading.kernels import entries_of, kernels_of, written_in_python
-    from bfsim.report.verification import as_json, verification_report
+    from bfsim.report.kernels.verification import verification_json, verification_report
     from bfsim.running.inputs import files_of_run
     from bfsim.verifying import Sampler
     from bfsim.verifying import verify as verified
@@ -62,6 +62,6 @@ def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     entries = written_in_python(entries_of(loaded.firmware)) | set(sampler.of)
     code = object_code(written_in_python(kernels_of(loaded.own)) | entries, entries, profile, tools)
     found = verified(sampler, len(done.frames), profile, code, tools)
-    tell(json_path, lambda: [as_json(found), "\n"], lambda: print_report(verification_report(found, top)))
+    tell(json_path, lambda: [verification_json(found)], lambda: print_report(verification_report(found, top)))
     if found.different or found.unequal:
         raise SystemExit(1)

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bfsim.placing.stretches import LEVELS, Level
-from bfsim.report.budget import budget_of, frame_rate_hz
-from bfsim.report.waits import busy_cclk
+from bfsim.report.budget.budget import budget_of
+from bfsim.report.budget.times import frame_rate_hz
+from bfsim.report.budget.waits import busy_cclk
 from bfsim.trace import RunRecord
 
 CODE = ""

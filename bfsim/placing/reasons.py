@@ -8,7 +8,7 @@ from bfsim.placing.measured import Accesses, Measured
 from bfsim.placing.model import SHARED, Model, Part
 from bfsim.placing.placed import Placed
 from bfsim.placing.stretches import Level
-from bfsim.report.units import mhz
+from bfsim.report.wording.units import mhz
 
 LEAST_MS = 0.0005
 """A shorter time is not worth telling."""

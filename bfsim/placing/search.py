@@ -20,7 +20,7 @@ from bfsim.placing.model import Model
 from bfsim.placing.placed import NEAR_CAMERA, Fill, Placed, PlacedPart, Trial
 from bfsim.placing.reasons import about, accesses_of, cost_ms, reason
 from bfsim.recording import RecordingReader
-from bfsim.report.budget import milliseconds
+from bfsim.report.budget.times import milliseconds
 from bfsim.running.building import build_for
 from bfsim.running.inputs import calibration_of, read_placement
 from bfsim.shipped import RECORDING

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -11,9 +10,9 @@ from rich.table import Table
 from rich.text import Text
 
 from bfsim.placing.placed import NEAR_CAMERA, Placed
-from bfsim.report.jsonable import jsonable
-from bfsim.report.tables import new_table, percent, stacked
-from bfsim.report.units import size
+from bfsim.report.jsonable import json_text, jsonable
+from bfsim.report.tables.table import new_table, percent, stacked
+from bfsim.report.wording.units import size
 
 SCHEMA = "bfsim.place/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -33,7 +32,7 @@ def placed_json(placed: Placed) -> str:
     plain = jsonable(replace(placed, ldf=""))
     del plain["ldf"]
     more = {"predicted_ms": placed.predicted_ms, "after_ms": placed.after_ms}
-    return f"{json.dumps({'schema': SCHEMA, **plain, **more}, indent=2, ensure_ascii=False)}\n"
+    return json_text({"schema": SCHEMA, **plain, **more})
 
 
 def _verdict(placed: Placed) -> Iterator[str]:

@@ -1,7 +1,8 @@
-"""Records as JSON has them: pydantic makes it of them, which takes 50 ms to import, and a report on the screen needs none."""
+"""Records as JSON has them, and its text. Pydantic makes it of them, which takes 50 ms to import: a report on the screen needs none."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from typing import Any
 
@@ -18,3 +19,8 @@ def jsonable(records: object, fallback: Callable[[Any], object] | None = None) -
         return fallback(value) if fallback else value
 
     return to_jsonable_python(records, fallback=plain)
+
+
+def json_text(plain: object) -> str:
+    """Return what commands write as JSON: indented text that ends in a line feed."""
+    return json.dumps(plain, indent=2, ensure_ascii=False) + "\n"

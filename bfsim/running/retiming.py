@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bfsim.errors import ConfigError, WorkError, shown
+from bfsim.files.save import growing_file, require_no_source
 from bfsim.kernel import Kernel
 from bfsim.loading.firmware import LoadedFirmware
 from bfsim.loading.kernels import kernels_of
@@ -19,7 +20,6 @@ from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.process.reading_ahead import read_ahead
-from bfsim.report.save import growing_file, require_no_source
 from bfsim.running.identifying import DigestedFrames
 from bfsim.trace import Identity
 

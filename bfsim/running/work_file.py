@@ -20,6 +20,7 @@ import zstandard
 from numpy.typing import NDArray
 
 from bfsim.errors import WorkError
+from bfsim.files.save import writing
 from bfsim.kernel import keys
 from bfsim.machine.retiming.work import (
     ACCESS_COLUMNS,
@@ -34,7 +35,6 @@ from bfsim.machine.retiming.work import (
     Place,
 )
 from bfsim.machine.retiming.work_check import check
-from bfsim.report.save import writing
 
 FORMAT = 6
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from bfsim.errors import ConfigError, cut
+from bfsim.files.save import write_bytes
 from bfsim.report.check.baseline import Configuration
-from bfsim.report.save import write_bytes
 from bfsim.sweeping.running import Outcome, Work, code_digest, run_point_there
 
 CONNECT_S = 10

@@ -15,10 +15,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from bfsim.errors import ConfigError, cut, shown
+from bfsim.files.save import write_text
+from bfsim.files.wrong_value import key_of, wrong_value
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.check.settings import leaves, text_of
-from bfsim.report.save import write_text
-from bfsim.report.wrong_value import key_of, wrong_value
 from bfsim.running.device_script import read_script
 
 Options = Mapping[str, Any]

@@ -19,10 +19,10 @@ from bfsim.loading.firmware import load_firmware
 from bfsim.planning import planned
 from bfsim.process.once import Known, remembering
 from bfsim.report.check.baseline import Configuration
-from bfsim.report.result_file import Result
-from bfsim.report.seen_json import SeenStore
+from bfsim.report.results.result import Result
+from bfsim.report.results.seen_json import SeenStore
+from bfsim.report.run.warnings import warnings_of
 from bfsim.report.sweep.figures import sweep_figures
-from bfsim.report.warnings import warnings_of
 from bfsim.result import Run
 from bfsim.run import simulate
 from bfsim.running.identifying import recording_digest

@@ -19,9 +19,9 @@ from pydantic import TypeAdapter, ValidationError
 
 from bfsim.errors import ConfigError
 from bfsim.files.drafts import draft_folder
-from bfsim.report.digest import identity_digest
+from bfsim.files.save import writing
 from bfsim.report.jsonable import jsonable
-from bfsim.report.save import writing
+from bfsim.report.what_ran.digest import identity_digest
 from bfsim.sweeping.running import Outcome
 from bfsim.trace import Identity
 

@@ -88,3 +88,13 @@ class FrameRecord:
     cores: tuple[CoreFrame, ...]
     results: Mapping[str, int]
     remarks: tuple[str, ...] = ()
+
+    @property
+    def begin_cclk(self) -> int:
+        """When the first of its cores was done with the frame before."""
+        return min(core.begin_cclk for core in self.cores)
+
+    @property
+    def end_cclk(self) -> int:
+        """When the last of its cores was done with it."""
+        return max(core.end_cclk for core in self.cores)

@@ -137,7 +137,7 @@ def test_the_verdict_is_told_although_a_file_cannot_be_written(
     def full(path: Path, content: object) -> None:
         raise ConfigError(f"{path} must be writable: No space left on device")
 
-    monkeypatch.setattr("bfsim.report.save.write_bytes", full)
+    monkeypatch.setattr("bfsim.files.save.write_bytes", full)
     monkeypatch.setattr("bfsim.report.check.history.write_bytes", full, raising=False)
     (repository / "fw_eyes.py").write_text(SLOWER)
     result = call("--baseline", "limits.toml", option, "out.json")

@@ -113,7 +113,7 @@ def test_a_run_does_not_differ_from_itself(home: Path) -> None:
 )
 def test_a_file_that_is_no_result_is_refused(home: Path, text: str, told: str) -> None:
     """Before anything runs, with the file's name."""
-    from bfsim.report.as_json import SCHEMA
+    from bfsim.report.results.as_json import SCHEMA
 
     (home / "wrong.json").write_text(text.replace("SCHEMA", SCHEMA))
     refused = bfsim("diff", "wrong.json", "no-such-recording.mcap")

@@ -98,7 +98,7 @@ def test_the_report_is_printed_although_the_file_has_no_room(
         raise ConfigError(f"{path} must be writable: No space left on device")
 
     report = call(*COMMANDS[name]).stdout
-    monkeypatch.setattr("bfsim.report.save.write_bytes", full)
+    monkeypatch.setattr("bfsim.files.save.write_bytes", full)
     done = call(*COMMANDS[name], "--json", "out.json")
     assert (done.exit_code, done.stdout) == (2, report)
     assert done.stderr.endswith("out.json must be writable: No space left on device\n")

@@ -83,7 +83,7 @@ def test_what_came_out_is_told_although_the_table_has_no_room(
         raise ConfigError(f"{path} must be writable: No space left on device")
 
     assert call(file).exit_code == 0
-    monkeypatch.setattr("bfsim.report.save.write_bytes", full)
+    monkeypatch.setattr("bfsim.files.save.write_bytes", full)
     done = call(file)
     assert done.exit_code == 2
     assert done.stdout.startswith("4 points: 4 done (4 of them before).\n")

@@ -12,7 +12,7 @@ import pytest
 
 from bfsim.api import Readout
 from bfsim.recording import RecordingReader
-from bfsim.report.digest import cycle_digest
+from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame, Solid
 from bfsim.shipped import RECORDING

@@ -16,8 +16,8 @@ from tests.machine.owners import assert_owned
 from tests.machine.rig import noise
 from tests.machine.steps import EVERYTHING, LDFS, main_of
 from tests.machine.timelines import assert_flows, assert_orderly, assert_tiled, told
+from tests.report.profile.test_sums import run_from
 from tests.report.profile_sums import assert_profile_adds_up
-from tests.report.test_profile_sums import run_from
 
 FRAMES = 3
 Configuration = tuple[str, Feed, Fidelity]

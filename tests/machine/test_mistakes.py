@@ -12,7 +12,7 @@ import pytest
 
 from bfsim.api import Core, Frame
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
-from bfsim.report.save import writing
+from bfsim.files.save import writing
 from bfsim.run import simulate
 from tests.machine.kernels import first, spin
 from tests.machine.rig import Play, every_frame, load, run, see_all

@@ -8,7 +8,7 @@ import pytest
 
 from bfsim.api import Core, Frame
 from bfsim.machine.board import Fidelity
-from bfsim.report.heat import Heats
+from bfsim.report.heat.places import Heats
 from bfsim.spans import Place, Span, SpanKind
 from tests.machine.kernels import copy, spin
 from tests.machine.made_boards import made_board

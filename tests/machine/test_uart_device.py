@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.report.as_json import as_json
-from bfsim.report.configuration import configuration_of
+from bfsim.report.results.as_json import as_json
+from bfsim.report.what_ran.configuration import configuration_of
 from bfsim.run import simulate
 
 FIRMWARE = '''\

@@ -10,7 +10,7 @@ from bfsim.report.check.baseline import Case
 from bfsim.report.check.baseline_file import read_baseline
 from bfsim.report.check.judge import Outcome, judge
 from bfsim.report.check.update import updated, write_cases
-from bfsim.report.result_file import Result, result_of
+from bfsim.report.results.result import Result, result_of
 from bfsim.trace import MemoryRecord, RunRecord
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from bfsim.report.budget.target import Target
 from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.page import Page
 from bfsim.report.html.pictures import Pictures
-from bfsim.report.target import Target
 from bfsim.trace import RunRecord
 from tests.report.ldf_maps import a_map, a_segment
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from bfsim.report.budget.start_up import without_start_up
 from bfsim.report.profile.buffers import buffers_of
 from bfsim.report.profile.callers import callers_of
 from bfsim.report.profile.costs import stages_in
@@ -11,7 +12,6 @@ from bfsim.report.profile.frames import worst_frames
 from bfsim.report.profile.reason_tables import reasons_of
 from bfsim.report.profile.tables import VIEWS
 from bfsim.report.profile.view import View
-from bfsim.report.start_up import without_start_up
 from bfsim.trace import RunRecord, StallReason
 
 NESTED = {"kernel", "reason"}

@@ -14,7 +14,7 @@ from bfsim.errors import ConfigError
 from bfsim.running.watchers import Watchers
 
 if TYPE_CHECKING:
-    from bfsim.report.target import Target
+    from bfsim.report.budget.target import Target
 
 
 class _TargetType(click.ParamType["Target"]):
@@ -26,7 +26,7 @@ class _TargetType(click.ParamType["Target"]):
         self, value: str | Target, param: click.Parameter | None, ctx: click.Context | None
     ) -> Target:
         """Return the target that is meant."""
-        from bfsim.report.target import target_of
+        from bfsim.report.budget.target import target_of
 
         if not isinstance(value, str):
             return value

@@ -75,7 +75,7 @@ def json_option(what: str) -> Callable[[Any], Any]:
 
 def require_json_place(path: Path | None, others: Iterable[Path | None] = ()) -> None:
     """Raise ConfigError unless the JSON can be written at `path`, if there is one, and it is none of the `others`."""
-    from bfsim.report.save import require_apart, require_place
+    from bfsim.files.save import require_apart, require_place
 
     if path and path != STDOUT:
         require_place(path)
@@ -92,7 +92,7 @@ def tell(
 
     Other files are written by `write`. What cannot be written is an error behind the report, which took longer to find.
     """
-    from bfsim.report.save import write_text
+    from bfsim.files.save import write_text
 
     with ExitStack() as last:  # who reads may go away
         last.callback(show if path != STDOUT else lambda: _print(chunks()))

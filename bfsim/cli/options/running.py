@@ -19,7 +19,7 @@ from bfsim.running.watchers import Watchers, calling
 from bfsim.shipped import LDFS
 
 if TYPE_CHECKING:
-    from bfsim.report.result_file import Result
+    from bfsim.report.results.result import Result
     from bfsim.trace import RunRecord
 
 
@@ -122,8 +122,8 @@ def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any
     Ends the command if something interrupts it.
     """
     from bfsim.loading.firmware import load_firmware
-    from bfsim.report.result_file import result_of
-    from bfsim.report.seen_json import SeenStore
+    from bfsim.report.results.result import result_of
+    from bfsim.report.results.seen_json import SeenStore
 
     seen = stack.enter_context(SeenStore(with_features=False))
     watchers = watchers or Watchers()
@@ -136,7 +136,7 @@ def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any
 
 def warn(done: RunRecord) -> None:
     """Tell the warnings of a run beside an output that has no place for them."""
-    from bfsim.report.warnings import warnings_of
+    from bfsim.report.run.warnings import warnings_of
 
     for each in warnings_of(done):
         click.secho(f"bfsim: warning: {each.kind}: {each.text}", fg="yellow", err=True)

@@ -100,7 +100,7 @@ def watching(
     if heat and not (show or overlay or mcap):
         raise ConfigError("--heat must come with --overlay DIR|FILE, --show or --mcap FILE, which show it")
     if mcap:
-        from bfsim.report.save import require_apart
+        from bfsim.files.save import require_apart
 
         require_apart(mcap, (overlay,))
     with ExitStack() as stack:
@@ -128,7 +128,7 @@ def watching(
 
 def _heat_up(watchers: Watchers, stages: Sequence[str], tell: Sequence[Callable[[SeenFrame], None]]) -> None:
     """Have `watchers` tell of each frame with its heat."""
-    from bfsim.report.heat import HeatedFrames
+    from bfsim.report.heat.frames import HeatedFrames
 
     frames = HeatedFrames(stages, tell)
     watchers.before.append(frames.begin)
@@ -144,7 +144,7 @@ def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
     if heat is None:
         return None
     from bfsim.loading.firmware import load_firmware
-    from bfsim.report.heat import stages_of
+    from bfsim.report.heat.frames import stages_of
 
     rows = load_firmware(firmware).firmware.rows
     try:
@@ -158,8 +158,8 @@ def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
 
 
 def _seen_writer(path: Path) -> SeenWriter:
+    from bfsim.files.save import require_place
     from bfsim.recording.foxglove.seen_writer import SeenWriter
-    from bfsim.report.save import require_place
 
     require_place(path)
     return SeenWriter(path)
@@ -167,7 +167,7 @@ def _seen_writer(path: Path) -> SeenWriter:
 
 def _add_series(writer: SeenWriter, run: RunRecord) -> None:
     """Add what each frame cost and warned of to its pictures."""
-    from bfsim.report.frame_series import notes_of, samples_of
+    from bfsim.report.viewers.frame_series import notes_of, samples_of
 
     for sample in samples_of(run):
         if writer.has(sample.frame):

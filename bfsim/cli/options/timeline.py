@@ -46,7 +46,7 @@ def timelines(
 
     Raises ConfigError for a place that cannot be written, one of the `others` included.
     """
-    from bfsim.report.save import require_apart, require_no_source, require_place
+    from bfsim.files.save import require_apart, require_no_source, require_place
 
     for path, beside in ((trace, flame), (flame, trace)):
         if path:
@@ -61,8 +61,8 @@ def timelines(
 
 @contextmanager
 def _tracing(watchers: Watchers, path: Path) -> Iterator[None]:
-    from bfsim.report.perfetto import PerfettoTrace
-    from bfsim.report.save import growing_file, writing
+    from bfsim.files.save import growing_file, writing
+    from bfsim.report.viewers.perfetto import PerfettoTrace
 
     traces: list[PerfettoTrace] = []
     with growing_file(path) as stream:
@@ -85,7 +85,7 @@ def _tracing(watchers: Watchers, path: Path) -> Iterator[None]:
 
 
 def _write_flame(path: Path, run: RunRecord) -> None:
-    from bfsim.report.save import write_text
-    from bfsim.report.speedscope import speedscope_json
+    from bfsim.files.save import write_text
+    from bfsim.report.viewers.speedscope import speedscope_json
 
     write_text(path, speedscope_json(run))

@@ -31,9 +31,9 @@ def info_command(path: Path, json_path: Path | None, plot: Path | None) -> None:
       bfsim record info run.mcap --plot residuals.png
       bfsim record info run.mcap --json
     """
+    from bfsim.files.save import require_place, write_bytes
     from bfsim.recording import RecordingReader
     from bfsim.recording.info import describe_recording
-    from bfsim.report.save import require_place, write_bytes
 
     if plot:
         if plot.suffix.lower() != ".png":

@@ -13,7 +13,7 @@ from bfsim.report.diff.rows import shown
 from bfsim.report.diff.sentences import why
 from bfsim.report.diff.side import Side
 from bfsim.report.diff.tables import cells, frames_compared, labelled, scope, seen_lines
-from bfsim.report.units import milliseconds_of
+from bfsim.report.wording.units import milliseconds_of
 
 CAUSES = 8
 """So many causes are shown of a failure."""

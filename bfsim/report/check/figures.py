@@ -12,16 +12,12 @@ from enum import Enum
 from math import hypot
 from typing import Any
 
-from bfsim.report.budget import (
-    Spread,
-    budget_rows,
-    costs_of,
-    frame_rate_hz,
-    latency_cclk,
-)
-from bfsim.report.result_file import Result
-from bfsim.report.seen_json import name_of_object
-from bfsim.report.waits import busy_cclk
+from bfsim.report.budget.rows import budget_rows, costs_of
+from bfsim.report.budget.spread import Spread
+from bfsim.report.budget.times import frame_rate_hz, latency_cclk
+from bfsim.report.budget.waits import busy_cclk
+from bfsim.report.results.result import Result
+from bfsim.report.results.seen_json import name_of_object
 from bfsim.trace import REST, RunRecord
 
 Name = tuple[str, ...]

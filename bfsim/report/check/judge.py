@@ -23,7 +23,7 @@ from bfsim.report.check.figures import (
     is_of_a_stage,
 )
 from bfsim.report.check.requirement import Requirement, dotted, nearest_of, parse_requirement
-from bfsim.report.result_file import Result
+from bfsim.report.results.result import Result
 from bfsim.trace import RunRecord
 
 FRAME_SHARE = 10

@@ -11,7 +11,7 @@ from bfsim.report.check.requirement import parse_requirement
 from bfsim.report.diff.pairs import SMALL
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.diff.side import FRAMES, SEPARATOR, Line, Owner, Side, Source, Stall
-from bfsim.report.result_file import Result
+from bfsim.report.results.result import Result
 
 KEPT_SHARE = 0.001
 """An owner of cycles or a line is kept if it has this share of all work."""

@@ -8,6 +8,7 @@ from pathlib import Path
 import tomlkit
 from tomlkit.items import AoT, Table
 
+from bfsim.files.save import alone_in, write_text
 from bfsim.report.check.baseline import COMPARABLE, Case, MeasuredOn, measured_on
 from bfsim.report.check.baseline_file import parsed, requirements_of, validated
 from bfsim.report.check.figures import COUNTS, MISSED, SEEN, STATISTICS, Name, Unit, figures_of, statistic
@@ -15,8 +16,7 @@ from bfsim.report.check.judge import Outcome, Verdict, judge, worst_of_each
 from bfsim.report.check.kept import kept_costs, whole_side
 from bfsim.report.check.requirement import Requirement, counts_text, limit_text
 from bfsim.report.check.toml_items import toml_item
-from bfsim.report.result_file import Result
-from bfsim.report.save import alone_in, write_text
+from bfsim.report.results.result import Result
 from bfsim.trace import RunRecord
 
 NEW_FILE = """\

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import json
+from typing import Any
 
 from bfsim.report.diff.difference import Difference
-from bfsim.report.jsonable import jsonable
+from bfsim.report.jsonable import json_text, jsonable
 
 SCHEMA = "bfsim.diff/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 
 def diff_json(difference: Difference) -> str:
-    """Return all of a difference as indented text. Keys are the field names of `difference`, so each carries its unit."""
-    plain = {"schema": SCHEMA, "cclk": difference.cclk, **jsonable(difference)}
-    return f"{json.dumps(plain, indent=2, ensure_ascii=False)}\n"
+    """Return all of a difference as text."""
+    return json_text(plain_difference(difference))
+
+
+def plain_difference(difference: Difference) -> dict[str, Any]:
+    """Return all of a difference as dicts and lists. Keys are the field names of `difference`, so each carries its unit."""
+    return {"schema": SCHEMA, "cclk": difference.cclk, **jsonable(difference)}

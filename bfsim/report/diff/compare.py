@@ -10,7 +10,7 @@ from bfsim.report.diff.contributions import contributions_of
 from bfsim.report.diff.difference import NOTHING, Change, Difference, FrameChange, SeenChange
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.diff.side import FRAMES, SEPARATOR, Side
-from bfsim.report.result_file import Result
+from bfsim.report.results.result import Result
 
 DIGEST_SHOWN = 12
 """Digits of a digest that are shown."""

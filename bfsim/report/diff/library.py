@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from bfsim.report.diff.side import Owner, Source, Stall
-from bfsim.report.library import Call, calls_of_routines, split
+from bfsim.report.profile.library import Call, calls_of_routines, split
 
 Owners = Mapping[Owner, int]
 Sources = Mapping[Owner, Source]

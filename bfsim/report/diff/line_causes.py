@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from bfsim.report.diff.difference import Contribution, ContributionKind
 from bfsim.report.diff.side import Line, Operations, Stall
-from bfsim.report.operations import words
-from bfsim.report.units import counted
+from bfsim.report.wording.operations import words
+from bfsim.report.wording.units import counted
 
 NAMED = 3
 """As many operations are named of a line that is on one side alone."""

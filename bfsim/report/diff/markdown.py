@@ -20,8 +20,8 @@ from bfsim.report.diff.tables import (
     scope,
     seen_lines,
 )
-from bfsim.report.markdown import escaped
-from bfsim.report.units import others_row
+from bfsim.report.wording.markdown import escaped
+from bfsim.report.wording.units import others_row
 
 INDENT = "&emsp;"
 TEXT, NUMBER = "---", "---:"

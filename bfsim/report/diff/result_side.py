@@ -6,12 +6,12 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import fields
 
-from bfsim.report.budget import frame_rate_hz
+from bfsim.report.budget.times import frame_rate_hz
 from bfsim.report.diff.library import with_callers
 from bfsim.report.diff.side import FRAMES, SEPARATOR, Line, Owner, Side, Source, Stall
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
-from bfsim.report.result_file import Result
-from bfsim.report.seen_json import name_of_object
+from bfsim.report.results.result import Result
+from bfsim.report.results.seen_json import name_of_object
 from bfsim.trace import FrameRecord, Identity, KernelRecord, RunRecord
 
 CostedLine = tuple[str, str, int]

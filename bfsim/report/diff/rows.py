@@ -8,7 +8,7 @@ from collections.abc import Set as AbstractSet
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Contribution, ContributionKind, Difference
 from bfsim.report.diff.sentences import largest
-from bfsim.report.units import others_row
+from bfsim.report.wording.units import others_row
 
 
 def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:

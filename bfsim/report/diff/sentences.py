@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import NOTHING, Contribution, ContributionKind, Difference
 from bfsim.report.diff.pairs import SMALL
-from bfsim.report.units import counted, mhz
+from bfsim.report.wording.units import counted, mhz
 
 MS_RESOLUTION = 1e-6
 """To which a baseline has the time of a frame."""

@@ -13,8 +13,8 @@ from bfsim.report.diff.difference import Change, Contribution, ContributionKind,
 from bfsim.report.diff.rows import shown
 from bfsim.report.diff.sentences import verdict, why
 from bfsim.report.diff.side import SEPARATOR
-from bfsim.report.tables import new_table, stacked
-from bfsim.report.units import counted, others_row
+from bfsim.report.tables.table import new_table, stacked
+from bfsim.report.wording.units import counted, others_row
 
 CHANGED_LISTED = 5
 """Frames that changed most which are listed."""

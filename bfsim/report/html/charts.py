@@ -7,9 +7,11 @@ from typing import Any
 
 import altair as alt
 
-from bfsim.report.budget import Budget, CoreBudget, StageRow, budget_rows, costs_of, milliseconds
+from bfsim.report.budget.budget import Budget, CoreBudget, StageRow
+from bfsim.report.budget.rows import budget_rows, costs_of
+from bfsim.report.budget.target import Target, used_cclk
+from bfsim.report.budget.times import milliseconds
 from bfsim.report.html.colours import IDLE, ISSUE, MEANINGS, STALLS, stage_colours
-from bfsim.report.target import Target, used_cclk
 from bfsim.trace import RunRecord
 
 Spec = dict[str, Any]

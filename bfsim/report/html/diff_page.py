@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from bfsim.report.budget import milliseconds
+from bfsim.report.budget.times import milliseconds
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.sentences import verdict, why
 from bfsim.report.diff.tables import cells, frames_compared, labelled, listed, scope, seen_lines

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from bfsim.report.budget import Budget, budget_rows, costs_of, elapsed_cclk, latency_cclk, milliseconds
-from bfsim.report.target import Target, used_cclk
+from bfsim.report.budget.budget import Budget
+from bfsim.report.budget.rows import budget_rows, costs_of, elapsed_cclk
+from bfsim.report.budget.target import Target, used_cclk
+from bfsim.report.budget.times import latency_cclk, milliseconds
 from bfsim.trace import FrameRecord, RunRecord
 
 MOST = 100

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from bfsim.report.spool import Spool
+from bfsim.files.spool import Spool
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import Identity
 

@@ -11,8 +11,10 @@ from typing import Any
 from markupsafe import Markup
 
 from bfsim.files import store
-from bfsim.report.budget import budget_of, milliseconds
-from bfsim.report.configuration import configuration_of
+from bfsim.report.budget.budget import budget_of
+from bfsim.report.budget.start_up import start_up_cclk, without_start_up
+from bfsim.report.budget.target import Target, kept_frames, slacks_of
+from bfsim.report.budget.times import milliseconds
 from bfsim.report.html.charts import cycle_stack, frames_a_bar, gantt, part_colours, row_colours, time_series
 from bfsim.report.html.colours import MEANINGS
 from bfsim.report.html.frames import facts_of, told_of, worst_of
@@ -24,10 +26,9 @@ from bfsim.report.ldf.drawing import drawing_of
 from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.ldf.picture import svg_of
 from bfsim.report.profile.buffers import buffers_of, traffic_of
-from bfsim.report.screen import verdict
-from bfsim.report.start_up import start_up_cclk, without_start_up
-from bfsim.report.target import Target, kept_frames, slacks_of
-from bfsim.report.warnings import warnings_of
+from bfsim.report.run.screen import verdict
+from bfsim.report.run.warnings import warnings_of
+from bfsim.report.what_ran.configuration import configuration_of
 from bfsim.trace import RunRecord
 
 

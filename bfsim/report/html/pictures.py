@@ -10,9 +10,9 @@ from typing import Self
 
 from PIL import Image
 
+from bfsim.files.spool import Spool
 from bfsim.report.overlay.layers import LAYERS, UNDER_HEAT
 from bfsim.report.overlay.overlay import overlay_of
-from bfsim.report.spool import Spool
 from bfsim.seen import SeenFrame
 
 PAGE_BYTES = 4_000_000

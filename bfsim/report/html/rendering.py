@@ -11,7 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
 from markupsafe import Markup, escape
 
-from bfsim.report.units import counted, size
+from bfsim.report.wording.units import counted, size
 
 
 def rendered(template: str, content: Mapping[str, Any]) -> Iterator[str]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bfsim.report.library import in_callers
 from bfsim.report.profile.cost import Cost
+from bfsim.report.profile.library import in_callers
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.trace import KernelRecord, RunRecord
 

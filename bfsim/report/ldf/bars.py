@@ -11,7 +11,7 @@ from rich.text import Text
 
 from bfsim.report.ldf.colours import colours_of
 from bfsim.report.ldf.map import ContentKind, MapPiece, MapSegment, MemoryMap
-from bfsim.report.units import size
+from bfsim.report.wording.units import size
 
 CELLS = 64
 LEGEND_COLUMNS = 80

@@ -12,7 +12,7 @@ from itertools import groupby
 
 from bfsim.report.ldf.colours import colours_of, kind_colour
 from bfsim.report.ldf.map import SHARED, ContentKind, MapPiece, MapSegment, MemoryMap
-from bfsim.report.units import size
+from bfsim.report.wording.units import size
 
 # lengths in px
 MARGIN, GUTTER = 24, 32

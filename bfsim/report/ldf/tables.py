@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
@@ -10,12 +9,12 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.report.jsonable import jsonable
+from bfsim.report.jsonable import json_text, jsonable
 from bfsim.report.ldf.bars import bars
 from bfsim.report.ldf.lint import Finding
 from bfsim.report.ldf.map import MemoryMap
-from bfsim.report.tables import new_table, percent, stacked
-from bfsim.report.units import size
+from bfsim.report.tables.table import new_table, percent, stacked
+from bfsim.report.wording.units import size
 
 SCHEMA = "bfsim.ldf/1"
 
@@ -39,7 +38,7 @@ def ldf_json(memory_map: MemoryMap, findings: Sequence[Finding]) -> str:
         **jsonable(memory_map),
         "findings": jsonable(list(findings)),
     }
-    return json.dumps(plain, indent=2, ensure_ascii=False) + "\n"
+    return json_text(plain)
 
 
 def _headline(memory_map: MemoryMap) -> Text:

@@ -16,10 +16,10 @@ from PIL.PngImagePlugin import PngInfo
 
 from bfsim.errors import ConfigError
 from bfsim.files.drafts import draft_folder, sweep
+from bfsim.files.save import require_name, require_place
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.style import PAPER
-from bfsim.report.save import require_name, require_place
 from bfsim.seen import SeenFrame
 
 FRAME_MS = 200

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
-from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.report.jsonable import jsonable
+from bfsim.report.jsonable import json_text, jsonable
 from bfsim.report.profile.buffers import buffers_of, traffic_of
 from bfsim.report.profile.callers import callers_of
 from bfsim.report.profile.frames import worst_frames
 from bfsim.report.profile.reason_tables import reasons_of
 from bfsim.report.profile.sentences import sentences_of
 from bfsim.report.profile.view import View
+from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.trace import RunRecord
 
 SCHEMA = "bfsim.profile/1"
@@ -40,4 +39,4 @@ def profile_json(run: RunRecord, core: str | None = None, stage: str | None = No
         "median_frame": median,
         "worst_frames": worst,
     }
-    return json.dumps(jsonable(plain, fallback=dict), indent=2, ensure_ascii=False) + "\n"
+    return json_text(jsonable(plain, fallback=dict))

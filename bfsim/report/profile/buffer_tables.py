@@ -9,8 +9,8 @@ from rich.table import Table
 
 from bfsim.report.profile.buffers import BufferProfile, buffers_of, traffic_of
 from bfsim.report.profile.view import View
-from bfsim.report.tables import new_table, percent
-from bfsim.report.units import others_row
+from bfsim.report.tables.table import new_table, percent
+from bfsim.report.wording.units import others_row
 
 
 def buffer_tables(view: View) -> Iterator[Table]:

@@ -101,8 +101,8 @@ class TrafficProfile:
 
 def traffic_of(run: RunRecord) -> tuple[TrafficProfile, ...]:
     """Return what every master moved over each bus. Memories are shared: it is that of all cores and stages."""
-    begin_cclk = min(core.begin_cclk for core in run.frames[0].cores)
-    end_cclk = max(core.end_cclk for core in run.frames[-1].cores)
+    begin_cclk = run.frames[0].begin_cclk
+    end_cclk = run.frames[-1].end_cclk
     sums: dict[tuple[str, str], list[TrafficRecord]] = {}
     for each in run.traffic:
         if each.memory in BUSES:

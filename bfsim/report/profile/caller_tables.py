@@ -8,8 +8,8 @@ from rich.table import Table
 
 from bfsim.report.profile.callers import callers_of
 from bfsim.report.profile.view import NO_KERNEL, View
-from bfsim.report.tables import new_table
-from bfsim.report.units import others_row
+from bfsim.report.tables.table import new_table
+from bfsim.report.wording.units import others_row
 
 
 def caller_tables(view: View) -> Iterator[Table]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from bfsim.report.columns import kernel_names
 from bfsim.report.profile.cost import Cost
 from bfsim.report.profile.costs import cores_of, stages_in
 from bfsim.trace import RunRecord
@@ -30,6 +29,11 @@ class CallNode:
         yield depth, self
         for each in sorted(self.callees.values(), key=lambda node: -node.inclusive_cclk):
             yield from each.walk(depth + 1)
+
+
+def kernel_names(run: RunRecord) -> dict[str, str]:
+    """Return the names of the kernels that ran, by their symbols."""
+    return {each.symbol: each.kernel for each in run.kernels}
 
 
 def callers_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> tuple[CallNode, ...]:

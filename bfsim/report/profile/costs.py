@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from bfsim.report.budget import budget_rows, stage_names
-from bfsim.report.library import in_callers
+from bfsim.report.budget.rows import budget_rows, stage_names
+from bfsim.report.budget.start_up import without_start_up
 from bfsim.report.profile.cost import Cost, sum_of
+from bfsim.report.profile.library import in_callers
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
-from bfsim.report.start_up import without_start_up
 from bfsim.trace import CoreFrame, KernelRecord, Later, OwnerCost, RunRecord
 
 

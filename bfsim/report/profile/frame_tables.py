@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from rich.table import Table
 
-from bfsim.report.budget import milliseconds
+from bfsim.report.budget.times import milliseconds
 from bfsim.report.profile.frames import FrameProfile, worst_frames
 from bfsim.report.profile.view import View
-from bfsim.report.tables import new_table
-from bfsim.report.units import others_row
+from bfsim.report.tables.table import new_table
+from bfsim.report.wording.units import others_row
 
 FRAMES, OWNERS_A_FRAME = 3, 8
 

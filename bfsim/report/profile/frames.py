@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bfsim.report.budget.start_up import without_start_up
+from bfsim.report.budget.waits import busy_cclk
 from bfsim.report.profile.costs import cores_of, stages_in
-from bfsim.report.start_up import without_start_up
-from bfsim.report.waits import busy_cclk
 from bfsim.trace import FrameRecord, OwnerCost, RunRecord
 
 WORK = "work"

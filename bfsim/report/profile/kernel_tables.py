@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from rich.table import Table
 
-from bfsim.report.operations import is_routine, words
 from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.costs import OwnerProfile, Profile, StageProfile
 from bfsim.report.profile.lines import LineProfile
 from bfsim.report.profile.view import COST_HEADS, NO_KERNEL, View, with_bar
-from bfsim.report.tables import new_table
-from bfsim.report.units import others_row
+from bfsim.report.tables.table import new_table
+from bfsim.report.wording.operations import is_routine, words
+from bfsim.report.wording.units import others_row
 
 EXACT = 10_000
 """Numbers below have every digit."""

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from rich.table import Table
 
 from bfsim.report.profile.view import View
-from bfsim.report.tables import new_table
-from bfsim.report.units import others_row
+from bfsim.report.tables.table import new_table
+from bfsim.report.wording.units import others_row
 
 OWNERS_TOLD = 3
 WORK, IDLE = "work", "idle"

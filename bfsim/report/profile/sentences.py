@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from bfsim.report.bound import bound_of
-from bfsim.report.budget import budget_of, milliseconds
+from bfsim.report.budget.bound import bound_of
+from bfsim.report.budget.budget import budget_of
+from bfsim.report.budget.start_up import without_start_up
+from bfsim.report.budget.times import milliseconds
+from bfsim.report.budget.waits import busy_cclk, other_core_cclk
 from bfsim.report.profile.buffers import buffers_of
 from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.costs import OwnerProfile, Profile, cores_of, profile_of
 from bfsim.report.profile.lines import together
-from bfsim.report.start_up import without_start_up
-from bfsim.report.waits import busy_cclk, other_core_cclk
 from bfsim.trace import REST, RunRecord, StallReason
 
 DMA = "DMA"

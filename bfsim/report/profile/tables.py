@@ -8,6 +8,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.budget.target import Target, target_words
 from bfsim.report.profile.buffer_tables import buffer_tables
 from bfsim.report.profile.caller_tables import caller_tables
 from bfsim.report.profile.frame_tables import frame_tables
@@ -15,10 +16,9 @@ from bfsim.report.profile.kernel_tables import kernel_tables, line_tables
 from bfsim.report.profile.reason_tables import reason_tables
 from bfsim.report.profile.sentences import sentences_of
 from bfsim.report.profile.view import View
-from bfsim.report.run_tables import warning_table
-from bfsim.report.tables import notes_table, stacked
-from bfsim.report.target import Target, target_words
-from bfsim.report.what_ran import what_ran
+from bfsim.report.run.warning_table import warning_table
+from bfsim.report.tables.table import notes_table, stacked
+from bfsim.report.what_ran.in_brief import what_ran
 from bfsim.trace import RunRecord
 
 VIEWS: Mapping[str, Callable[[View], Iterator[Table]]] = {

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.report.bars import IDLE, STALL, WORK, bar_of
-from bfsim.report.budget import milliseconds
+from bfsim.report.budget.times import milliseconds
 from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.costs import Profile, profile_of
-from bfsim.report.tables import percent
+from bfsim.report.tables.bars import IDLE, STALL, WORK, bar_of
+from bfsim.report.tables.table import percent
 from bfsim.trace import RunRecord
 
 NO_KERNEL = "(no kernel)"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from bfsim.report.budget import budget_of, milliseconds
+from bfsim.report.budget.budget import budget_of
+from bfsim.report.budget.times import milliseconds
+from bfsim.report.check.as_json import figures_by_name
 from bfsim.report.check.figures import COUNTS, OBJECTS, figures_of, statistic
-from bfsim.report.check.outputs import figures_by_name
-from bfsim.report.result_file import Result
+from bfsim.report.results.result import Result
 from bfsim.trace import StallReason
 
 FRAME_RATE, FRAME_TIME, WORST_FRAME = "frame_rate Hz", "frame.median ms", "frame.max ms"

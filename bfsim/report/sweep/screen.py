@@ -15,8 +15,8 @@ from bfsim.errors import cut
 from bfsim.report.sweep.figures import FRAME_RATE, FRAME_TIME, LATENCY, MISSED, ON_CHIP, WORST_FRAME
 from bfsim.report.sweep.front import front
 from bfsim.report.sweep.table import Row
-from bfsim.report.tables import new_table, stacked
-from bfsim.report.units import KIB
+from bfsim.report.tables.table import new_table, stacked
+from bfsim.report.wording.units import KIB
 
 FAILURES_SHOWN = 5
 NAMES_SHOWN = 3

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from bfsim.errors import legible
-from bfsim.report.save import growing_file, writing
+from bfsim.files.save import growing_file, writing
 
 Cell = str | int | float | None
 Row = Mapping[str, Cell]

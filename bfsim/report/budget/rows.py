@@ -1,0 +1,31 @@
+"""The rows of the budget, and what each cost a core in a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from bfsim.trace import REST, BudgetRow, CoreFrame, RunRecord, StageCost
+
+
+def stage_names(run: RunRecord) -> tuple[str, ...]:
+    """The rows of the budget in the firmware's order; (the rest) comes last."""
+    declared = [row.stage for row in run.rows]
+    seen = [cost.stage for frame in run.frames for core in frame.cores for cost in core.stages]
+    return (*(name for name in dict.fromkeys([*declared, *seen]) if name != REST), REST)
+
+
+def budget_rows(run: RunRecord) -> tuple[BudgetRow, ...]:
+    """The rows of the budget, with those that the firmware did not declare."""
+    declared = {row.stage: row for row in run.rows}
+    return tuple(declared.get(name, BudgetRow(stage=name)) for name in stage_names(run))
+
+
+def costs_of(frame: CoreFrame, row: BudgetRow, rows: Sequence[BudgetRow]) -> list[StageCost]:
+    """What `row` cost one core in one frame, with its parts among `rows`."""
+    stages = {row.stage, *(each.stage for each in rows if each.within == row.stage)}
+    return [cost for cost in frame.stages if cost.stage in stages]
+
+
+def elapsed_cclk(costs: Iterable[StageCost]) -> int:
+    """Cycles of all these together."""
+    return sum(cost.elapsed_cclk for cost in costs)

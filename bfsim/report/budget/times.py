@@ -1,0 +1,35 @@
+"""From cycles to times: ms, the frame rate, and the latency of results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bfsim.trace import CoreFrame, FrameRecord
+
+
+def milliseconds(cclk: float, cclk_hz: float) -> float:
+    """Convert cycles to ms."""
+    return cclk * 1000 / cclk_hz
+
+
+def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
+    """Frames per second from frame end to frame end; of a single frame, one over its duration.
+
+    Firmware that waits for every picture is as fast as these come, from picture to picture: in a few frames, a first one that took
+    long would make it faster than its cameras.
+    """
+    ends = [frame.end_cclk for frame in frames]
+    if len(frames) == 1:
+        return cclk_hz / (ends[0] - frames[0].begin_cclk)
+    if all(_idles(core) for frame in frames[1:] for core in frame.cores):
+        ends = [frame.last_line_cclk for frame in frames]
+    return (len(frames) - 1) * cclk_hz / (ends[-1] - ends[0])
+
+
+def _idles(frame: CoreFrame) -> bool:
+    return any(cost.idle_cclk for cost in frame.stages)
+
+
+def latency_cclk(frame: FrameRecord) -> int:
+    """Cycles from the last line coming in to the result going out."""
+    return frame.result_cclk - frame.last_line_cclk

@@ -1,0 +1,1 @@
+"""The records of a run as tables of plain columns, for notebooks."""

@@ -1,0 +1,90 @@
+"""The cycles of a frame by place, and what they are in a picture: a fold over the timeline."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from bfsim.seen import SeenHeat
+from bfsim.spans import Place, Span, SpanKind
+
+Cycles = Mapping[tuple[str, Place | None], int]
+"""The cycles of a core in a frame by stage and place; None is no place."""
+
+_FILLING = {SpanKind.CALL, SpanKind.WORK, SpanKind.STALL, SpanKind.IDLE}
+
+
+class Heats:
+    """The cycles by place of each frame that a core has finished. What is of no frame is left out."""
+
+    def __init__(self) -> None:
+        self._open: dict[str, Counter[tuple[str, Place | None]]] = defaultdict(Counter)
+        self._done: dict[tuple[int, str], Cycles] = {}
+
+    def add(self, spans: Iterable[Span]) -> None:
+        """Take what happened next."""
+        for each in spans:
+            if each.kind in _FILLING:
+                self._open[each.where][each.stage, each.place] += each.elapsed_cclk
+            elif each.kind is SpanKind.FRAME:
+                self._done[each.value, each.where] = self._open.pop(each.where, Counter())
+
+    def has(self, frame: int, core: str) -> bool:
+        """Whether a core, such as "core A", has finished a frame."""
+        return (frame, core) in self._done
+
+    def of(self, frame: int, core: str) -> Cycles:
+        """Return the cycles of a frame that a core has finished."""
+        return self._done[frame, core]
+
+    def forget(self, frame: int) -> None:
+        """Forget a frame and those before it."""
+        self._done = {key: each for key, each in self._done.items() if key[0] > frame}
+
+
+def heat_of(cycles: Cycles, stages: Sequence[str], width_px: int, height_px: int, cclk_hz: float) -> SeenHeat:
+    """Return the heat of some stages in a picture: the time of a place goes evenly to its pixels.
+
+    What is beyond the picture is elsewhere.
+    """
+    us_of_cclk = 1e6 / cclk_hz
+    shares = {stage: np.zeros((height_px, width_px)) for stage in stages}
+    elsewhere = dict.fromkeys(stages, 0.0)
+    for (stage, place), cclk in cycles.items():
+        if stage not in shares:
+            continue
+        where = _pixels_of(place, width_px, height_px) if place else None
+        pixels = shares[stage][where].size if where else 0
+        if pixels:
+            shares[stage][where] += cclk * us_of_cclk / pixels
+        else:
+            elsewhere[stage] += cclk * us_of_cclk
+    return SeenHeat(stages_us=shares, elsewhere_us=elsewhere)
+
+
+def _pixels_of(place: Place, width_px: int, height_px: int) -> tuple[slice | list[int], slice | list[int]]:
+    """Return rows and columns of a place as numpy takes them, without those beyond the picture."""
+    if isinstance(place.rows, range):
+        return _slice_of(place.rows), _columns_within(place.columns, width_px)
+    assert isinstance(place.columns, tuple)
+    within = [
+        (row, column)
+        for row, column in zip(place.rows, place.columns, strict=True)
+        if 0 <= row < height_px and 0 <= column < width_px
+    ]
+    return [row for row, _ in within], [column for _, column in within]
+
+
+def _slice_of(rows: range) -> slice:
+    return slice(max(rows.start, 0), max(rows.stop, 0))
+
+
+def _columns_within(columns: range | tuple[int, ...] | None, width_px: int) -> slice | list[int]:
+    """Return the columns of a place as numpy takes them, without those beyond the picture."""
+    if columns is None:
+        return slice(0, width_px)
+    if isinstance(columns, range):
+        return _slice_of(columns)
+    return [each for each in columns if 0 <= each < width_px]

@@ -1,0 +1,1 @@
+"""What a run left behind as JSON, what was seen included; and read back."""

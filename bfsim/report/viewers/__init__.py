@@ -1,0 +1,1 @@
+"""Files for viewers that others make: Perfetto, speedscope, Foxglove."""

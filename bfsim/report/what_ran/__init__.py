@@ -1,0 +1,1 @@
+"""What ran on what: code, configuration, digests."""

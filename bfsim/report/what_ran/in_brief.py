@@ -1,0 +1,32 @@
+"""What ran on what, in a few lines: for screens that end with it. `configuration` has all of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.report.what_ran.code import TRUST, code_in_words
+from bfsim.report.what_ran.digest import cycle_digest, identity_digest
+from bfsim.report.wording.units import mhz
+from bfsim.trace import RunRecord
+
+DIGITS_TOLD = 12
+"""As much of a digest is enough to see that two runs are the same."""
+
+
+def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
+    """Yield whose code it was, the names of what ran, where its errors are told, and the digests of that and of its cycles."""
+    identity = run.identity
+    compiler = identity.compiler
+    if run.object_share == 1:
+        compiler += f" ({code_in_words(run)})"
+    elif code := code_in_words(run):
+        yield "Code", code
+    size = f"{identity.width_px}x{identity.height_px}"
+    board = f"{identity.board} ({mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)})"
+    extras = [identity.ldf, compiler, f"feed {identity.feed}"]
+    if identity.fidelity != "fast":
+        extras.append(f"fidelity {identity.fidelity}")
+    yield "Run", f"{identity.recording} {size}, {identity.firmware}, {board}, {', '.join(extras)}"
+    yield TRUST
+    digests = identity_digest(identity), cycle_digest(run.frames)
+    yield "Digests", "identity {}, cycles {}".format(*(each[:DIGITS_TOLD] for each in digests))

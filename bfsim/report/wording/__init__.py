@@ -1,0 +1,1 @@
+"""How reports say numbers, operations of the Blackfin, and names that others gave."""
