@@ -17,8 +17,8 @@ from rich.table import Table
 from bfsim.errors import BfsimError
 from bfsim.process.terminal import print_report
 from bfsim.recording import StereoGeometry
-from bfsim.report.ldf.drawing import FAINT, INK, FilledBox, Sheet, Words
 from bfsim.report.ldf.picture import format_of
+from bfsim.report.ldf.sheet import FAINT, INK, FilledBox, Sheet, Words
 from bfsim.report.tables.table import new_table
 from tinyphoon.geometry import depth_mm, geometry_buffer
 from tinyphoon.stores.lines import SUBPIXELS

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from bfsim.report.check.judge import Outcome
+    from bfsim.report.check.verdicts import Outcome
     from bfsim.report.results.result import Result
     from bfsim.result import Run
     from bfsim.seen import SeenFrame

@@ -20,7 +20,7 @@ from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case, Configuration
-    from bfsim.report.check.judge import Outcome
+    from bfsim.report.check.verdicts import Outcome
     from bfsim.report.results.result import Result
 
 LOOSENED_LISTED = 6

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from bfsim.report.check.baseline import Case
 from bfsim.report.check.baseline_file import read_baseline
-from bfsim.report.check.judge import Outcome, judge
+from bfsim.report.check.judge import judge
 from bfsim.report.check.update import updated, write_cases
+from bfsim.report.check.verdicts import Outcome
 from bfsim.report.results.result import Result, result_of
 from bfsim.trace import MemoryRecord, RunRecord
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from bfsim.report.check.cause import difference_of_outcome, explanation
 from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic
-from bfsim.report.check.judge import Outcome, Verdict
 from bfsim.report.check.requirement import dotted
 from bfsim.report.check.sentences import changes
+from bfsim.report.check.verdicts import Outcome, Verdict
 from bfsim.report.diff.as_json import plain_difference
 from bfsim.report.jsonable import json_text
 

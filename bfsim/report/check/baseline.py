@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from bfsim.report.check.requirement import MOST_FRAMES
+from bfsim.report.check.requirement_reading import MOST_FRAMES
 from bfsim.report.check.settings import leaves, text_of
 from bfsim.trace import Identity
 

@@ -16,7 +16,8 @@ from bfsim.errors import ConfigError, cut, shown
 from bfsim.files.content import read_bounded
 from bfsim.files.wrong_value import key_of, wrong_value
 from bfsim.report.check.baseline import Baseline, Case, Costs, KeptLine, KeptOwner, MeasuredOn, Table
-from bfsim.report.check.requirement import Requirement, parse_requirement
+from bfsim.report.check.requirement import Requirement
+from bfsim.report.check.requirement_reading import parse_requirement
 
 OLD_KEYS = {"core", "measured_by", "tolerance_percent"}
 """At the top of files that were written before there were several runs in one."""

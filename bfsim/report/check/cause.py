@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from bfsim.report.check.judge import Outcome
 from bfsim.report.check.kept import kept_side, whole_side
+from bfsim.report.check.verdicts import Outcome
 from bfsim.report.diff.compare import difference_between
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.line_causes import line_text

@@ -14,7 +14,7 @@ from bfsim.errors import ConfigError
 from bfsim.files.content import read_bounded
 from bfsim.files.save import alone_in, write_bytes
 from bfsim.report.check.as_json import figures_json
-from bfsim.report.check.judge import Outcome
+from bfsim.report.check.verdicts import Outcome
 from bfsim.report.tables.table import new_table
 
 TREND = "frame.median ms"

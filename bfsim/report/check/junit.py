@@ -7,8 +7,8 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from bfsim.report.check.cause import explanation
-from bfsim.report.check.judge import Outcome
 from bfsim.report.check.sentences import broken_lines, verdict_line
+from bfsim.report.check.verdicts import Outcome
 
 
 def junit_xml(outcomes: Sequence[Outcome], path: Path) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from bfsim.report.check.baseline import Case, Costs, KeptLine, KeptOwner
 from bfsim.report.check.figures import OBJECTS, RESULTS, Name
-from bfsim.report.check.requirement import parse_requirement
+from bfsim.report.check.requirement_reading import parse_requirement
 from bfsim.report.diff.pairs import SMALL
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.diff.side import FRAMES, SEPARATOR, Line, Owner, Side, Source, Stall

@@ -8,8 +8,8 @@ from pathlib import Path
 from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import Unit
-from bfsim.report.check.judge import Outcome, left_out, worst_of_each
 from bfsim.report.check.sentences import limit_and_measured, percent, verdict_line
+from bfsim.report.check.verdicts import Outcome, left_out, worst_of_each
 from bfsim.report.diff.markdown import contribution_rows
 from bfsim.report.diff.sentences import why
 from bfsim.report.diff.tables import scope, seen_lines

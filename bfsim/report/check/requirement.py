@@ -14,25 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby
-from typing import NoReturn
 
-from bfsim.errors import ConfigError, cut, shown
-from bfsim.report.check.figures import (
-    COUNTS,
-    FRAME,
-    FRAME_RATE,
-    LATENCY,
-    MEMORY,
-    MISSED,
-    OF_THE_RUN,
-    RESULTS,
-    STATISTICS,
-    Figure,
-    Name,
-    Unit,
-    statistic,
-    unit_of,
-)
+from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic, unit_of
 
 UNITS: dict[Unit, dict[str, Fraction | None]] = {
     Unit.HZ: {"Hz": Fraction(1)},
@@ -49,20 +32,6 @@ UNITS: dict[Unit, dict[str, Fraction | None]] = {
 
 MS_DIGITS = 6
 """Digits by which a limit in ms says each cycle of a clock up to 1 GHz."""
-
-_PART = re.compile(r'\s*(?:"([^"\n]*)"|([\w-]+))\s*')
-_COMPARISON = re.compile(r"\s*(<=|>=|==)\s*")
-_NUMBER = re.compile(r"(-?\d[\d_]*(?:\.\d+)?)\s*")
-_NOT_WRITTEN_OUT = re.compile(r"[.,]|[eE][+-]?\d")
-"""Behind a number: an exponent, or what is no unit."""
-_COUNT = r"-?\d[\d_]*(?:\*[1-9]\d{0,6})?"
-_COUNTS = re.compile(rf"{_COUNT}(?:\s+{_COUNT})*\s*")
-_TIMES = re.compile(r"\*(\d+)")
-LONGEST_NUMBER = 30
-"""Digits; more is no figure of a run."""
-_TOO_LONG = re.compile(rf".*[\d_]{{{LONGEST_NUMBER + 1}}}")
-MOST_FRAMES = 1_000_000
-"""A number for each frame is kept in memory; so many are eleven hours at 25 a second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,58 +67,6 @@ class Requirement:
         return statistic(figure, name)
 
 
-def parse_requirement(text: str, where: str) -> Requirement:
-    """Read a sentence. Raises ConfigError that names `where` it stands, with a caret under what is wrong."""
-    parts, at = _parts(text, where)
-    stands_for = parts[-1][1] if len(parts) > 1 and parts[-1][1] in STATISTICS else ""
-    name = tuple(part for _, part in (parts[:-1] if stands_for else parts))
-    _require_name(name, parts, text, where)
-    found = _COMPARISON.match(text, at)
-    if not found:
-        _fail("after the name must come <=, >= or ==", text, at, where)
-    comparison, at = found[1], found.end()
-    unit, is_published = unit_of(name), name[0] == RESULTS
-    wanted = f"after {comparison} must come a number{'' if is_published else ' that is not negative'}"
-    begin = at
-    counts = _COUNTS.fullmatch(text, at)
-    if _TOO_LONG.match(text, at):
-        _fail(f"after {comparison} must come numbers of at most {LONGEST_NUMBER} digits", text, at, where)
-    if counts and unit is Unit.COUNT:
-        if sum(int(each) for each in _TIMES.findall(counts[0])) > MOST_FRAMES:
-            _fail(f"after {comparison} must come counts of at most {MOST_FRAMES:,} frames", text, at, where)
-        numbers, named = _counted(counts[0]), ""
-        if len(numbers) > 1 and (comparison != "==" or stands_for):
-            _fail("a number for each frame must come after == and a name without statistic", text, at, where)
-    else:
-        number = _NUMBER.match(text, at)
-        if not number:
-            _fail(wanted, text, at, where)
-        numbers, at = (Fraction(number[1].replace("_", "")),), number.end()
-        if _NOT_WRITTEN_OUT.match(text, number.end(1)):
-            _fail(
-                f"after {comparison} must come a number written out, such as 12_000 or 0.25",
-                text,
-                begin,
-                where,
-            )
-        named = text[at:].strip()
-        if named not in UNITS[unit]:
-            known = " or ".join(each or "none" for each in UNITS[unit])
-            is_stage = unit is Unit.CCLK and name not in {LATENCY, FRAME}
-            what = f"the unit of {'the stage ' if is_stage else ''}{'.'.join(name)}"
-            _fail(
-                f"{what} must be {known}, not {shown(named)}{_meant(name) if is_stage else ''}",
-                text,
-                at,
-                where,
-            )
-    if min(numbers) < 0 and not is_published:
-        _fail(wanted, text, begin, where)
-    return Requirement(
-        name=name, statistic=stands_for, comparison=comparison, numbers=numbers, unit=named, text=text
-    )
-
-
 def limit_text(name: Name, value: float, cclk_hz: float, stands_for: str = "") -> str:
     """Return the sentence that allows `value` and nothing worse."""
     key = dotted((*name, stands_for) if stands_for else name)
@@ -180,47 +97,3 @@ def nearest_of(name: Name, known: Sequence[Name]) -> str:
     """Return a few of the known names that are most like `name`."""
     texts = {dotted(each): None for each in known}
     return ", ".join(difflib.get_close_matches(dotted(name), texts, n=4, cutoff=0))
-
-
-def _parts(text: str, where: str) -> tuple[list[tuple[int, str]], int]:
-    """Return the parts of the name with their places, and where it ends."""
-    parts, at = list[tuple[int, str]](), 0
-    while True:
-        found = _PART.match(text, at)
-        if not found:
-            _fail('must begin with a name, such as frame_rate or "Edge".max', text, at, where)
-        parts.append((at, found[2] if found[1] is None else found[1]))
-        at = found.end()
-        if not text.startswith(".", at):
-            return parts, at
-        at += 1
-
-
-def _require_name(name: Name, parts: Sequence[tuple[int, str]], text: str, where: str) -> None:
-    most = 2 if (name[:1]) not in {FRAME_RATE, MISSED, LATENCY, FRAME} else 1
-    least = 2 if name[0] in {MEMORY, *COUNTS} else 1
-    if len(name) > most:
-        what = f"{', '.join(STATISTICS[:-1])} or {STATISTICS[-1]}"
-        _fail(f"{dotted(name[:most])} must be followed by {what}, or nothing", text, parts[most][0], where)
-    if len(name) < least:
-        _fail(f"{name[0]} must be followed by a name, such as {name[0]}.L2", text, len(name[0]), where)
-
-
-def _meant(name: Name) -> str:
-    """Return a hint where what is taken for a stage is nearly the name of something else."""
-    near = difflib.get_close_matches(dotted(name), [dotted(each) for each in OF_THE_RUN])
-    return f"; what is no stage is called {near[0]}" if near else ""
-
-
-def _counted(text: str) -> tuple[Fraction, ...]:
-    numbers = list[Fraction]()
-    for each in text.split():
-        value, _, times = each.partition("*")
-        numbers += [Fraction(value.replace("_", ""))] * int(times or 1)
-    return tuple(numbers)
-
-
-def _fail(problem: str, text: str, at: int, where: str) -> NoReturn:
-    if len(text) > len(cut(text)):
-        raise ConfigError(f"{where}: {problem} ({cut(text)})")
-    raise ConfigError(f"{where}: {problem}\n    {cut(text)}\n    {' ' * at}^")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from bfsim.report.budget.start_up import of_one_frame
 from bfsim.report.check.figures import Unit
-from bfsim.report.check.judge import Outcome, Verdict, left_out, worst_of_each
+from bfsim.report.check.verdicts import Outcome, Verdict, left_out, worst_of_each
 from bfsim.report.wording.units import milliseconds_of, others_row, size
 
 

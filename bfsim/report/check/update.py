@@ -12,10 +12,11 @@ from bfsim.files.save import alone_in, write_text
 from bfsim.report.check.baseline import COMPARABLE, Case, MeasuredOn, measured_on
 from bfsim.report.check.baseline_file import parsed, requirements_of, validated
 from bfsim.report.check.figures import COUNTS, MISSED, SEEN, STATISTICS, Name, Unit, figures_of, statistic
-from bfsim.report.check.judge import Outcome, Verdict, judge, worst_of_each
+from bfsim.report.check.judge import judge
 from bfsim.report.check.kept import kept_costs, whole_side
 from bfsim.report.check.requirement import Requirement, counts_text, limit_text
 from bfsim.report.check.toml_items import toml_item
+from bfsim.report.check.verdicts import Outcome, Verdict, worst_of_each
 from bfsim.report.results.result import Result
 from bfsim.trace import RunRecord
 

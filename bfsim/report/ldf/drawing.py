@@ -7,18 +7,19 @@ Panels of core A stand on the left, those of core B on the right, shared memorie
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import groupby
 
 from bfsim.report.ldf.colours import colours_of, kind_colour
 from bfsim.report.ldf.map import SHARED, ContentKind, MapPiece, MapSegment, MemoryMap
+from bfsim.report.ldf.sheet import FAINT, FONT, INK, PAPER, SMALL_FONT, TITLE_FONT, FilledBox, Sheet, Words
 from bfsim.report.wording.units import size
 
 # lengths in px
 MARGIN, GUTTER = 24, 32
 PANEL_WIDTH = 640
 BAR_HEIGHT, TITLE_HEIGHT, LINE_HEIGHT, PANEL_GAP = 44, 24, 20, 22
-FONT, SMALL_FONT, TITLE_FONT = 14, 12, 20
+
 LETTER_WIDTH = 0.6  # of the font's size: the widest sans-serif digits
 SWATCH = 12
 MOST_LEGEND_COLUMNS = 3
@@ -33,42 +34,7 @@ KINDS = {
 }
 """What the hues stand for."""
 
-INK, FAINT, PAPER = "#1c2430", "#6b7585", "#ffffff"
 FREE_COLOUR, RESERVED_COLOUR = "#eef1f5", "#c3cad6"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FilledBox:
-    """A filled rectangle; coordinates in px from the upper left corner."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-    fill: str
-    outline: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Words:
-    """One line of text; (x, y) is the middle of its left end, or with `is_right` of its right end."""
-
-    x: float
-    y: float
-    text: str
-    font_px: int = FONT
-    colour: str = INK
-    is_right: bool = False
-
-
-@dataclass(slots=True)
-class Sheet:
-    """A drawing that grows downwards."""
-
-    width: float
-    height: float = 0
-    boxes: list[FilledBox] = field(default_factory=list)
-    words: list[Words] = field(default_factory=list)
 
 
 def drawing_of(memory_map: MemoryMap) -> Sheet:

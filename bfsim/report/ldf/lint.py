@@ -5,117 +5,19 @@ All is judged from what is known without a run, so a buffer of several rows coun
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import groupby
+from collections.abc import Iterator, Sequence
 
-from bfsim.report.ldf.map import SHARED, ContentKind, MapSegment, MapSymbol, MemoryMap
+from bfsim.report.ldf.bank_rules import STREAMED, own_banks, shared_banks
+from bfsim.report.ldf.finding import Finding, listed
+from bfsim.report.ldf.map import ContentKind, MapSegment, MapSymbol, MemoryMap
 
 FULL_SHARE = 0.95
 """A segment that is used beyond this share is nearly full."""
-
-NAMES_LISTED = 4
-STREAMED = (ContentKind.CAMERA, ContentKind.LINES)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
-    """One thing to look at: the `rule` that found it, `where`, why it matters and what to do about it."""
-
-    rule: str
-    where: str
-    reason: str
-    advice: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stream:
-    """A buffer that a `master` fills or empties line by line, in the `banks` of the SDRAM.
-
-    Streams of different masters run at the same time. One core's memory DMA is one master: it has an inward and an
-    outward stream, but which of its buffers these take together is known to its main loop only.
-    """
-
-    buffer: str
-    master: str
-    banks: tuple[int, ...]
 
 
 def lint(memory_map: MemoryMap) -> tuple[Finding, ...]:
     """Return the findings of all rules, rule by rule."""
     return tuple(finding for rule in RULES for finding in rule(memory_map))
-
-
-def streams_of(symbols: Iterable[MapSymbol]) -> list[Stream]:
-    """Return the streams to and from SDRAM that a firmware's buffers suggest."""
-    return [
-        Stream(buffer=each.name, master=_master(each), banks=each.banks)
-        for each in symbols
-        if each.banks and each.kind in STREAMED
-    ]
-
-
-def _master(symbol: MapSymbol) -> str:
-    if symbol.kind is ContentKind.CAMERA:
-        return f"camera {symbol.owner}"
-    return "both cores" if symbol.owner == SHARED else f"core {symbol.owner}"
-
-
-def streams_by_bank(streams: Sequence[Stream]) -> Mapping[int, Sequence[Stream]]:
-    """Return which streams run in which bank, by the number of the bank."""
-    banks = sorted({bank for each in streams for bank in each.banks})
-    return {bank: [each for each in streams if bank in each.banks] for bank in banks}
-
-
-def _shared_banks(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Find banks in which several masters stream: they do so at the same time, whatever the firmware does."""
-    by_bank = streams_by_bank(streams_of(memory_map.symbols))
-    for bank, streams in by_bank.items():
-        if len({each.master for each in streams}) > 1:
-            yield Finding(
-                rule="streams share a bank",
-                where=f"SDRAM bank {bank}",
-                reason=f"{_buffers_by_master(streams)} stream through it at the same time; a bank keeps one page "
-                "open, so each closes the other's page, and most bursts begin with a page conflict",
-                advice=_other_bank(memory_map, by_bank),
-            )
-
-
-def _own_banks(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Find banks with two buffers of one master: it depends on the main loop whether both stream at a time."""
-    for bank, streams in streams_by_bank(streams_of(memory_map.symbols)).items():
-        if len(streams) > 1 and len({each.master for each in streams}) == 1:
-            yield Finding(
-                rule="images share a bank",
-                where=f"SDRAM bank {bank}",
-                reason=f"{_buffers_by_master(streams)} lie in it; a stage that reads one of them while it writes "
-                "another opens a page for every line",
-                advice="give what one stage reads and writes two banks, if the other streams leave one free",
-            )
-
-
-def _buffers_by_master(streams: Sequence[Stream]) -> str:
-    ordered = sorted(streams, key=lambda each: each.master)
-    parts = [
-        f"{_listed([each.buffer for each in group])} of {master}"
-        for master, group in groupby(ordered, key=lambda each: each.master)
-    ]
-    return " and ".join(parts)
-
-
-def _other_bank(memory_map: MemoryMap, by_bank: Mapping[int, Sequence[Stream]]) -> str:
-    free = [
-        f"{segment.name} ({', '.join(takes)})"
-        for segment in memory_map.segments
-        if segment.memory == "SDRAM" and not any(each.kind in STREAMED for each in segment.symbols)
-        for takes in [[name for section in segment.sections for name in section.takes]]
-        if takes
-    ]
-    if free:
-        return f"no stream runs in {', '.join(free)}: move one there by its input section"
-    if len(by_bank) > 1:
-        return "move one to the bank whose streams move least, or its lines to L1 or L2"
-    return "give the LDF a segment for each internal bank, and each stream one of them"
 
 
 def _hot_code(memory_map: MemoryMap) -> Iterator[Finding]:
@@ -129,7 +31,7 @@ def _hot_code(memory_map: MemoryMap) -> Iterator[Finding]:
             yield Finding(
                 rule="hot code outside L1",
                 where=segment.name,
-                reason=f"{_listed([each.name for each in code])}, {_bytes(code)} of kernel code: every fetch goes "
+                reason=f"{listed([each.name for each in code])}, {_bytes(code)} of kernel code: every fetch goes "
                 f"to {segment.memory}",
                 advice="make room in L1_code and L1_code_cache, or turn the code cache on (___l1_code_cache = 1)",
             )
@@ -148,7 +50,7 @@ def _cached_halves(memory_map: MemoryMap) -> Iterator[Finding]:
             yield Finding(
                 rule="DMA target in a cached half" if streamed else "symbols in a cached half",
                 where=f"{cache.memory} from 0x{cache.start:08X}",
-                reason=f"{_listed([each.name for each in streamed or inside])}: the LDF makes this half cache, and "
+                reason=f"{listed([each.name for each in streamed or inside])}: the LDF makes this half cache, and "
                 "then neither loads and stores nor DMA reach it as memory",
                 advice="end the segment before it, or turn this cache off",
             )
@@ -162,7 +64,7 @@ def _scratchpad(memory_map: MemoryMap) -> Iterator[Finding]:
             yield Finding(
                 rule="DMA buffer in scratchpad",
                 where=segment.name,
-                reason=f"{_listed([each.name for each in streamed])}: buffers of several rows, but no DMA reaches "
+                reason=f"{listed([each.name for each in streamed])}: buffers of several rows, but no DMA reaches "
                 "the scratchpad",
                 advice="keep it for rows and rings that only kernels use; rings of DMA lines go to an L1 data bank",
             )
@@ -208,22 +110,13 @@ def _tables(memory_map: MemoryMap) -> Iterator[Finding]:
             yield Finding(
                 rule="table in SDRAM",
                 where=segment.name,
-                reason=f"{_listed([each.name for each in tables])}, {_bytes(tables)}: kernels look up single "
+                reason=f"{listed([each.name for each in tables])}, {_bytes(tables)}: kernels look up single "
                 "elements, and each one waits for the SDRAM",
                 advice="tables of this size go to an L1 data bank, or to L2",
             )
 
 
-RULES = (_shared_banks, _own_banks, _hot_code, _cached_halves, _scratchpad, _nearly_full, _tables)
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return the names without doubles, the first few of many."""
-    unique = list(dict.fromkeys(names))
-    more = len(unique) - NAMES_LISTED
-    if more > 0:
-        return f"{', '.join(unique[:NAMES_LISTED])} and {more} more"
-    return ", ".join(unique[:-1]) + " and " * (len(unique) > 1) + unique[-1]
+RULES = (shared_banks, own_banks, _hot_code, _cached_halves, _scratchpad, _nearly_full, _tables)
 
 
 def _bytes(symbols: Sequence[MapSymbol]) -> str:

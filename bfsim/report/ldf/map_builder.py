@@ -3,35 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import groupby
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from operator import attrgetter
 
-from bfsim.chip.memory_map import KIB, Region, regions_under
+from bfsim.chip.memory_map import Region, regions_under
 from bfsim.errors import ConfigError
 from bfsim.linker import LinkerScript, LinkMap, PlacedReserve, Placement
 from bfsim.linker.script import Block, FixedReserve, InputSections, OutputSection, Segment
-from bfsim.report.ldf.map import (
-    SHARED,
-    CacheRange,
-    ContentKind,
-    MapPiece,
-    MapSection,
-    MapSegment,
-    MapSymbol,
-    MemoryMap,
-)
-
-CACHE_SWITCHES = {
-    "___l1_data_cache_a": "L1_DATA_A",
-    "___l1_data_cache_b": "L1_DATA_B",
-    "___l1_code_cache": "L1_CODE_CACHE",
-}
-"""Symbols by which an LDF of VisualDSP++ turns the upper half of an L1 memory into cache, if they are not 0."""
-
-CACHE_BYTES = 16 * KIB
-"""What a cache takes from the end of its memory: ADSP-BF561, and ADSP-BF533 alike."""
+from bfsim.report.ldf.caches import caches_of
+from bfsim.report.ldf.map import SHARED, ContentKind, MapPiece, MapSection, MapSegment, MapSymbol, MemoryMap
+from bfsim.report.ldf.pieces import pieces_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +48,7 @@ def memory_map(
         width_px=width_px,
         height_px=height_px,
         segments=tuple(builder.segment(each) for each in script.segments),
-        caches=tuple(_caches(script, memories.regions)),
+        caches=tuple(caches_of(script, memories.regions)),
         why_without=why_without,
     )
 
@@ -114,7 +96,7 @@ class _Builder:
             used_bytes=used,
             sections=tuple(self.sections(segment, placed)),
             symbols=symbols,
-            pieces=tuple(_pieces(segment, used, symbols, reserves)),
+            pieces=tuple(pieces_of(segment, used, symbols, reserves)),
         )
 
     def memory(self, segment: Segment) -> tuple[str, str]:
@@ -176,71 +158,3 @@ def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
     """Yield each input section once, where it is first asked for; those of one list in the order of their names."""
     names = [name for each in statements for part in each.inputs for name in sorted(part.sections)]
     yield from dict.fromkeys(names)
-
-
-def _pieces(
-    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], reserves: Sequence[MapPiece]
-) -> Iterator[MapPiece]:
-    """Yield what fills a segment. What is used and has no name is a gap before a symbol, or after the last one."""
-    placed = [_piece(each) for each in symbols if each.nbytes]
-    named = _merged([*placed, *(each for each in reserves if each.nbytes)])
-    last = max((each.start + each.nbytes for each in placed), default=segment.start)
-    gaps = max(0, used_bytes - sum(each.nbytes for each in named))
-    here = segment.start
-    for piece in [*named, _unnamed(ContentKind.FREE, segment.end + 1, 0)]:
-        space = piece.start - here
-        gap = space if here < last else min(space, gaps)
-        gaps -= gap
-        if gap:
-            yield _unnamed(ContentKind.RESERVED, here, gap)
-        if space > gap:
-            yield _unnamed(ContentKind.FREE, here + gap, space - gap)
-        if piece.nbytes:
-            yield piece
-        here = max(here, piece.start + piece.nbytes)
-
-
-def _unnamed(kind: ContentKind, start: int, nbytes: int) -> MapPiece:
-    return MapPiece(
-        name="free" if kind is ContentKind.FREE else "gap",
-        kind=kind,
-        owner=SHARED,
-        start=start,
-        nbytes=nbytes,
-    )
-
-
-def _piece(symbol: MapSymbol) -> MapPiece:
-    return MapPiece(
-        name=symbol.name, kind=symbol.kind, owner=symbol.owner, start=symbol.address, nbytes=symbol.nbytes
-    )
-
-
-def _merged(pieces: Iterable[MapPiece]) -> list[MapPiece]:
-    """Return the pieces by address, one core's code that lies side by side as one."""
-    merged: list[MapPiece] = []
-    ordered = sorted(pieces, key=lambda piece: piece.start)
-    for (kind, _), group in groupby(ordered, key=lambda piece: (piece.kind, piece.owner)):
-        run = list(group)
-        if kind is ContentKind.CODE and len(run) > 1:
-            nbytes = run[-1].start + run[-1].nbytes - run[0].start
-            run = [replace(run[0], name=f"{len(run)} kernels", nbytes=nbytes)]
-        merged.extend(run)
-    return merged
-
-
-def _caches(script: LinkerScript, regions: Sequence[Region]) -> Iterator[CacheRange]:
-    """Yield what the LDF's switches turn into cache, core by core."""
-    for block in script.blocks:
-        for name, memory in CACHE_SWITCHES.items():
-            if not block.assignments.get(name):
-                continue
-            for region in regions:
-                cores = {script.core_of_processor.get(each) for each in block.processors}
-                if region.memory == memory and region.owner in cores:
-                    yield CacheRange(
-                        memory=region.name,
-                        owner=region.owner,
-                        start=region.start + region.nbytes - CACHE_BYTES,
-                        nbytes=CACHE_BYTES,
-                    )

@@ -10,8 +10,9 @@ from xml.sax.saxutils import escape
 from PIL import Image, ImageDraw, ImageFont
 
 from bfsim.errors import ConfigError, legible
-from bfsim.report.ldf.drawing import PAPER, FilledBox, Sheet, Words, drawing_of
+from bfsim.report.ldf.drawing import drawing_of
 from bfsim.report.ldf.map import MemoryMap
+from bfsim.report.ldf.sheet import PAPER, FilledBox, Sheet, Words
 
 PIXELS = 2
 """PNG pixels per px of the drawing: small letters stay readable."""

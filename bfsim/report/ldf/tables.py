@@ -11,7 +11,7 @@ from rich.text import Text
 
 from bfsim.report.jsonable import json_text, jsonable
 from bfsim.report.ldf.bars import bars
-from bfsim.report.ldf.lint import Finding
+from bfsim.report.ldf.finding import Finding
 from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.tables.table import new_table, percent, stacked
 from bfsim.report.wording.units import size

@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
-
-import numpy as np
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
+from typing import Self
 
 from bfsim.errors import ConfigError
 from bfsim.files.drafts import draft_folder, sweep
 from bfsim.files.save import require_name, require_place
+from bfsim.report.overlay.animations import TAG, encoder_of, png_remark
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
-from bfsim.report.overlay.style import PAPER
 from bfsim.seen import SeenFrame
-
-FRAME_MS = 200
-"""How long an animated file shows a frame: long enough to look at it."""
-
-TAG = "bfsim overlay"
-"""A remark in each file, by which an earlier overlay is known."""
 
 KEPT_LEVEL, DRAFT_LEVEL = 4, 1
 """Of zlib, for pictures that are kept and for those that one file is made of: Pillow's 6 takes 1.6 to 2.5 times as long as 4 for 1 to 6 % less."""
@@ -45,7 +35,7 @@ class OverlayWriter:
     def __init__(self, path: Path, layers: Collection[str] = LAYERS) -> None:
         self.path = path
         self._layers = layers
-        self._encode = None if path.is_dir() or not path.suffix else _encoder_of(path)
+        self._encode = None if path.is_dir() or not path.suffix else encoder_of(path)
         if self._encode is None:
             _require_folder(path)
         else:
@@ -67,7 +57,7 @@ class OverlayWriter:
         file = self._folder / f"frame-{frame.index:04d}.png"
         level = DRAFT_LEVEL if self._encode else KEPT_LEVEL
         with _writing(self.path):
-            overlay_of(frame, self._layers).save(file, "PNG", pnginfo=_remark(), compress_level=level)
+            overlay_of(frame, self._layers).save(file, "PNG", pnginfo=png_remark(), compress_level=level)
         self._drawn.append(file)
 
     def __exit__(
@@ -89,80 +79,6 @@ class OverlayWriter:
                 each.replace(self.path / each.name)
         else:
             self._folder.replace(self.path)
-
-
-def _images(frames: Sequence[Path]) -> Iterator[Image.Image]:
-    """Yield the pictures, all on paper as large as the largest: firmware may change the size during a run."""
-    sizes = []
-    for each in frames:
-        with Image.open(each) as image:
-            sizes.append(image.size)
-    # video has one sample of colour for two by two pixels: no odd row or column
-    width, height = (-(-max(size[axis] for size in sizes) // 2) * 2 for axis in (0, 1))
-    for each in frames:
-        paper = Image.new("RGB", (width, height), PAPER)
-        with Image.open(each) as image:
-            paper.paste(image)
-        yield paper
-
-
-def _save_animation(images: Iterator[Image.Image], target: Path, **options: Any) -> None:
-    first, *others = images
-    first.save(target, save_all=True, append_images=others, duration=FRAME_MS, loop=0, **options)
-
-
-def _encode_gif(frames: Sequence[Path], target: Path) -> None:
-    # of Pillow's palettes this one keeps the colours of thin marks
-    few = (
-        image.quantize(method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-        for image in _images(frames)
-    )
-    _save_animation(few, target, format="GIF", comment=TAG)
-
-
-def _encode_webp(frames: Sequence[Path], target: Path) -> None:
-    _save_animation(_images(frames), target, format="WEBP", quality=85, method=2, xmp=TAG.encode())
-
-
-def _encode_apng(frames: Sequence[Path], target: Path) -> None:
-    _save_animation(_images(frames), target, format="PNG", pnginfo=_remark())
-
-
-def _encode_mp4(frames: Sequence[Path], target: Path) -> None:
-    import av
-
-    with av.open(str(target), "w") as container:
-        container.metadata["comment"] = TAG
-        stream = container.add_stream("libx264", rate=1000 // FRAME_MS, options={"crf": "18"})
-        stream.pix_fmt = "yuv420p"
-        for image in _images(frames):
-            if not stream.codec_context.is_open:
-                stream.width, stream.height = image.size
-            container.mux(stream.encode(av.VideoFrame.from_ndarray(np.asarray(image), format="rgb24")))
-        container.mux(stream.encode(None))
-
-
-ENCODERS: dict[str, Callable[[Sequence[Path], Path], None]] = {
-    ".gif": _encode_gif,
-    ".webp": _encode_webp,
-    ".apng": _encode_apng,
-    ".mp4": _encode_mp4,
-}
-
-
-def _encoder_of(path: Path) -> Callable[[Sequence[Path], Path], None]:
-    """Return what makes the file; raise ConfigError if nothing does."""
-    suffix = path.suffix.lower()
-    if suffix not in ENCODERS:
-        raise ConfigError(f"--overlay must be a folder or a file *{', *'.join(ENCODERS)}, not {path}")
-    if suffix == ".mp4":
-        try:
-            import av  # noqa: F401
-        except ImportError:
-            raise ConfigError(
-                f'{path}: writing video needs the package PyAV; install it with: pip install "bfsim[video]"'
-            ) from None
-    return ENCODERS[suffix]
 
 
 def _require_folder(path: Path) -> None:
@@ -196,12 +112,6 @@ def _is_overlay(file: Path) -> bool:
         return False
     with file.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as content:
         return content.find(TAG.encode()) >= 0
-
-
-def _remark() -> PngInfo:
-    remark = PngInfo()
-    remark.add_text("Comment", TAG)
-    return remark
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from itertools import accumulate
 from PIL import Image, ImageDraw
 
 from bfsim.report.overlay import style
-from bfsim.report.overlay.panel import Pen
+from bfsim.report.overlay.pen import Pen
 from bfsim.seen import SeenBlob, SeenCircle, SeenLine, SeenObject, Solid, colours
 from bfsim.seen.colours import DepthScale
 

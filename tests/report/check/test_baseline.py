@@ -14,7 +14,8 @@ from bfsim.errors import ConfigError
 from bfsim.report.check.baseline import Case
 from bfsim.report.check.baseline_file import read_baseline, update_command
 from bfsim.report.check.figures import Figure, Unit
-from bfsim.report.check.requirement import counts_text, limit_text, parse_requirement
+from bfsim.report.check.requirement import counts_text, limit_text
+from bfsim.report.check.requirement_reading import parse_requirement
 from bfsim.report.check.update import write_cases
 
 

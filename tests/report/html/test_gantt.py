@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bfsim.report.html.gantt import SLICES, Gantts, chart_of
+from bfsim.report.html.gantt import Gantts
+from bfsim.report.html.gantt_bars import SLICES, chart_of
 from bfsim.run import simulate
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import StallReason
@@ -104,9 +105,9 @@ def test_a_core_that_is_never_without_a_span_has_bars_without_a_gap(lengths: lis
 def test_too_many_bars_become_fewer_and_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Half as many slices from the first bar on that is too many."""
     spans = [call(number * 10, number * 10 + 10, f"kernel {number % 2}") for number in range(SLICES)]
-    monkeypatch.setattr("bfsim.report.html.gantt.MOST_BARS", SLICES)
+    monkeypatch.setattr("bfsim.report.html.gantt_bars.MOST_BARS", SLICES)
     assert len(bars_of(spans, 0, 10 * SLICES)) == SLICES
-    monkeypatch.setattr("bfsim.report.html.gantt.MOST_BARS", SLICES - 1)
+    monkeypatch.setattr("bfsim.report.html.gantt_bars.MOST_BARS", SLICES - 1)
     chart = chart_of(spans, 0, 10 * SLICES, HZ)
     assert len(chart["bars"]) == 1  # each of the longer slices has as much of one kernel as of the other
     assert chart["slice_ms"] == pytest.approx(0.02)

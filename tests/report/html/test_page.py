@@ -17,7 +17,8 @@ from bfsim.report.budget.target import Target
 from bfsim.report.html import charts, frames
 from bfsim.report.html.chosen import Chosen
 from bfsim.report.html.frames import facts_of, told_of, worst_of
-from bfsim.report.html.gantt import SLICES, Gantts
+from bfsim.report.html.gantt import Gantts
+from bfsim.report.html.gantt_bars import SLICES
 from bfsim.report.html.pictures import Pictures, webp_of
 from bfsim.report.html.rendering import with_code
 from bfsim.report.html.sources import dearest_sources

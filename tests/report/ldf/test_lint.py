@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from bfsim.report.ldf.lint import Finding, Stream, lint, streams_by_bank
+from bfsim.report.ldf.bank_rules import Stream, streams_by_bank
+from bfsim.report.ldf.finding import Finding
+from bfsim.report.ldf.lint import lint
 from bfsim.report.ldf.map import SHARED, CacheRange, ContentKind, MemoryMap
 from tests.report.ldf_maps import BANK_BYTES, DATA_A, a_map, a_segment, a_symbol
 

@@ -8,7 +8,8 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import ConfigError
-from bfsim.report.overlay.files import ENCODERS, FRAME_MS, OverlayWriter
+from bfsim.report.overlay.animations import ENCODERS, FRAME_MS
+from bfsim.report.overlay.files import OverlayWriter
 from bfsim.seen import Seen
 from tests import seen_frames as made
 from tests.tiers import exhaustive

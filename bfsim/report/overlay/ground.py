@@ -1,0 +1,64 @@
+"""What lies under the marks of an overlay: the picture, darkened and magnified, its map, its heat and its edges."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from bfsim.report.overlay import style
+from bfsim.seen import Seen, SeenEdges3D, SeenMap, colours
+from bfsim.seen.colours import DepthScale
+from bfsim.seen.heat import heated
+from bfsim.seen.pictures import rgb_of
+
+FULL_GRADIENT = 96  # edges as strong as this are drawn at their brightest
+FAINTEST = 0.4
+EDGE_SIDE = 0.6  # of the side of a pixel
+
+MAP_SHARE = 0.45  # of the colour of a map over the picture
+
+
+def picture_with_edges(
+    seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int, depths: DepthScale, hottest_us: float
+) -> NDArray[np.uint8]:
+    """Return the picture, darkened and magnified, under its map and its heat, with a small square in each pixel that is an edge."""
+    size = (seen.width_px * scale, seen.height_px * scale)
+    large = rgb_of(seen.picture).resize(size, Image.Resampling.BICUBIC).point(style.dark_levels())
+    if seen.map:
+        large = _with_map(large, seen.map)
+    if seen.heat and hottest_us:
+        large = heated(large, seen.heat, hottest_us)
+    edges = seen.edges
+    if not len(edges.y_px):
+        return np.asarray(large)
+    paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
+    paint[edges.y_px, edges.x_px, :3] = colours.EDGE
+    paint[edges.y_px, edges.x_px, 3] = np.clip(edges.gradients / FULL_GRADIENT, FAINTEST, 1)
+    for each in edges_3d:
+        places = edges.y_px[each.left_edges], edges.x_px[each.left_edges]
+        paint[(*places, slice(3))] = [depths.colour(depth) for depth in each.places_mm[:, 2]]
+        paint[(*places, 3)] = 1
+    side = max(1, round(EDGE_SIDE * scale))
+    square = np.zeros((scale, scale, 1), np.float32)
+    square[(scale - side) // 2 :, (scale - side) // 2 :][:side, :side] = 1
+    share = np.kron(paint[..., 3:], square)
+    picture = np.asarray(large, np.float32)
+    colour = paint[..., :3].repeat(scale, axis=0).repeat(scale, axis=1)
+    return np.asarray((picture + (colour - picture) * share).round(), np.uint8)
+
+
+def _with_map(image: Image.Image, heat: SeenMap) -> Image.Image:
+    """Return a picture under a map: blue for the least of its numbers, red for the greatest, nothing where there is none."""
+    values = np.asarray(heat.values, float)
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return image
+    low = float(known.min()) if heat.lowest is None else heat.lowest
+    high = float(known.max()) if heat.highest is None else heat.highest
+    parts = np.clip((values - low) / ((high - low) or 1.0), 0, 1)
+    paint = np.zeros((*values.shape, 4), np.uint8)
+    for place in zip(*np.nonzero(np.isfinite(values)), strict=True):
+        paint[place] = (*colours.scale_colour(1 - parts[place]), round(255 * MAP_SHARE))
+    over = Image.fromarray(paint, "RGBA").resize(image.size, Image.Resampling.NEAREST)
+    return Image.alpha_composite(image.convert("RGBA"), over).convert("RGB")
