@@ -231,8 +231,9 @@ def _report(sweep: Sweep, before: AbstractSet[str], axes: Axes | None, top: int)
     """Write table and plot, and print what came out; `before` are the keys of what had been done."""
     from bfsim.files.save import write_text
     from bfsim.report.sweep.figures import FRAME_RATE
+    from bfsim.report.sweep.lines import Shown
     from bfsim.report.sweep.plot import PARETO, plot_svg
-    from bfsim.report.sweep.screen import Shown, sweep_report
+    from bfsim.report.sweep.screen import sweep_report
     from bfsim.report.sweep.table import csv_of, write_parquet
     from bfsim.sweeping.rows import rows_of
 

@@ -6,13 +6,14 @@ from collections.abc import Collection, Iterator
 
 from bfsim.report.check.kept import kept_side, whole_side
 from bfsim.report.check.verdicts import Outcome
+from bfsim.report.diff.cells import cells, labelled
 from bfsim.report.diff.compare import difference_between
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.line_causes import line_text
 from bfsim.report.diff.rows import shown
+from bfsim.report.diff.scope import frames_compared, scope, seen_lines
 from bfsim.report.diff.sentences import why
 from bfsim.report.diff.side import Side
-from bfsim.report.diff.tables import cells, frames_compared, labelled, scope, seen_lines
 from bfsim.report.wording.units import milliseconds_of
 
 CAUSES = 8

@@ -11,8 +11,8 @@ from bfsim.report.check.figures import Unit
 from bfsim.report.check.sentences import limit_and_measured, percent, verdict_line
 from bfsim.report.check.verdicts import Outcome, left_out, worst_of_each
 from bfsim.report.diff.markdown import contribution_rows
+from bfsim.report.diff.scope import scope, seen_lines
 from bfsim.report.diff.sentences import why
-from bfsim.report.diff.tables import scope, seen_lines
 from bfsim.report.wording.markdown import escaped
 from bfsim.report.wording.units import others_row
 

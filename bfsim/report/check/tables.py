@@ -13,8 +13,9 @@ from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.sentences import changes, limit_and_measured, percent, verdict_line
 from bfsim.report.check.verdicts import Outcome, Verdict, left_out, worst_of_each
+from bfsim.report.diff.scope import scope, seen_lines
 from bfsim.report.diff.sentences import why
-from bfsim.report.diff.tables import contribution_table, scope, seen_lines
+from bfsim.report.diff.tables import contribution_table
 from bfsim.report.run.warning_table import warning_table
 from bfsim.report.tables.table import new_table, stacked
 from bfsim.report.wording.units import others_row

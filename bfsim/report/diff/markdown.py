@@ -4,22 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from bfsim.report.diff.cells import all_row, cells, frame_heads, frame_rows, in_short, labelled, listed
 from bfsim.report.diff.difference import Change, Difference
 from bfsim.report.diff.rows import shown
+from bfsim.report.diff.scope import frames_compared, scope, seen_lines
 from bfsim.report.diff.sentences import verdict, why
-from bfsim.report.diff.tables import (
-    RESULTS_LISTED,
-    all_row,
-    cells,
-    frame_heads,
-    frame_rows,
-    frames_compared,
-    in_short,
-    labelled,
-    listed,
-    scope,
-    seen_lines,
-)
+from bfsim.report.diff.tables import RESULTS_LISTED
 from bfsim.report.wording.markdown import escaped
 from bfsim.report.wording.units import others_row
 

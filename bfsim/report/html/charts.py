@@ -9,7 +9,7 @@ import altair as alt
 
 from bfsim.report.budget.budget import Budget, CoreBudget, StageRow
 from bfsim.report.budget.rows import budget_rows, costs_of
-from bfsim.report.budget.target import Target, used_cclk
+from bfsim.report.budget.target import Target, most_used_cclk, used_cclk
 from bfsim.report.budget.times import milliseconds
 from bfsim.report.html.colours import IDLE, ISSUE, MEANINGS, STALLS, stage_colours
 from bfsim.trace import RunRecord
@@ -40,7 +40,7 @@ def frames_a_bar(run: RunRecord) -> int:
 def time_series(run: RunRecord, number: int, target: Target | None) -> Spec:
     """Return what the core at `number` used of each frame, stage by stage, beside a target."""
     colours = row_colours(run)
-    most_cclk = max(used_cclk(core) for frame in run.frames for core in frame.cores)
+    most_cclk = max(map(most_used_cclk, run.frames))
     top_ms = 1.05 * max(milliseconds(most_cclk, run.identity.cclk_hz), target.frame_ms if target else 0)
     bars = (
         alt.Chart(alt.Data(values=list(_used_ms(run, number))))

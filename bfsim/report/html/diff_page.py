@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from bfsim.report.budget.times import milliseconds
+from bfsim.report.diff.cells import cells, labelled, listed
 from bfsim.report.diff.difference import Difference
+from bfsim.report.diff.scope import frames_compared, scope, seen_lines
 from bfsim.report.diff.sentences import verdict, why
-from bfsim.report.diff.tables import cells, frames_compared, labelled, listed, scope, seen_lines
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.html.rendering import rendered
 

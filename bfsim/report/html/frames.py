@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bfsim.report.budget.budget import Budget
 from bfsim.report.budget.rows import budget_rows, costs_of, elapsed_cclk
-from bfsim.report.budget.target import Target, used_cclk
+from bfsim.report.budget.target import Target, most_used_cclk, used_cclk
 from bfsim.report.budget.times import latency_cclk, milliseconds
 from bfsim.trace import FrameRecord, RunRecord
 
@@ -51,7 +51,7 @@ class FrameFacts:
 
 def worst_of(run: RunRecord, count: int = WORST) -> tuple[FrameRecord, ...]:
     """Return the frames that used most time of a core, the worst first."""
-    return tuple(sorted(run.frames, key=lambda frame: -_used_cclk(frame))[:count])
+    return tuple(sorted(run.frames, key=lambda frame: -most_used_cclk(frame))[:count])
 
 
 def told_of(run: RunRecord, frames: int, most: int = MOST) -> tuple[FrameRecord, ...]:
@@ -86,10 +86,6 @@ def facts_of(
             latency_ms=milliseconds(latency_cclk(frame), hz),
             rows=tuple(_rows(run, budget, frame)),
         )
-
-
-def _used_cclk(frame: FrameRecord) -> int:
-    return max(used_cclk(core) for core in frame.cores)
 
 
 def _rows(run: RunRecord, budget: Budget, frame: FrameRecord) -> Iterator[FrameRow]:

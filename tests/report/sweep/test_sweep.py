@@ -15,8 +15,9 @@ from rich.console import Console
 
 from bfsim.errors import ConfigError
 from bfsim.report.sweep.front import front, sign_of
+from bfsim.report.sweep.lines import Shown, lines_of
 from bfsim.report.sweep.plot import plot_svg
-from bfsim.report.sweep.screen import ONE_FRAME, Shown, best_table, failures, lines_of, sweep_report
+from bfsim.report.sweep.screen import ONE_FRAME, best_table, failures, sweep_report
 from bfsim.report.sweep.table import columns_of, csv_of, write_parquet
 
 PLACES = st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), max_size=20)
