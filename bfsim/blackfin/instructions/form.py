@@ -25,7 +25,7 @@ class Beside(Enum):
 class Form:
     """One form of instruction.
 
-    `does`: the name of its semantics, a function of `bfsim.blackfin.semantics` whose parameters are the letters of `bits` and the
+    `does`: the name of its semantics, a function of `bfsim.blackfin.instructions.semantics` whose parameters are the letters of `bits` and the
     names in `given`. `bits`: the encoding, most significant bit first, in halfwords as they follow each other in memory: "0" and
     "1" must be so, "-" may be either, letters are operand fields; the bits of a letter may be apart; spaces are for the eye.
     `text`: the assembler text as GNU objdump prints it; `{d:R}` is the operand of field d, whose kind is R (`operands.KINDS`); a
