@@ -14,7 +14,7 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2
 from bfsim.kernel.decorator import RunnableCall
 from bfsim.linker import link, parse_ldf
-from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.buffers.layouts import Layouts
 from bfsim.machine.memories import Memories
 from bfsim.machine.symbols import PROCESSORS, symbols_of
 from bfsim.recording import StereoFrame

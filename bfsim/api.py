@@ -78,8 +78,8 @@ from bfsim.kernel.intrinsics.video import (
 from bfsim.machine.buffers import Buffer, Buffers, FrameSize
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core
-from bfsim.machine.core.frames import Frame
-from bfsim.machine.core.readout import Readout
+from bfsim.machine.core.pictures.frames import Frame
+from bfsim.machine.core.pictures.readout import Readout
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.dma.descriptors import write_descriptor
 from bfsim.machine.dma.memory_dma import MemoryDma

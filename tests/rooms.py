@@ -96,6 +96,26 @@ MACHINE = _sets(
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 
 
+CORE = _sets(
+    {
+        "interrupts": "",
+        "waits": "",
+        "clock": "",
+        "progress": "interrupts waits clock",
+        "stages": "clock progress",
+        "messages": "progress",
+        "synchronisation": "interrupts progress",
+        "tasks": "waits progress synchronisation",
+        "buffers": "progress",
+        "pictures": "progress tasks buffers",
+        "parts": "clock progress stages messages synchronisation tasks buffers pictures",
+        "core": "interrupts waits tasks pictures parts",
+        "wiring": "waits clock progress stages messages synchronisation tasks buffers pictures parts",
+    }
+)
+"""Each part of `machine/core` and what it imports of the others, from the bottom to the top."""
+
+
 BLACKFIN = _sets(
     {
         "elf": "",

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rooms import BLACKFIN, ESTIMATE, KERNEL, MACHINE, MAY_IMPORT, READ_VERSION, REPORT
+from tests.rooms import BLACKFIN, CORE, ESTIMATE, KERNEL, MACHINE, MAY_IMPORT, READ_VERSION, REPORT
 
 ROOT = Path(__file__).parent.parent
 
@@ -94,7 +94,13 @@ def test_a_block_of_the_machine_imports_only_what_it_is_wired_to() -> None:
 
 @pytest.mark.parametrize(
     ("folder", "parts"),
-    [("blackfin", BLACKFIN), ("kernel", KERNEL), ("kernel/estimate", ESTIMATE), ("report", REPORT)],
+    [
+        ("machine/core", CORE),
+        ("blackfin", BLACKFIN),
+        ("kernel", KERNEL),
+        ("kernel/estimate", ESTIMATE),
+        ("report", REPORT),
+    ],
 )
 def test_parts_stand_above_those_that_they_import(folder: str, parts: dict[str, set[str]]) -> None:
     """The table of the parts of a room goes from the bottom to the top, and names all that each imports of the others."""
@@ -199,9 +205,11 @@ def test_the_simulator_knows_no_robot() -> None:
 
 
 def test_the_page_names_every_room() -> None:
-    """docs/architecture.md says of each room, and of each part of the Blackfin, of the kernel and of the reports, what is in it."""
+    """docs/architecture.md says of each room, and of each part of a core, of the Blackfin, of the kernel and of the reports, what is in it."""
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
     rooms = {
-        each for each in (*MAY_IMPORT, *BLACKFIN, *KERNEL, *ESTIMATE, *REPORT) if not each.startswith("__")
+        each
+        for each in (*MAY_IMPORT, *CORE, *BLACKFIN, *KERNEL, *ESTIMATE, *REPORT)
+        if not each.startswith("__")
     }
     assert {each for each in rooms if f"`{each}`" not in page} == set()

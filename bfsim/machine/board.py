@@ -26,13 +26,13 @@ from bfsim.machine.calls.records import object_share
 from bfsim.machine.cameras.capture import Capture, Feed, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi, require_pace
 from bfsim.machine.code import code_outside_l1, code_records
-from bfsim.machine.core.ahead import Ahead
+from bfsim.machine.core.buffers.layouts import Layouts
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.interrupts import Interrupts
-from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.core.parts import Parts
-from bfsim.machine.core.readout import plain_view
-from bfsim.machine.core.synchronisation import SharedObjects
+from bfsim.machine.core.pictures.readout import plain_view
+from bfsim.machine.core.progress.ahead import Ahead
+from bfsim.machine.core.synchronisation.shared_objects import SharedObjects
 from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.memory_dma import Dma

@@ -17,7 +17,7 @@ from bfsim.trace import BudgetRow, Reference
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core
-    from bfsim.machine.core.readout import Readout
+    from bfsim.machine.core.pictures.readout import Readout
 
 Main = Callable[["Core"], Generator[Any, Any, None]]
 View = Callable[["Readout"], Seen | None]

@@ -12,7 +12,7 @@ from bfsim.api import Core, Frame, Kernel, Row
 from bfsim.kernel import Work
 from bfsim.machine.bus import tape
 from bfsim.machine.bus.tape import Tape
-from bfsim.machine.core.tasks import Tasks
+from bfsim.machine.core.tasks.tasks import Tasks
 from bfsim.machine.program import Main
 from bfsim.trace import BoardRecord
 from tests.machine.kernels import copy, first, negate, spin

@@ -9,7 +9,7 @@ import pytest
 
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32
 from bfsim.errors import FirmwareError
-from bfsim.machine.core.handovers import Handovers
+from bfsim.machine.core.synchronisation.handovers import Handovers
 from bfsim.trace import BoardRecord
 from tests.machine.kernels import fill, spin, total
 from tests.machine.rig import SIZE, Play, board_of, buffers, every_frame, noise

@@ -10,7 +10,7 @@ import pytest
 from bfsim.api import Core, Frame
 from bfsim.chip.boards import board_named
 from bfsim.errors import DeadlockError
-from bfsim.machine.core.semaphore import Semaphore
+from bfsim.machine.core.synchronisation.semaphore import Semaphore
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import REST, StallReason
 from tests.machine.kernels import spin

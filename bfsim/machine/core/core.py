@@ -13,12 +13,12 @@ from bfsim.kernel.types import Number
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.cameras.settling import CameraSettings
-from bfsim.machine.core.frames import Frame
 from bfsim.machine.core.interrupts import CoreHandler
 from bfsim.machine.core.parts import Parts
-from bfsim.machine.core.pictures import CAMERAS
-from bfsim.machine.core.places import Columns, Pixels
-from bfsim.machine.core.tasks import Run
+from bfsim.machine.core.pictures.frames import Frame
+from bfsim.machine.core.pictures.pictures import CAMERAS
+from bfsim.machine.core.pictures.places import Columns, Pixels
+from bfsim.machine.core.tasks.tasks import Run
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing

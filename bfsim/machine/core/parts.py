@@ -8,15 +8,16 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.capture import Capture
-from bfsim.machine.core.clock import CoreClock
-from bfsim.machine.core.layouts import Layouts
-from bfsim.machine.core.line_rings import LineRings
+from bfsim.machine.core.buffers.layouts import Layouts
+from bfsim.machine.core.buffers.line_rings import LineRings
+from bfsim.machine.core.clock.clock import CoreClock
 from bfsim.machine.core.messages import Messages
-from bfsim.machine.core.pictures import Pictures
-from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.pictures.pictures import Pictures
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.stages import Stages
-from bfsim.machine.core.synchronisation import SharedObjects, Synchronisation
-from bfsim.machine.core.tasks import Tasks
+from bfsim.machine.core.synchronisation.shared_objects import SharedObjects
+from bfsim.machine.core.synchronisation.synchronisation import Synchronisation
+from bfsim.machine.core.tasks.tasks import Tasks
 from bfsim.machine.dma.memory_dma import Dma
 
 

@@ -8,8 +8,8 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.calls.conflicts import Accesses
-from bfsim.machine.core.accounts import KERNELS
-from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.clock.accounts import KERNELS
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.trace import StallReason
 
 

@@ -14,7 +14,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import STREAMS
 from bfsim.machine.bus.transfer_plans import Transfer, Walk
-from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace

@@ -9,8 +9,8 @@ from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
 from bfsim.errors import FirmwareError
-from bfsim.machine.core.line_copies import NO_COPY, Copy, Lines
-from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.progress.line_copies import NO_COPY, Copy, Lines
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row

@@ -11,9 +11,9 @@ from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import SPI, Core
-from bfsim.machine.core.frames import Frame
 from bfsim.machine.core.interrupts import CoreHandler
 from bfsim.machine.core.parts import Parts
+from bfsim.machine.core.pictures.frames import Frame
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.memories import Row
 from bfsim.machine.retiming.recorded_ahead import LATEST, RecordedAhead

@@ -17,8 +17,8 @@ from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
-from bfsim.machine.core.semaphore import Semaphore
-from bfsim.machine.core.spin_lock import SpinLock
+from bfsim.machine.core.synchronisation.semaphore import Semaphore
+from bfsim.machine.core.synchronisation.spin_lock import SpinLock
 from bfsim.machine.memories import Row
 from bfsim.machine.retiming.stretch_writer import IN_L1, StretchWriter
 from bfsim.machine.retiming.work import (

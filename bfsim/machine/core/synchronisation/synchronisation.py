@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import simpy
@@ -12,11 +12,8 @@ from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
 from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.core.handovers import Handovers
-from bfsim.machine.core.interrupts import Interrupts
-from bfsim.machine.core.progress import Progress, Wait
-from bfsim.machine.core.semaphore import Semaphore
-from bfsim.machine.core.spin_lock import SpinLock
+from bfsim.machine.core.progress.progress import Progress, Wait
+from bfsim.machine.core.synchronisation.shared_objects import SharedObjects
 from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.simulation import Simulation
 from bfsim.spans import SpanKind
@@ -25,32 +22,6 @@ from bfsim.trace import StallReason
 UNLOCK_CCLK = 1
 """A store."""
 OTHER_CORE = "SUPPLEMENTAL_0"  # the supplemental interrupt that one core raises at the other
-
-
-class SharedObjects:
-    """What both cores know by name: semaphores, locks, and each other's interrupts."""
-
-    def __init__(self, env: Simulation, interrupts: Mapping[str, Interrupts]) -> None:
-        self._env = env
-        self._semaphores: dict[str, Semaphore] = {}
-        self._locks: dict[str, SpinLock] = {}
-        self.interrupts = interrupts
-        self.handovers = Handovers(interrupts)
-        self.turns: dict[str, simpy.Event] = {}
-        """Of each core that no device can let go on: the event at which its turn at a semaphore or lock comes."""
-
-    def semaphore(self, name: str) -> Semaphore:
-        """Return the semaphore `name`."""
-        return self._semaphores.setdefault(name, Semaphore(self._env, name))
-
-    def lock(self, name: str) -> SpinLock:
-        """Return the spin lock `name`."""
-        return self._locks.setdefault(name, SpinLock(self._env, name))
-
-    def interrupt(self, source: str) -> None:
-        """Interrupt every core whose firmware asked for it: each has a SIC of its own."""
-        for each in self.interrupts.values():
-            each.request(source)
 
 
 class Synchronisation:

@@ -16,11 +16,11 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import KnownCall
-from bfsim.machine.core.accounts import KERNELS
-from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.core.clock.accounts import KERNELS
+from bfsim.machine.core.clock.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
-from bfsim.machine.core.line_copies import CopiesInStep, Copy, LineCopies, Lines
-from bfsim.machine.core.progress import Away, Wait
+from bfsim.machine.core.progress.line_copies import CopiesInStep, Copy, LineCopies, Lines
+from bfsim.machine.core.progress.progress import Away, Wait
 from bfsim.machine.core.waits import Waits
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import StallReason

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, shown
-from bfsim.machine.core.frames import Frame
+from bfsim.machine.core.pictures.frames import Frame
 from bfsim.machine.memories import Row
 from bfsim.seen import CAMERAS, Seen, SeenText
 

@@ -15,9 +15,9 @@ from bfsim.kernel import Work
 from bfsim.machine.bus.tape import Tape
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import KnownCall
-from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.core.clock.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
-from bfsim.machine.core.line_copies import Copy, LineCopies, Lines
+from bfsim.machine.core.progress.line_copies import Copy, LineCopies, Lines
 from bfsim.machine.core.waits import Waits
 from bfsim.trace import StallReason
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
-from bfsim.machine.core.layouts import Layouts
-from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.buffers.layouts import Layouts
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row

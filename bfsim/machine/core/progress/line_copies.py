@@ -10,7 +10,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.tape_lines import NotedLines
 from bfsim.machine.bus.transfer_plans import Transfer
-from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.core.clock.clock import CoreClock
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason

@@ -9,12 +9,12 @@ from bfsim.errors import FirmwareError
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.capture import Capture
-from bfsim.machine.core.frames import FinishedFrame, Frame
-from bfsim.machine.core.layouts import Layouts
-from bfsim.machine.core.places import Columns, Pixels, place_of
-from bfsim.machine.core.progress import Progress, Wait
-from bfsim.machine.core.readout import Readout, seen_by
-from bfsim.machine.core.tasks import Tasks
+from bfsim.machine.core.buffers.layouts import Layouts
+from bfsim.machine.core.pictures.frames import FinishedFrame, Frame
+from bfsim.machine.core.pictures.places import Columns, Pixels, place_of
+from bfsim.machine.core.pictures.readout import Readout, seen_by
+from bfsim.machine.core.progress.progress import Progress, Wait
+from bfsim.machine.core.tasks.tasks import Tasks
 from bfsim.machine.memories import Row
 from bfsim.seen import Seen
 from bfsim.trace import REST, StallReason

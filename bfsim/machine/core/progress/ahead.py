@@ -26,10 +26,10 @@ from bfsim.machine.bus.tape_lines import COPY_WORDS, HEAD, PLAN, NotedLines
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
-from bfsim.machine.core.in_step import InStep
 from bfsim.machine.core.interrupts import Handler
-from bfsim.machine.core.line_copies import Copy, LineCopies, Lines
-from bfsim.machine.core.progress import Away, Wait
+from bfsim.machine.core.progress.in_step import InStep
+from bfsim.machine.core.progress.line_copies import Copy, LineCopies, Lines
+from bfsim.machine.core.progress.progress import Away, Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation

@@ -1,0 +1,1 @@
+"""The buffers of a core by name, and its rings of lines."""

@@ -1,0 +1,1 @@
+"""A core's clock, and where its cycles go."""

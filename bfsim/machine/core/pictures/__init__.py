@@ -1,0 +1,1 @@
+"""The pictures that a core takes, and what it says of them."""

@@ -1,0 +1,1 @@
+"""How cores meet each other: semaphores, spin locks, interrupts, and buffers that they hand over."""
