@@ -8,7 +8,7 @@ from bfsim.chip.dma_registers import Flow, IrqStatus, WdSize
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, Fetch
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.dma.descriptors import write_descriptor
-from tests.machine.dma_rig import DESCRIPTORS, L1_A, SDRAM, Memory, channel_on, program
+from tests.machine.dma.dma_rig import DESCRIPTORS, L1_A, SDRAM, Memory, channel_on, program
 
 DONE, ERR, DFETCH, RUN = IrqStatus.DMA_DONE, IrqStatus.DMA_ERR, IrqStatus.DFETCH, IrqStatus.DMA_RUN
 STOP = DmaConfig(WNR=True)

@@ -10,7 +10,7 @@ from bfsim.chip.dma_registers import NDSIZE_LIMITS, REGISTERS, Flow
 from bfsim.errors import MmrError
 from bfsim.machine.dma.channel import LOADED
 from bfsim.machine.dma.descriptors import load, read_descriptor, write_descriptor
-from tests.machine.dma_rig import Memory
+from tests.machine.dma.dma_rig import Memory
 
 OLD = dict.fromkeys(LOADED, 0) | {"NEXT_DESC_PTR": 0xFF90_1234, "X_MODIFY": -2, "Y_MODIFY": -1}
 values = st.fixed_dictionaries(

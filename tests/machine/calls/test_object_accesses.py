@@ -9,10 +9,10 @@ from bfsim.chip.boards import board_named
 from bfsim.kernel import GCC_O2
 from bfsim.kernel.build import Build
 from bfsim.trace import AccessRecord, BoardRecord, StallReason
+from tests.machine.calls.test_kernel_accesses import read_cclk
 from tests.machine.kernels import spin
 from tests.machine.placements import changed
 from tests.machine.rig import Play, every_frame, run, stage_of
-from tests.machine.test_kernel_accesses import read_cclk
 from tests.sums import DATA
 
 SUMS = DATA / "sums.o"

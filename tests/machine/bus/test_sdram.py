@@ -14,7 +14,7 @@ from bfsim.chip.boards import CM_BF561, CM_BF561_RATINGS
 from bfsim.chip.spec import BoardSpec, SdramSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import access, hits_ahead, new_sdram, stream
-from tests.machine.naive_sdram import NaiveSdram
+from tests.machine.bus.naive_sdram import NaiveSdram
 
 CLASSES = ("hit", "miss", "conflict")
 PAGE, OTHER_PAGE, OTHER_BANK = 0, CM_BF561.sdram.page_bytes, CM_BF561.sdram.bank_bytes

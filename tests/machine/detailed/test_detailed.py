@@ -15,7 +15,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.detailed.arbiter import Grant, Request
 from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.detailed.sdram_arbiter import MdmaTurns, SdramArbiter
-from tests.machine.bus_rig import WORD, Bench, each_board, with_l2
+from tests.machine.detailed.bus_rig import WORD, Bench, each_board, with_l2
 
 # ---- the SDRAM: each gate from both sides
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from bfsim.chip.boards import board_named
 from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
-from tests.machine.bus_rig import CODE_BYTES, MODES, Bench, CoreAccess, each_board
+from tests.machine.detailed.bus_rig import CODE_BYTES, MODES, Bench, CoreAccess, each_board
 from tests.machine.rig import keep_code
 
 

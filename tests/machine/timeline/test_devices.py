@@ -14,10 +14,10 @@ from bfsim.spans import Span, SpanKind
 from bfsim.trace import StallReason
 from tests.machine.kernels import spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, CLOCKS, in_work, made_board
+from tests.machine.peripherals.test_spi import MORE as MESSAGES
+from tests.machine.peripherals.test_spi import Talker
 from tests.machine.rig import SIZE, Play, cycles_of, every_frame
 from tests.machine.stream_rig import MORE, NBYTES, READ, WRITE, linear
-from tests.machine.test_spi import MORE as MESSAGES
-from tests.machine.test_spi import Talker
 from tests.machine.timelines import assert_flows, assert_orderly, by_track, told
 from tests.tiers import exhaustive
 

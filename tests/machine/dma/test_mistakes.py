@@ -10,7 +10,7 @@ from bfsim.errors import MmrError
 from bfsim.machine.dma.channel import DmaChannel, check_pair
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.dma.descriptors import write_descriptor
-from tests.machine.dma_rig import (
+from tests.machine.dma.dma_rig import (
     DESCRIPTORS,
     L1_A,
     L2,

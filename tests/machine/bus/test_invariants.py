@@ -14,8 +14,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.machine.bus import state as w
+from tests.machine.bus.scenarios import Scene
 from tests.machine.rig import Bench
-from tests.machine.scenarios import Scene
 from tests.tiers import tried
 
 
@@ -105,7 +105,7 @@ def test_plain_python_does_the_same_and_no_grants_overlap() -> None:
     """Not compiled: the same ends, bytes and counters; and there every grant can be watched."""
     seeds = (1, 2, 3, 4)
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-m", "tests.machine.scenarios", *map(str, seeds)],
+        [sys.executable, "-W", "error", "-m", "tests.machine.bus.scenarios", *map(str, seeds)],
         capture_output=True,
         text=True,
         check=False,
