@@ -17,7 +17,7 @@ from bfsim.trace import BoardRecord
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.ordered_modes import run
 from tests.firmware.pictures import Bytes
-from tests.firmware.test_rectification import tables
+from tests.firmware.rectification.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
 from tests.tiers import exhaustive
 from tinyphoon import fast, tinyphoon

@@ -16,13 +16,10 @@ from bfsim.machine.buffers import FrameSize
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
 from bfsim.trace import BoardRecord
-from tests.firmware import (
-    blob_references,
-    edge_references,
-    line_references,
-    references,
-    refinement_references,
-)
+from tests.firmware import references
+from tests.firmware.blobs import blob_references
+from tests.firmware.edges import edge_references
+from tests.firmware.lines import line_references, refinement_references
 from tests.firmware.pictures import Bytes, random_uyvy
 from tests.machine.rig import thesis_ldf
 from tinyphoon import tinyphoon
