@@ -7,7 +7,7 @@ from collections.abc import Generator
 from bfsim.errors import FirmwareError
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
-from bfsim.machine.core.progress.progress import Wait
+from bfsim.machine.core.waits import Wait
 from bfsim.machine.firmware_lines import place_of
 from bfsim.machine.program import Main
 

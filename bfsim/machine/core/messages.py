@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from bfsim.errors import FirmwareError, shown
-from bfsim.machine.core.progress.progress import Progress, Wait
+from bfsim.machine.core.progress.progress import Progress
+from bfsim.machine.core.waits import Wait
 from bfsim.machine.memories import Row
 from bfsim.machine.peripherals.peripheral import Peripheral
 from bfsim.trace import StallReason

@@ -11,6 +11,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.firmware_lines import running_line
 
 Wait = Generator[Any, Any, Any]
+"""Gives the events that are waited for, one after the other."""
 
 
 def name_of(wait: Wait) -> str:

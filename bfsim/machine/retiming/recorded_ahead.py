@@ -11,7 +11,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.progress.ahead import Ahead
-from bfsim.machine.core.progress.progress import Wait
+from bfsim.machine.core.waits import Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.retiming.work import CALL, OPERATION_COLUMNS, Table

@@ -13,8 +13,9 @@ from bfsim.machine.core.buffers.layouts import Layouts
 from bfsim.machine.core.pictures.frames import FinishedFrame, Frame
 from bfsim.machine.core.pictures.places import Columns, Pixels, place_of
 from bfsim.machine.core.pictures.readout import Readout, seen_by
-from bfsim.machine.core.progress.progress import Progress, Wait
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.tasks.tasks import Tasks
+from bfsim.machine.core.waits import Wait
 from bfsim.machine.memories import Row
 from bfsim.seen import Seen
 from bfsim.trace import REST, StallReason

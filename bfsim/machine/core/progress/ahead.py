@@ -29,7 +29,8 @@ from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.interrupts import Handler
 from bfsim.machine.core.progress.in_step import InStep
 from bfsim.machine.core.progress.line_copies import Copy, LineCopies, Lines
-from bfsim.machine.core.progress.progress import Away, Wait
+from bfsim.machine.core.progress.progress import Away
+from bfsim.machine.core.waits import Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation

@@ -20,8 +20,8 @@ from bfsim.machine.core.clock.accounts import KERNELS
 from bfsim.machine.core.clock.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.core.progress.line_copies import CopiesInStep, Copy, LineCopies, Lines
-from bfsim.machine.core.progress.progress import Away, Wait
-from bfsim.machine.core.waits import Waits
+from bfsim.machine.core.progress.progress import Away
+from bfsim.machine.core.waits import Wait, Waits
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import StallReason
 

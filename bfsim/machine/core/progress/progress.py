@@ -5,7 +5,7 @@ Whatever a core does that takes time or meets the rest of the machine goes throu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any, Protocol
 
@@ -18,10 +18,8 @@ from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.clock.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.core.progress.line_copies import Copy, LineCopies, Lines
-from bfsim.machine.core.waits import Waits
+from bfsim.machine.core.waits import Wait, Waits
 from bfsim.trace import StallReason
-
-Wait = Generator[Any, Any, Any]
 
 Away = AbstractContextManager[None]
 

@@ -12,8 +12,9 @@ from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
 from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.core.progress.progress import Progress, Wait
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.synchronisation.shared_objects import SharedObjects
+from bfsim.machine.core.waits import Wait
 from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.simulation import Simulation
 from bfsim.spans import SpanKind

@@ -13,10 +13,10 @@ from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.calls.work import UNYIELDED
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
-from bfsim.machine.core.progress.progress import Progress, Wait
+from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.synchronisation.handovers import Handovers
 from bfsim.machine.core.tasks.asked import Asked
-from bfsim.machine.core.waits import name_of
+from bfsim.machine.core.waits import Wait, name_of
 from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
 from bfsim.machine_code.asking import OVER
