@@ -22,7 +22,8 @@ from bfsim.machine.bus import core_requests, dma_requests, runs, store_buffer
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import Weave, compiled_weave, plain_weave
-from tests.machine.rig import Bench, Call, Play, keep_code
+from tests.machine.bench import Bench, Call, keep_code
+from tests.machine.rig import Play
 
 SDRAM_PLACES = (0x0000_1000, 0x0000_1F00, 0x0000_8000, 0x0080_1000, 0x0100_0700)
 PLACES = (*SDRAM_PLACES, 0xFEB0_1000, 0xFF80_1000, 0xFF40_1000)

@@ -14,7 +14,7 @@ from bfsim.kernel.calls.access_log import LOAD, STORE
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.trace import StallReason
-from tests.machine.rig import Bench, Call
+from tests.machine.bench import Bench, Call
 
 SDRAM, OTHER_PAGE, OTHER_BANK, THIRD_BANK = 0x0000_0000, 0x0000_1000, 0x0080_0000, 0x0100_0000
 L1, L1_B, L2 = 0xFF80_0000, 0xFF90_0000, 0xFEB0_0000

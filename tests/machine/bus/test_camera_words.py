@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus import weave
 from bfsim.machine.bus.transfer_plans import Pace, TransferPlan, Walk
+from tests.machine.bench import Bench
 from tests.machine.bus.scenarios import digest_of
-from tests.machine.rig import Bench
 from tests.tiers import tried
 
 LINES_NBYTES = 4 * 200 * 3

@@ -13,7 +13,7 @@ from bfsim.chip.boards import BOARDS
 from bfsim.kernel.calls.access_log import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
 from bfsim.machine.bus import state as w
 from bfsim.trace import StallReason
-from tests.machine.rig import Bench, Call
+from tests.machine.bench import Bench, Call
 
 SDRAM, OTHER_PAGE, OTHER_BANK, L2 = 0x0000_0000, 0x0000_0800, 0x0080_0000, 0xFEB0_0000
 A, B = 0, 1

@@ -14,8 +14,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.machine.bus import state as w
+from tests.machine.bench import Bench
 from tests.machine.bus.scenarios import Scene
-from tests.machine.rig import Bench
 from tests.tiers import tried
 
 

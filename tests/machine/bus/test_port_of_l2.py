@@ -13,8 +13,9 @@ from bfsim.kernel.calls.access_log import FETCH_LINE, LOAD, STORE
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus import weave
 from bfsim.machine.bus.transfer_plans import TransferPlan
+from tests.machine.bench import Bench, Call, keep_code
 from tests.machine.bus.scenarios import digest_of
-from tests.machine.rig import Bench, Call, Play, keep_code
+from tests.machine.rig import Play
 from tests.tiers import tried
 
 L2, SDRAM, L1 = 0xFEB0_1000, 0x0000_1000, 0xFF80_1000

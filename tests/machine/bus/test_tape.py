@@ -9,7 +9,7 @@ from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.tape import MOST_OPERATIONS, Tape
 from bfsim.machine.bus.tape_lines import COPY_WORDS, NotedLines
-from tests.machine.rig import Bench
+from tests.machine.bench import Bench
 
 CORE, CALL = 1, 11
 MEET = w.CATCH_UP, 0, 0, 0, 0

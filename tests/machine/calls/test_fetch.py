@@ -25,10 +25,11 @@ from bfsim.machine.calls import code_fetches
 from bfsim.machine.calls.fetch import CodeCache
 from bfsim.machine.code import code_symbols
 from bfsim.trace import StallReason
+from tests.machine.bench import Bench
 from tests.machine.kernels import copy, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
 from tests.machine.placements import code_in, shipped
-from tests.machine.rig import Bench, Play, cycles_of, stage_of
+from tests.machine.rig import Play, cycles_of, stage_of
 
 LINE = CHIP.cache.line_bytes
 FETCH_L2_CCLK = CHIP.l2.read_cclk - 1

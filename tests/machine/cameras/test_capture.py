@@ -21,7 +21,8 @@ from bfsim.clocks import Clocks
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Capture, Feed, Pair
 from bfsim.machine.cameras.ppi import Ppi
-from tests.machine.rig import STEADY, Bench, Picture
+from tests.machine.bench import Bench
+from tests.machine.rig import STEADY, Picture
 
 GHZ = 10**9
 CLOCKS = Clocks(cclk_hz=Fraction(GHZ), sclk_hz=Fraction(GHZ))

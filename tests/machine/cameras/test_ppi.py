@@ -17,7 +17,8 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.memories import Row
-from tests.machine.rig import STEADY, Bench
+from tests.machine.bench import Bench
+from tests.machine.rig import STEADY
 
 HEIGHT, WIDTH = 8, 16
 SDRAM, OTHER_BANK, L1 = 0x0000_1000, 0x0080_0000, 0xFF80_0000

@@ -17,7 +17,7 @@ from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import END_OF_TIME, Simulation
-from tests.machine.rig import write_log
+from tests.machine.bench import write_log
 
 IN_EVERY_RUN = ("cm-bf561", "bf561-ezkit", "cm-bf533")
 """A board of each kind: the others are the first one with other clocks."""

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from bfsim.chip.boards import board_named
 from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
+from tests.machine.bench import keep_code
 from tests.machine.detailed.bus_rig import CODE_BYTES, MODES, Bench, CoreAccess, each_board
-from tests.machine.rig import keep_code
 
 
 def same(board: str, prepare: Any) -> tuple[Bench, Bench]:

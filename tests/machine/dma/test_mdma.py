@@ -13,7 +13,7 @@ from bfsim.chip.boards import BOARDS
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.memories import Row
-from tests.machine.rig import Bench
+from tests.machine.bench import Bench
 
 SDRAM, OTHER_PAGE, OTHER_BANK = 0x0000_1000, 0x0000_2000, 0x0080_0000
 L1, L1_B, L2, LATE = 0xFF80_0000, 0xFF90_0000, 0xFEB0_0000, 50_000

@@ -14,19 +14,9 @@ from bfsim.api import Core, Frame, FrameSize, u16
 from bfsim.chip.bf561 import BF561
 from bfsim.errors import FirmwareError
 from bfsim.trace import StallReason
+from tests.machine.bench import Bench
 from tests.machine.kernels import copy, first, negate, spin
-from tests.machine.rig import (
-    SIZE,
-    Bench,
-    Picture,
-    Play,
-    every_frame,
-    load,
-    noise,
-    run,
-    stage_of,
-    through_rings,
-)
+from tests.machine.rig import SIZE, Picture, Play, every_frame, load, noise, run, stage_of, through_rings
 
 LINE_BYTES = 2 * SIZE.width_px
 EVENTS = BF561.events

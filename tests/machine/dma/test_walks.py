@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Walk
-from tests.machine.rig import Bench
+from tests.machine.bench import Bench
 from tests.tiers import tried
 
 # From the middle of each of these the longest walk stays within it.

@@ -20,9 +20,10 @@ from bfsim.machine.peripherals.table import devices_of
 from bfsim.machine.peripherals.uart import Uart
 from bfsim.machine.peripherals.wire import Surroundings
 from bfsim.trace import BoardRecord, StallReason
+from tests.machine.bench import Bench
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CHIP, CLOCKS, assert_accounted, cclk_now, in_work, made_board
-from tests.machine.rig import Bench, Play, every_frame, noise, stage_of
+from tests.machine.rig import Play, every_frame, noise, stage_of
 
 MORE = (
     Buffer("message", u8, 5000, "L1_data_a"),
