@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -97,6 +97,12 @@ class Bench:
         """Play everything that was posted to its end."""
         self.env.run()
         self.bus.play_until(END_OF_TIME)
+
+    def settling(self, stops: Iterable[int]) -> Generator[Any, Any, None]:
+        """Settle the bus at these ticks."""
+        for stop in stops:
+            yield self.env.timeout(stop - self.env.tick)
+            self.bus.settle()
 
     def ends(self, *transfers: Transfer) -> list[int]:
         """Play everything and return when each transfer was done."""

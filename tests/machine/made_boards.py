@@ -102,3 +102,9 @@ def in_work(body: Callable[..., Generator[Any, Any, Any]]) -> Main:
             yield from body(core, frame)
 
     return every_frame(work)
+
+
+def put(core: Core, octets: bytes, buffer: str = "message") -> int:
+    """Write a message to a buffer of the core; return its bytes."""
+    core.array(buffer).octets[: len(octets)] = octets
+    return len(octets)

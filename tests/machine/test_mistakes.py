@@ -14,7 +14,7 @@ from bfsim.api import Core, Frame
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
 from bfsim.files.save import writing
 from bfsim.run import simulate
-from tests.machine.kernels import first, spin
+from tests.machine.kernels import copy, first, spin, total
 from tests.machine.rig import Play, every_frame, load, run, see_all
 
 
@@ -50,6 +50,26 @@ def a_list_of_rows(core: Core, frame: Frame) -> Play:
 def unknown_buffer(core: Core, frame: Frame) -> Play:
     """Mistype a buffer."""
     yield core.run(first, core.array("camara"))
+
+
+def array_of_many_rows(core: Core, frame: Frame) -> Play:
+    """Take a buffer of many rows for one row."""
+    yield core.run(first, core.array("image"))
+
+
+def one_argument_too_few(core: Core, frame: Frame) -> Play:
+    """Forget an argument."""
+    yield core.run(copy, frame.rows[0])
+
+
+def wrong_elements(core: Core, frame: Frame) -> Play:
+    """Give bytes to a kernel that wants 32-bit integers."""
+    yield core.run(total, frame.rows[0])
+
+
+def a_number(core: Core, frame: Frame) -> Play:
+    """Yield what is no work."""
+    yield 42
 
 
 def unknown_stage(core: Core, frame: Frame) -> Play:
@@ -150,7 +170,11 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         (work_twice, FirmwareError, r"core A: firmware must yield each core\.run\(\.\.\.\) once", 4),
         (an_array_of_its_own, KernelError, r"source must be a row of a placed buffer, not array\(", 2),
         (a_list_of_rows, KernelError, r"source must be a row of a placed buffer, not \[<row of camera", 2),
-        (unknown_buffer, FirmwareError, "core A has no buffer 'camara'", 2),
+        (a_number, FirmwareError, "or `yield from` a wait, not 42", 2),
+        (one_argument_too_few, KernelError, r"copy must get source, out, not 1 argument \(", 2),
+        (wrong_elements, KernelError, "source must be one contiguous row of int32, not uint8", 2),
+        (unknown_buffer, FirmwareError, "core A has no buffer 'camara'; it has camera, image, in_l2", 2),
+        (array_of_many_rows, FirmwareError, r"buffer image has 8 rows; use core\.rows\('image'\)", 2),
         (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'", 2),
         (gone_line, FirmwareError, "line 0 is not in ring in_ring", 3),
         (division, FirmwareError, "core A: firmware failed with ZeroDivisionError: integer division", 2),
@@ -226,22 +250,19 @@ def test_who_asks_for_frames_for_ever_is_told() -> None:
         run(main)
 
 
+def once(core: Core) -> Play:
+    """Take one frame and end."""
+    yield from core.next_frame()
+
+
 def test_a_core_that_leaves_early_is_told() -> None:
     """B takes one of two frames and ends: A's second frame can never be whole, and that is no result."""
-
-    def once(core: Core) -> Play:
-        yield from core.next_frame()
-
     with pytest.raises(FirmwareError, match="every core must take every frame, but only core A took frame 1"):
         run(see_all, once, frames=2)
 
 
 def test_a_main_loop_that_ends_before_the_recording_is_told() -> None:
     """Both cores take one frame of three, which is not what the user has asked for."""
-
-    def once(core: Core) -> Play:
-        yield from core.next_frame()
-
     message = (
         r"the main loop of core A must go on until next_frame gives None, not end after 1 frames: .*test_mis"
     )

@@ -147,15 +147,10 @@ class Scene:
             self.calls.append(call)
             yield self.calls[-1].event
 
-    def _settle(self, stops: Iterable[int]) -> Play:
-        for stop in stops:
-            yield self.bench.env.timeout(stop - self.bench.env.tick)
-            self.bench.bus.settle()
-
     def play(self, stops: Iterable[int] = ()) -> dict[str, object]:
         """Play to the end, settling the bus at these ticks on the way too; return what is left behind."""
         bus = self.bench.bus
-        self.bench.env.process(self._settle(stops))
+        self.bench.env.process(self.bench.settling(stops))
         self.bench.play()
         return {
             "ends": [each.end for each in self.transfers],

@@ -83,7 +83,7 @@ class Port:
 
     def play(self, stops: Iterable[int] = ()) -> dict[str, object]:
         """Play everything, settling the bus at these ticks on the way; return what is left behind."""
-        self.bench.env.process(self._settle(stops))
+        self.bench.env.process(self.bench.settling(stops))
         self.bench.play()
         logs = self.bench.bus.logs
         return {
@@ -91,11 +91,6 @@ class Port:
             "words": digest_of(self.bench.bus.words),
             "sites": [logs.stalls_at_sites(core)[:SITES].tolist() for core in range(w.CORES)],
         }
-
-    def _settle(self, stops: Iterable[int]) -> Play:
-        for stop in stops:
-            yield self.bench.env.timeout(stop - self.bench.env.tick)
-            self.bench.bus.settle()
 
 
 @given(seed=chances, stops=st.lists(st.integers(0, 30_000), max_size=40))

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
-from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
+from bfsim.errors import ConfigError
 from bfsim.machine.cameras.capture import Feed
 from bfsim.trace import REST, BoardRecord, StallReason
 from tests.machine.kernels import copy, first, negate, spin, total
@@ -228,72 +228,6 @@ def test_no_schedule_loses_a_cycle(
     )
     assert_every_cycle_is_accounted_for(outcome)
     assert sorted([*(each.index for each in outcome.frames), *outcome.missed]) == [0, 1, 2]
-
-
-def run_without_yield(core: Core, frame: Frame) -> Play:
-    """Forget one `yield`."""
-    core.run(spin, 10)
-    yield core.run(spin, 10)
-
-
-def yield_a_number(core: Core, frame: Frame) -> Play:
-    """Yield what is no work."""
-    yield 42
-
-
-def unknown_buffer(core: Core, frame: Frame) -> Play:
-    """Mistype a buffer."""
-    yield core.run(first, core.array("camara"))
-
-
-def array_of_many_rows(core: Core, frame: Frame) -> Play:
-    """Take a buffer of many rows for one row."""
-    yield core.run(first, core.array("image"))
-
-
-def unknown_stage(core: Core, frame: Frame) -> Play:
-    """Mistype a stage."""
-    with core.stage("Wrok"):
-        yield core.run(spin, 1)
-
-
-def one_argument_too_few(core: Core, frame: Frame) -> Play:
-    """Forget an argument."""
-    yield core.run(copy, frame.rows[0])
-
-
-def wrong_elements(core: Core, frame: Frame) -> Play:
-    """Give bytes to a kernel that wants 32-bit integers."""
-    yield core.run(total, frame.rows[0])
-
-
-@pytest.mark.parametrize(
-    ("body", "kind", "message"),
-    [
-        (
-            run_without_yield,
-            FirmwareError,
-            r"core A: core\.run\(\.\.\.\) must be yielded, or its cycles are lost",
-        ),
-        (yield_a_number, FirmwareError, "or `yield from` a wait, not 42"),
-        (unknown_buffer, FirmwareError, "core A has no buffer 'camara'; it has camera, image, in_l2"),
-        (array_of_many_rows, FirmwareError, r"buffer image has 8 rows; use core\.rows\('image'\)"),
-        (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'"),
-        (one_argument_too_few, KernelError, r"copy must get source, out, not 1 argument \("),
-        (wrong_elements, KernelError, "source must be one contiguous row of int32, not uint8"),
-    ],
-)
-def test_wrong_firmware_is_told_what_is_wrong(body: Any, kind: type[BfsimError], message: str) -> None:
-    """A mistake in firmware comes out of the simulation as what it is."""
-    with pytest.raises(kind, match=message):
-        run(every_frame(body))
-
-
-def test_a_wrong_yield_is_told_with_its_line() -> None:
-    """File and line of the firmware stand in the message: of the body, not of the main loop around it."""
-    with pytest.raises(FirmwareError) as caught:
-        run(every_frame(yield_a_number))
-    assert str(caught.value).endswith(f" ({__file__}:{yield_a_number.__code__.co_firstlineno + 2})")
 
 
 def test_an_error_on_the_way_comes_out_as_it_was() -> None:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
-from bfsim.chip.interrupts import Bf561Interrupt
 from bfsim.trace import StallReason
 from tests.machine.kernels import spin, total
 from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work
@@ -14,7 +12,6 @@ from tests.machine.naive_port import LOCKED_CCLK
 from tests.machine.rig import Play, cycles_of, every_frame, run, stage_of
 
 ENTRY_CCLK, EXIT_CCLK = CHIP.events.interrupt_entry_cclk, CHIP.events.interrupt_exit_cclk
-SOURCES = st.lists(st.sampled_from(Bf561Interrupt), min_size=1, max_size=8, unique=True)
 
 
 @pytest.mark.parametrize("turns", [0, 10, 1000, 100_000])

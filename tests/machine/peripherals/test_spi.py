@@ -20,7 +20,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.trace import BoardRecord, MessageRecord, StallReason
 from tests.machine.kernels import spin
-from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work, made_board
+from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work, made_board, put
 from tests.machine.rig import Play, cycles_of, every_frame, noise, stage_of
 
 ROOM_BYTES = 8192
@@ -54,12 +54,6 @@ class Talker(SpiDevice):
 
     def finish(self) -> Sequence[str]:
         return [f"{message.type} was not taken" for _, message in self.to_send]
-
-
-def put(core: Core, octets: bytes, buffer: str = "message") -> int:
-    """Write a message to a buffer of the core; return its bytes."""
-    core.array(buffer).octets[: len(octets)] = octets
-    return len(octets)
 
 
 def wire_cclk(nbytes: int, spec: BoardSpec = CM_BF561) -> Fraction:

@@ -22,7 +22,7 @@ from bfsim.machine.peripherals.wire import Surroundings
 from bfsim.trace import BoardRecord, StallReason
 from tests.machine.bench import Bench
 from tests.machine.kernels import spin
-from tests.machine.made_boards import CHIP, CLOCKS, assert_accounted, cclk_now, in_work, made_board
+from tests.machine.made_boards import CHIP, CLOCKS, assert_accounted, cclk_now, in_work, made_board, put
 from tests.machine.rig import Play, every_frame, noise, stage_of
 
 MORE = (
@@ -56,12 +56,6 @@ class Talker(UartDevice):
 
     def finish(self) -> Sequence[str]:
         return [f"{each.type} was not taken" for each in self.to_send]
-
-
-def put(core: Core, octets: bytes, buffer: str = "message") -> int:
-    """Write a message to a buffer of the core; return its bytes."""
-    core.array(buffer).octets[: len(octets)] = octets
-    return len(octets)
 
 
 def out_ticks(nbytes: int, divisor: int) -> int:

@@ -20,20 +20,13 @@ from bfsim.report.run.screen import screen
 from bfsim.shipped import ACCURACY
 from bfsim.trace import REST, CoreFrame, RunRecord, RunWarning, StallReason, WarningKind
 from tests.pages import ROOT
+from tests.report.printed import printed
 from tests.report.records import core_frame, cost, edge_run, frame, run_of, runs
 
 
 def lines_of(run: RunRecord, width: int = 80) -> list[str]:
     """The screen as a pipe gets it."""
     return printed(screen(run), width)
-
-
-def printed(report: RenderableType, width: int) -> list[str]:
-    """A report as a pipe gets it."""
-    console = Console(file=io.StringIO(), width=width, markup=False, emoji=False, highlight=False)
-    console.print(report)
-    assert isinstance(console.file, io.StringIO)
-    return [line.rstrip() for line in console.file.getvalue().splitlines()]
 
 
 def words_of(run: RunRecord) -> str:
