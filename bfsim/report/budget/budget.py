@@ -34,6 +34,11 @@ class StageRow:
     stall_cclk: Mapping[StallReason, int]
     idle_cclk: int
 
+    @property
+    def stalled_cclk(self) -> int:
+        """Stalls for whatever reason."""
+        return sum(self.stall_cclk.values())
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoreBudget:

@@ -52,7 +52,7 @@ def spread_cells(run: RunRecord, spread: Spread) -> tuple[int, ...]:
 
 
 def _split(row: StageRow) -> tuple[int, int, int]:
-    return row.issue_cclk, sum(row.stall_cclk.values()), row.idle_cclk
+    return row.issue_cclk, row.stalled_cclk, row.idle_cclk
 
 
 def stall_table(budget: Budget, frames: int, hz: float) -> Iterator[Table]:

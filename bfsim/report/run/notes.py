@@ -126,6 +126,6 @@ def _next(bound: Bound) -> Iterator[tuple[str, str]]:
     """Yield where to look next."""
     yield "Next", "bfsim profile     which kernels and source lines take the time"
     frame = bound.core.frame
-    if sum(frame.stall_cclk.values()) > MUCH_STALL * frame.elapsed_cclk.total:
+    if frame.stalled_cclk > MUCH_STALL * frame.elapsed_cclk.total:
         yield "", "bfsim ldf         where the buffers lie: much of the frame is stall"
     yield "", "bfsim run --full  every table: stalls, cycles, frames, results, digests"

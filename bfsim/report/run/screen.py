@@ -84,7 +84,7 @@ def _table(run: RunRecord, budget: Budget, bound: Bound) -> Table:
 
 def _cells(row: StageRow, hz: float) -> tuple[str, str]:
     return f"{milliseconds(row.elapsed_cclk.median, hz):.2f}", percent(
-        sum(row.stall_cclk.values()), row.elapsed_cclk.total
+        row.stalled_cclk, row.elapsed_cclk.total
     )
 
 
@@ -92,6 +92,6 @@ def bar(row: StageRow, core: CoreBudget) -> Text:
     """Return a row's work, stalls and idling as parts of a frame, `BAR` characters long; a sliver if it is less than one."""
     text = bar_of(row, core.frame.elapsed_cclk.total, BAR)
     if row.elapsed_cclk.total and not text:
-        parts = (row.issue_cclk, WORK), (sum(row.stall_cclk.values()), STALL), (row.idle_cclk, IDLE)
+        parts = (row.issue_cclk, WORK), (row.stalled_cclk, STALL), (row.idle_cclk, IDLE)
         text.append(SLIVER, max(parts)[1][1])
     return text
