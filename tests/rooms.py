@@ -168,7 +168,7 @@ ESTIMATE = _sets(
         "induction_variables": "loops ranges",
         "jump_threading": "choices conditions loops switches ranges",
         "prediction": "loops ranges",
-        "inlining": "prediction",
+        "inlining": "ranges prediction",
         "redundancies": "choices conditions loops prediction",
         "loop_copies": "conditions loops arithmetic memory jump_threading prediction inlining",
         "selection": (
