@@ -26,6 +26,9 @@ class Rule(StrEnum):
     COMPARED = "a constant that is compared with is loaded where it is, not before the loop"
     GUARDS = "a condition that does not change in a loop is kept in a register, and moved to CC and back"
     FACTORED_SUMS = "a sum with a constant is added up before it is multiplied"
+    COMMON_FACTORS = (
+        "products by one number are added up before they are multiplied, in sums of bytes and half-words"
+    )
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
     KNOWN_SIGN = "a value known to be positive is divided by a constant with the signed routine"
@@ -207,6 +210,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.COMPARED: ("match_lines", "alpha_blend", "conv3x3"),
     Rule.GUARDS: ("circle_vote", "cordic_atan"),
     Rule.FACTORED_SUMS: ("split_uyvy", "yuv_to_rgb"),
+    Rule.COMMON_FACTORS: (),  # from kernels that are not measured here: tests/kernel/estimate/arithmetic/test_common_factors.py
     Rule.DIFFERENCE: ("sad_search",),
     Rule.COMMON_LOADS: ("cordic_atan",),
     Rule.KNOWN_SIGN: ("digits",),

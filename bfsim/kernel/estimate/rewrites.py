@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from bfsim.kernel.estimate.arithmetic.common_factors import with_common_factors
 from bfsim.kernel.estimate.arithmetic.even_addresses import with_even_addresses
 from bfsim.kernel.estimate.arithmetic.factored_sums import factor_sums
 from bfsim.kernel.estimate.arithmetic.remainders import with_remainders
@@ -62,6 +63,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     widen_extremes,
     without_lagging,
     factor_sums,
+    with_common_factors,
     split_tests,
     split_loads,
     merge_stores,
@@ -85,6 +87,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
 SWITCHES = {
     without_lagging: Rule.LAGGING_COUNTERS,
     factor_sums: Rule.FACTORED_SUMS,
+    with_common_factors: Rule.COMMON_FACTORS,
     split_tests: Rule.SPLIT_TESTS,
     split_loads: Rule.MERGED_LOADS,
     without_partial_redundancies: Rule.PARTIAL_REDUNDANCIES,
@@ -144,4 +147,9 @@ def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:
     for rewrite in REWRITES:
         if rewrite not in SWITCHES or profile.applies(SWITCHES[rewrite]):
             routine = rewrite(routine)
-    return count_fills(routine) if profile.library.fill else routine
+    return routine
+
+
+def with_counted_fills(text: str, profile: CompilerProfile) -> str:
+    """Return the module `text` with what counts fills that a routine of the library makes; no pass may follow, for it would leave that out."""
+    return _each(text, count_fills) if profile.library.fill else text

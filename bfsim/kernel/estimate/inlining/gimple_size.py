@@ -26,7 +26,8 @@ from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.ir import llvm_passes
 from bfsim.kernel.ir.control_flow import ControlFlow, pointee_nbytes
 from bfsim.kernel.ir.reading import read_module
-from bfsim.kernel.ir.text import Instruction, is_number, without_marks
+from bfsim.kernel.ir.text import Instruction, Routine, is_number, without_marks
+from bfsim.kernel.ir.widths import WORD
 from bfsim.kernel.language.function import Function
 
 GONE = 0.5  # [ipa-fnsummary.cc] of an access that may go
@@ -37,7 +38,15 @@ EARLY_PASSES = (
     "sroa", "simplify_cfg", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce",
     "simplify_cfg",
 )  # fmt: skip
-ANSWERING = ("sccp", "instruction_combine", "simplify_cfg", "aggressive_dce", "simplify_cfg")
+SHIFTS = ("shl", "lshr", "ashr")
+ANSWERING = (
+    "instruction_combine",
+    "sccp",
+    "instruction_combine",
+    "simplify_cfg",
+    "aggressive_dce",
+    "simplify_cfg",
+)
 """Where ranges of arguments are known, too."""
 FREE = ("phi", "trunc", "zext", "sext", "freeze", "bitcast", "unreachable", "ret")
 
@@ -82,11 +91,28 @@ def estimate(function: Function) -> Estimate:
 def _estimated(function: Function, given: Given = ()) -> Estimate:
     """Estimate a kernel; `given`: what is known of its arguments, in the order of the parameters in LLVM's IR."""
     module = llvm_passes.parsed(emit_alone(function))
-    if given:
-        module = llvm.parse_assembly(_with_ranges(str(module), function.symbol, given))
-    llvm_passes.run((*EARLY_PASSES, *(ANSWERING if given else ())), module)
+    llvm_passes.run(EARLY_PASSES, module)
     (routine,) = map(without_marks, read_module(str(module)))
+    known = _kept(routine, given)
+    if any(known):
+        module = llvm.parse_assembly(_with_ranges(str(module), function.symbol, known))
+        llvm_passes.run(ANSWERING, module)
+        (routine,) = map(without_marks, read_module(str(module)))
     return _Estimator(ControlFlow(routine), {each.symbol: each for each in function.callees()}).run()
+
+
+def _kept(routine: Routine, given: Given) -> Given:
+    """What is known of arguments, but for those that the routine has other values of, too: no test is of the argument then."""
+    merged = {
+        value
+        for block in routine.blocks
+        for each in block.instructions
+        if each.opcode == "phi"
+        for value in each.operands
+    }
+    return tuple(
+        None if name in merged else known for name, known in zip(routine.parameters, given, strict=False)
+    )
 
 
 def _with_ranges(text: str, symbol: str, given: Given) -> str:
@@ -184,7 +210,7 @@ class _Estimator:
 
 def statement_size(flow: ControlFlow, each: Instruction) -> int:
     """Return the size of what is no call."""
-    if each.opcode in FREE:
+    if each.opcode in FREE or _is_shift_mask(flow, each):
         return 0
     if each.opcode == "getelementptr":
         return _address_size(flow, each)
@@ -195,6 +221,13 @@ def statement_size(flow: ControlFlow, each: Instruction) -> int:
     if each.opcode == "switch":
         return 2 * (1 + len(each.text.split("label")) - 2)
     return 1
+
+
+def _is_shift_mask(flow: ControlFlow, each: Instruction) -> bool:
+    """Whether it only keeps what a shift is by within a word, for which C does not ask."""
+    users = flow.users.get(each.result or "", [])
+    mask = each.opcode == "and" and each.operands[1] == str(WORD - 1)
+    return mask and all(user.opcode in SHIFTS and user.operands[1] == each.result for user in users)
 
 
 def _address_size(flow: ControlFlow, address: Instruction) -> int:

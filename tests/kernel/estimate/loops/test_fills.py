@@ -61,3 +61,24 @@ def test_every_call_counts_by_itself(tmp_path: Path) -> None:
     short, longer = (run(twice, row, n, profile=GCC_O2).issue_cclk for n in (2, 3))
     assert short == longer
     assert run(twice, row, 4, profile=GCC_O2).issue_cclk == short + 2 * 5
+
+
+FILLED_AND_SEARCHED = """
+@kernel
+def first_change(row: u8[:], seen: i16[:], n: i32) -> i32:
+    for i in range(n):
+        seen[i] = -1
+    at = 0
+    for i in range(n):
+        if i > 0:
+            at += row[i] - row[i - 1]
+        seen[row[i] & 7] = at
+    return at
+"""
+
+
+def test_what_is_tested_in_a_first_iteration_alone_leaves_a_fill_as_it_is(tmp_path: Path) -> None:
+    """What cleans up behind jump threading left out what counts the fill, which ended the estimate."""
+    kernel = import_text(FILLED_AND_SEARCHED, tmp_path).first_change
+    row, seen = np.arange(64, dtype=np.uint8), np.zeros(64, np.int16)
+    assert run(kernel, row, seen, 64, profile=GCC_O2).value == 63

@@ -1,0 +1,100 @@
+"""In a sum of products, those by the same number are added up before they are multiplied: a + 4 * b + 6 * c + 4 * d has one of 4 [undistribute_ops_list in tree-ssa-reassoc.cc of GCC 12].
+
+It is so where a sum may wrap, as one does that is stored as a byte or a half-word; those of an i32 GCC leaves as they are written.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, is_number, written
+from bfsim.kernel.ir.widths import WORD
+
+COMMON = ".common"
+
+
+def with_common_factors(routine: Routine) -> Routine:
+    """Return `routine` with each such sum so."""
+    flow = ControlFlow(routine)
+    return replace(routine, blocks=tuple(_Block(flow, block).factored() for block in routine.blocks))
+
+
+@dataclass(frozen=True)
+class _Block:
+    flow: ControlFlow
+    block: BasicBlock
+
+    def factored(self) -> BasicBlock:
+        rows = list(self.block.instructions)
+        for total in self.block.instructions:
+            if total.opcode != "add" or total.bits >= WORD or not self._is_stored(total):
+                continue
+            terms, gone = self._terms(total)
+            by_factor = self._by_factor(terms)
+            if by_factor:
+                gone += [product for products in by_factor.values() for product in products]
+                place = next(number for number, row in enumerate(rows) if row is total)
+                rows[place : place + 1] = self._sum(total, terms, by_factor)
+                rows = [row for row in rows if not any(row is each for each in gone)]
+        return replace(self.block, instructions=tuple(rows))
+
+    def _own(self, value: str, *opcodes: str) -> Instruction | None:
+        """What computes a value here by one of these operations, for one instruction alone."""
+        each = self.flow.instruction(value)
+        is_here = each is not None and self.flow.defined[value][0] == self.block.label
+        return (
+            each if is_here and each.opcode in opcodes and len(self.flow.users.get(value, ())) == 1 else None
+        )
+
+    def _is_stored(self, each: Instruction) -> bool:
+        """Whether a sum is only stored: GCC adds up in words what is shifted before it is."""
+        users = self.flow.users.get(each.result or "", ())
+        return bool(users) and all(user.opcode == "store" for user in users)
+
+    def _terms(self, total: Instruction) -> tuple[list[str], list[Instruction]]:
+        """What a sum adds up, and the sums on the way there."""
+        terms, sums = [], []
+        for value in total.operands:
+            inner = self._own(value, "add")
+            more, within = self._terms(inner) if inner is not None else ([value], [])
+            terms += more
+            sums += [*([inner] if inner is not None else []), *within]
+        return terms, sums
+
+    def _by_factor(self, terms: list[str]) -> dict[int, list[Instruction]]:
+        """The products among the terms by factors that several have."""
+        found = defaultdict[int, list[Instruction]](list)
+        for value in terms:
+            product = self._own(value, "mul", "shl")
+            if product is not None and is_number(product.operands[1]):
+                number = int(product.operands[1])
+                found[1 << number if product.opcode == "shl" else number].append(product)
+        return {factor: products for factor, products in found.items() if len(products) > 1}
+
+    def _sum(
+        self, total: Instruction, terms: list[str], by_factor: dict[int, list[Instruction]]
+    ) -> Iterator[Instruction]:
+        """The terms added up anew."""
+        gone = {product.result for products in by_factor.values() for product in products}
+        kept = [value for value in terms if value not in gone]
+        for number, (factor, products) in enumerate(by_factor.items()):
+            name = f"{total.result}{COMMON}{number}"
+            yield from _added(name, [each.operands[0] for each in products], total)
+            yield _computed("mul", f"{name}.times", name, str(factor), total)
+            kept.append(f"{name}.times")
+        yield from _added(total.result or "", kept, total)
+
+
+def _added(name: str, terms: list[str], at: Instruction) -> Iterator[Instruction]:
+    before = terms[0]
+    for number, term in enumerate(terms[1:], 1):
+        result = name if number == len(terms) - 1 else f"{name}.{number}"
+        yield _computed("add", result, before, term, at)
+        before = result
+
+
+def _computed(opcode: str, result: str, left: str, right: str, at: Instruction) -> Instruction:
+    return written(result, f"{opcode} i{at.bits} {left}, {right}", (left, right), at)
