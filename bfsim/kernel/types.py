@@ -7,6 +7,7 @@ A name such as `u8` has two uses: in an annotation `u8[:]` is an array of bytes,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -126,6 +127,7 @@ def _array_of(element: Number, item: object) -> ArrayType:
     return ArrayType(element)
 
 
+@cache
 def type_named(name: str) -> Number | ArrayType:
     """Return the type of a parameter that is written so: "i32", "u8[:]"."""
     element = NUMBERS[name.removesuffix("[:]")]

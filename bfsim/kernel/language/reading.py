@@ -70,7 +70,7 @@ def read_kernel(python: Callable[..., Any]) -> Function:
         raise KernelError(f"{python!r} must be a function in a file, so that its source can be read")
     symbol = re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII)
     is_static = file.is_static(python.__name__, code.co_firstlineno)
-    outer = _meant(source.text, {**vars(builtins), **python.__globals__})
+    outer = _meant(source.text, python.__globals__)
 
     @cache
     def read() -> Read:
@@ -105,9 +105,11 @@ def read_kernel(python: Callable[..., Any]) -> Function:
 
 
 def _meant(text: str, names: Mapping[str, Any]) -> dict[str, Any]:
-    """Return those of `names` that a text may use, in the order in which it does."""
-    words = dict.fromkeys(WORD.findall(unicodedata.normalize("NFKC", text)))
-    return {each: names[each] for each in words if each in names}
+    """Return those of a file's `names`, and of Python's own, that a text may use, in the order in which it does."""
+    words, own = dict.fromkeys(WORD.findall(unicodedata.normalize("NFKC", text))), vars(builtins)
+    return {
+        each: names[each] if each in names else own[each] for each in words if each in names or each in own
+    }
 
 
 def _meaning(value: object) -> str:
