@@ -30,7 +30,8 @@ from time import perf_counter
 from rich.console import Console
 from rich.table import Table
 
-from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording import RecordingReader
+from bfsim.recording.writer import RecordingWriter
 from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
 from bfsim.sweeping.cluster import Cluster

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bfsim.recording import RecordingWriter
+from bfsim.recording.writer import RecordingWriter
 from bfsim.shipped import RECORDING
 from tests.commands import refused
 

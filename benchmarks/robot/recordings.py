@@ -9,8 +9,9 @@ from pathlib import Path
 from PIL import Image
 
 from bfsim.machine.cameras.skipping import skipped
-from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording import RecordingReader
 from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.writer import RecordingWriter
 
 PICTURES_SHOWN = 12
 """Of each frame of a scene, where the cameras run free: more than come in while one is worked on."""

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from bfsim import blackfin, machine_code
+from bfsim.files.content import digest_of, python_below
 
 
 def file_key(text: str) -> str:
@@ -29,16 +30,16 @@ def object_key(image_digest: str, symbol: str, timing: str, variant: str) -> str
     return digest("object code", variant, image_digest, symbol, timing, tools())
 
 
-def sources() -> list[Path]:
-    """Files that decide what a kernel becomes: all of this package, what instructions do, and what makes its IR machine code and calls it."""
+def sources() -> list[str]:
+    """Paths of the files that decide what a kernel becomes: all of this package, what instructions do, and what makes its IR machine code and calls it."""
     packages = (Path(__file__), Path(blackfin.__file__), Path(machine_code.__file__))
-    return [path for each in packages for path in sorted(each.parent.rglob("*.py"))]
+    return [path for each in packages for path in python_below(each.parent)]
 
 
 @cache
 def compiler() -> str:
     """Digest of the compiler's own sources."""
-    return hashlib.sha256(b"".join(each.read_bytes() for each in sources())).hexdigest()
+    return digest_of(sources())
 
 
 @cache

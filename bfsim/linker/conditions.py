@@ -9,6 +9,7 @@ from bfsim.errors import LinkError
 from bfsim.linker.macros import Macro, MacroError, expand
 
 _DEFINED = re.compile(r"\bdefined\s*(?:\(\s*(\w+)\s*\)|(\w+))")
+_PLAIN = re.compile(r"[!\s]*[01]\s*")
 
 
 def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
@@ -19,9 +20,11 @@ def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
 
     # A macro may stand for a condition of its own, as INSTR_CACHE does in the default LDFs.
     expanded = _DEFINED.sub(is_defined, expand(_DEFINED.sub(is_defined, condition), macros))
-    if expanded.strip() in ("0", "1"):
-        return expanded.strip() == "1"
-    from bfsim.linker.grammar import parse_condition  # lark costs 50 ms, which few conditions need
+    if _PLAIN.fullmatch(expanded):
+        return (expanded.count("!") + expanded.count("1")) % 2 == 1
+    from bfsim.linker.grammar import (
+        parse_condition,  # lark and the grammar cost 80 ms, which few conditions need
+    )
 
     try:
         return parse_condition(expanded) != 0

@@ -1,6 +1,6 @@
 """Recorded stereo frames: MCAP files in and out, and the importers that make them. Knows no simulator.
 
-What every run needs stands here; what imports, calibrates, describes and renders is imported from its own module, because it
+What every run needs stands here; what writes, imports, calibrates, describes and renders is imported from its own module, because it
 takes its time.
 """
 
@@ -14,12 +14,10 @@ from bfsim.recording.frames import (
     UyvyImage,
 )
 from bfsim.recording.reader import RecordingReader
-from bfsim.recording.writer import RecordingWriter
 
 __all__ = [
     "DisparityImage",
     "RecordingReader",
-    "RecordingWriter",
     "RectificationTables",
     "StereoFrame",
     "StereoGeometry",

@@ -29,7 +29,6 @@ from mcap.records import (
     Statistics,
 )
 from mcap.summary import Summary
-from mcap.writer import MCAP0_MAGIC
 from zstandard import ZstdError
 
 from bfsim.errors import RecordingError, shown
@@ -48,10 +47,13 @@ _DAMAGE = (
     OSError,
 )
 
+MAGIC = b"\x89MCAP0\r\n"
+"""What a file begins and ends with [MCAP specification, "Magic"]. mcap has it where it writes files, which few runs do."""
+
 # Footer record [MCAP specification, "Footer (op=0x02)"]: opcode, length, summary start, summary offset start,
 # CRC32 of the summary and of the footer up to here. The closing magic follows.
 _FOOTER = struct.Struct("<BQQQI")
-_TAIL_BYTES = _FOOTER.size + len(MCAP0_MAGIC)
+_TAIL_BYTES = _FOOTER.size + len(MAGIC)
 _CRC_BYTES = 4
 
 _MADE_BY = "`bfsim record import` makes a recording from images, raw frames, a video or a bag"
@@ -86,7 +88,7 @@ class McapContainer:
         try:
             self.size_bytes = os.fstat(self._stream.fileno()).st_size
             self.summary = self._summary_of(self._index())
-            header, _ = self._record(Opcode.HEADER, len(MCAP0_MAGIC), "header")
+            header, _ = self._record(Opcode.HEADER, len(MAGIC), "header")
             self.library: str = Header.read(ReadDataStream(io.BytesIO(header))).library
         except _DAMAGE as error:
             self.close()
@@ -174,14 +176,14 @@ class McapContainer:
 
     def _index(self) -> bytes:
         """Return the bytes of the index, after a look at both ends of the file."""
-        head = self._stream.read(len(MCAP0_MAGIC))
-        if head != MCAP0_MAGIC:
+        head = self._stream.read(len(MAGIC))
+        if head != MAGIC:
             start = f"one that starts with {head!r}" if head else "an empty one"
             advice = _OTHER_FILES.get(self.path.suffix.lower(), _MADE_BY)
             raise RecordingError(f"{self.path}: recording must be an MCAP file, not {start}; {advice}")
         self._stream.seek(max(0, self.size_bytes - _TAIL_BYTES))
         tail = self._stream.read()
-        if len(tail) < _TAIL_BYTES or not tail.endswith(MCAP0_MAGIC):
+        if len(tail) < _TAIL_BYTES or not tail.endswith(MAGIC):
             raise RecordingError(
                 f"{self.path}: recording must end with an MCAP footer, "
                 f"but breaks off at byte {self.size_bytes}; "
@@ -189,7 +191,7 @@ class McapContainer:
             )
         _, _, summary_start, _, crc = _FOOTER.unpack(tail[: _FOOTER.size])
         summary_end = self.size_bytes - _TAIL_BYTES
-        if not len(MCAP0_MAGIC) <= summary_start <= summary_end:
+        if not len(MAGIC) <= summary_start <= summary_end:
             raise RecordingError(
                 f"{self.path}: recording must have an MCAP index, but its footer (byte {summary_end}) "
                 "points to none; `mcap recover` writes one"

@@ -10,8 +10,8 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from bfsim.cli.main import main
-from bfsim.recording import RecordingWriter
 from bfsim.recording.importing.images import picture_of_file
+from bfsim.recording.writer import RecordingWriter
 from bfsim.shipped import RECORDING
 
 OTHER = """

@@ -12,7 +12,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from bfsim.cli.main import main
-from bfsim.recording import RecordingWriter
+from bfsim.recording.writer import RecordingWriter
 from tests.browser import browsing, needs_chromium
 
 FIRMWARE = """

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
-from bfsim.recording import RecordingWriter
+from bfsim.recording.writer import RecordingWriter
 
 FIRMWARE = """
 from bfsim.api import Buffer, BudgetRow, Firmware, i32, kernel, u8, u32

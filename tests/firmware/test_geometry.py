@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import Calibration, FirmwareError, FrameSize
-from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
+from bfsim.recording import RecordingReader, StereoGeometry
+from bfsim.recording.writer import RecordingWriter
 from bfsim.running.assumptions import assumed_geometry, geometry_in_words
 from bfsim.running.inputs import calibration_of
 from tests.firmware.whole_pictures import buffer, random_frames, run

@@ -12,7 +12,8 @@ import pytest
 from click.testing import CliRunner
 
 from bfsim.cli.main import main
-from bfsim.recording import RecordingWriter, StereoGeometry
+from bfsim.recording import StereoGeometry
+from bfsim.recording.writer import RecordingWriter
 from bfsim.shipped import FIRMWARE_FOLDER
 from tinyphoon import one_eye, tinyphoon
 from tinyphoon.losses import LOSSES

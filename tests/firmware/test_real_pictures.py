@@ -9,7 +9,8 @@ import numpy as np
 from benchmarks.real import depth
 from benchmarks.real.sets import read_recording
 from benchmarks.real_pictures import see, sets_in
-from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables
+from bfsim.recording import RecordingReader, RectificationTables
+from bfsim.recording.writer import RecordingWriter
 from bfsim.shipped import RECORDING
 
 LOWER = 3

@@ -29,7 +29,11 @@ def size(script: LinkerScript) -> int:
     [
         ("1", True),
         ("0", False),
+        ("!0", True),
+        (" ! !0 ", False),
+        ("!!!1", False),
         ("UNKNOWN", False),
+        ("!UNKNOWN", True),
         ("defined(TWO)", True),
         ("defined TWO && !defined(THREE)", True),
         ("TWO + 3 * TWO == 8 && (TWO + 3) * TWO == 10", True),

@@ -12,8 +12,9 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording import RecordingReader
 from bfsim.recording.importing.importer import import_recording
+from bfsim.recording.writer import RecordingWriter
 from tests.recording.bag_imports import each_kind, imported
 from tests.recording.bags import (
     Ros,

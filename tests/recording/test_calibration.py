@@ -14,7 +14,7 @@ from PIL import Image, ImageFilter
 
 from bfsim.cli.record import record
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables, StereoGeometry
+from bfsim.recording import RecordingReader, RectificationTables, StereoGeometry
 from bfsim.recording.calibrating.boards import BoardView
 from bfsim.recording.calibrating.calibration import (
     StereoCalibration,
@@ -28,6 +28,7 @@ from bfsim.recording.cameras.fisheye_model import FisheyeModel
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.lens import rectified
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
+from bfsim.recording.writer import RecordingWriter
 from tests.recording.chessboards import CORNERS, GEOMETRY, MISFIT, SIZE, SQUARE_MM
 from tests.recording.test_camera_models import BOARD, corners_of
 

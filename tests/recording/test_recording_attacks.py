@@ -15,8 +15,9 @@ import pytest
 import zstandard
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording import RecordingReader
 from bfsim.recording.importing.rectification_files import load_rectification
+from bfsim.recording.writer import RecordingWriter
 from tests.recording.attacks import (
     FIRST_CHUNK_AT,
     IMAGE,

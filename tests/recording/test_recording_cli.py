@@ -12,7 +12,8 @@ from PIL import Image
 
 from bfsim.cli.record import record
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
+from bfsim.recording import RecordingReader, StereoGeometry
+from bfsim.recording.writer import RecordingWriter
 
 
 def run(*arguments: object) -> Result:

@@ -16,11 +16,11 @@ from bfsim.errors import RecordingError
 from bfsim.recording import (
     DisparityImage,
     RecordingReader,
-    RecordingWriter,
     RectificationTables,
     StereoGeometry,
     UyvyImage,
 )
+from bfsim.recording.writer import RecordingWriter
 
 LEFT, RIGHT = "/camera/left/image_raw", "/camera/right/image_raw"
 WIDTH, HEIGHT = 16, 8

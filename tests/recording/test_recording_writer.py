@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingWriter, RectificationTables, StereoGeometry, UyvyImage
+from bfsim.recording import RectificationTables, StereoGeometry, UyvyImage
+from bfsim.recording.writer import RecordingWriter
 
 WIDTH, HEIGHT = 16, 8
 

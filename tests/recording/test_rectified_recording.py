@@ -12,8 +12,9 @@ from click.testing import CliRunner
 from PIL import Image
 
 from bfsim.cli.main import main
-from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording import RecordingReader
 from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.writer import RecordingWriter
 from bfsim.run import simulate
 from bfsim.running.inputs import calibration_of
 from tests.firmware.lenses import rectified, sighted

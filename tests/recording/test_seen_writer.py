@@ -16,8 +16,8 @@ from mcap_protobuf.decoder import DecoderFactory
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingWriter
 from bfsim.recording.foxglove.seen_writer import SeenWriter
+from bfsim.recording.writer import RecordingWriter
 from tests import seen_frames as made
 
 SCHEMAS = {

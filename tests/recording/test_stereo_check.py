@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageFilter
 
 from bfsim.cli.record import record
-from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables
+from bfsim.recording import RecordingReader, RectificationTables
 from bfsim.recording.stereo.stereo_check import StereoCheck
+from bfsim.recording.writer import RecordingWriter
 from bfsim.run import simulate
 from bfsim.shipped import RECORDING
 from bfsim.trace import WarningKind

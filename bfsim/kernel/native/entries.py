@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from bfsim import machine_code
 from bfsim.files import store
+from bfsim.files.content import digest_of, python_below
 from bfsim.kernel.keys import tools
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -93,7 +94,5 @@ def _key(symbol: str) -> str:
 @cache
 def _sources() -> str:
     """Return the digest of all files that hold compiled parts."""
-    package, digest = Path(__file__).parents[2], hashlib.sha256()
-    for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
+    package = Path(__file__).parents[2]
+    return digest_of(path for room in ROOMS for path in python_below(package / room))

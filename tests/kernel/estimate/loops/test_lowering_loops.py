@@ -172,7 +172,7 @@ def test_a_first_address_that_depends_on_data_is_computed(first: str, products: 
 
 def test_the_cache_depends_on_the_lowering() -> None:
     """A rule of the lowering that changes must not meet kernels that were costed without it."""
-    assert {"select.py", "keys.py"} <= {path.name for path in keys.sources()}
+    assert {"select.py", "keys.py"} <= {Path(path).name for path in keys.sources()}
     assert GCC_O2.library.fill is not None
 
 
