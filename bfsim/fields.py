@@ -89,7 +89,7 @@ def require_types(record: Any, what: str) -> None:
 
 
 def _fits(value: object, hint: Any) -> bool:
-    """Whether a value is of an annotated type, as deep as its tuples go."""
+    """Whether a value is of an annotated type, as deep as its tuples and mappings go."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         fits = any(_fits(value, each) for each in inner)
@@ -100,6 +100,8 @@ def _fits(value: object, hint: Any) -> bool:
     elif origin is tuple and isinstance(value, tuple):
         of_each = inner[:1] * len(value) if inner[-1] is Ellipsis else inner
         fits = len(value) == len(of_each) and all(map(_fits, value, of_each))
+    elif origin is Mapping and isinstance(value, Mapping):
+        fits = all(_fits(key, inner[0]) and _fits(each, inner[1]) for key, each in value.items())
     else:
         fits = isinstance(value, origin or hint) and not (hint is int and isinstance(value, bool))
     return fits

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import json
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import IO, Any
 
@@ -19,7 +19,8 @@ import numpy as np
 import zstandard
 from numpy.typing import NDArray
 
-from bfsim.errors import WorkError
+from bfsim.errors import ConfigError, WorkError
+from bfsim.fields import require_types
 from bfsim.files.save import writing
 from bfsim.kernel import keys
 from bfsim.machine.retiming.work import (
@@ -59,13 +60,13 @@ class Recorded:
     """
 
     identity: Mapping[str, str]
-    buffers: Sequence[tuple[str, int]]
+    buffers: tuple[tuple[str, int], ...]
     is_bound: bool
-    routines_outside: Sequence[tuple[str, str]]
-    frame_digests: Sequence[str]
-    modules: Sequence[str]
+    routines_outside: tuple[tuple[str, str], ...]
+    frame_digests: tuple[str, ...]
+    modules: tuple[str, ...]
     firmware_digest: str
-    obstacles: Sequence[str]
+    obstacles: tuple[str, ...]
 
 
 class WorkWriter(AbstractContextManager["WorkWriter"]):
@@ -112,16 +113,16 @@ class WorkReader:
     def __init__(self, path: Path, zipped: zipfile.ZipFile) -> None:
         self.path = path
         self._zip = zipped
-        from pydantic import TypeAdapter, ValidationError  # who records needs none
-
         run, end = self._json("run.json"), self._json("end.json")
         if run.get("format") != FORMAT or run.get("costs") != keys.compiler():
             raise WorkError(
                 f"{path} must be recorded by this bfsim: another one may cost kernels otherwise; record it again"
             )
         try:
-            self.recorded = TypeAdapter(Recorded).validate_python({**run, **end})
-        except ValidationError as error:
+            what = _tuples({**run, **end})
+            self.recorded = Recorded(**{each.name: what[each.name] for each in fields(Recorded)})
+            require_types(self.recorded, "run")
+        except (KeyError, ConfigError, RecursionError) as error:
             raise self._broken() from error
 
     def works(self, core: str) -> Iterator[FrameWork]:
@@ -167,6 +168,13 @@ def opened(path: Path) -> Iterator[WorkReader]:
         ) from error
     with zipped:
         yield WorkReader(path, zipped)
+
+
+def _tuples(value: Any) -> Any:
+    """Return what was read of JSON with tuples for its lists."""
+    if isinstance(value, dict):
+        return {name: _tuples(each) for name, each in value.items()}
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
 def _decompressed(content: bytes) -> bytes:
