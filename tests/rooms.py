@@ -31,7 +31,7 @@ MAY_IMPORT = _sets(
         "report": "errors files trace seen spans chip linker",  # the last two hold data: memories, a link
         "loading": "errors process files shipped fields chip kernel machine recording",
         "running": (
-            "errors process files trace seen spans shipped chip kernel compiling linker machine recording loading"
+            "errors process files trace seen spans shipped fields chip kernel compiling linker machine recording loading"
         ),
         "mapping": "chip linker machine report loading running",
         "run_page": "errors files trace shipped machine recording report loading running mapping",
