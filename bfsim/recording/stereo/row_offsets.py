@@ -44,18 +44,17 @@ MOST_PATCHES = 64
 SAME_PEAK = 2  # rows and columns to each side of the best place that are one with it
 
 
-def places_in_other_rows(left: Plane, right: Plane) -> NDArray[np.bool_]:
+def in_other_rows(offsets: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return of each patch whose place in the right picture is certain whether it stands in another row there."""
-    offsets = _row_offsets(left, right)
     return np.asarray(offsets[np.isfinite(offsets)] != 0)
 
 
-def places_nowhere(left: Plane, right: Plane) -> NDArray[np.bool_]:
+def are_nowhere(offsets: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return of each patch whether nothing around its place in the right picture is like it."""
-    return np.isinf(_row_offsets(left, right))
+    return np.isinf(offsets)
 
 
-def _row_offsets(left: Plane, right: Plane) -> NDArray[np.float64]:
+def row_offsets(left: Plane, right: Plane) -> NDArray[np.float64]:
     """Return of each patch how many rows further down it is in the right picture: not a number where that is uncertain, infinite if it is nowhere."""
     lefts, rights = _cells(left), _cells(right)
     height, width = lefts.shape
@@ -105,7 +104,7 @@ def _sums(cells: Cells) -> NDArray[np.float64]:
 
 
 def _row_offset(patch: Cells, windows: Cells, energies: NDArray[np.float64]) -> float:
-    """Return how many rows further down a patch without its mean is best found, as `_row_offsets` does.
+    """Return how many rows further down a patch without its mean is best found, as `row_offsets` does.
 
     `windows`: where it may be; `energies`: the sums of their squares, without their means.
     """

@@ -6,19 +6,15 @@ it says nothing of depths.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.recording.frames import RectificationTables, StereoFrame, UyvyImage
 from bfsim.recording.stereo.exchange import EXCHANGED, exchanged_places
-from bfsim.recording.stereo.row_offsets import NOWHERE, OTHER_ROWS, places_in_other_rows, places_nowhere
-
-if TYPE_CHECKING:
-    from bfsim.recording.planes import Plane
+from bfsim.recording.stereo.row_offsets import NOWHERE, OTHER_ROWS, are_nowhere, in_other_rows, row_offsets
 
 ENOUGH_PLACES, MOST_FRAMES = 40, 8
 """As many frames are looked at as it takes."""
@@ -30,16 +26,19 @@ Nowhere are up to 25 % of a right pair's places, 54 of a plant's; 91 to 100 wher
 
 @dataclass(slots=True)
 class _Doubt:
-    """What may be wrong: `places_of` returns of each place that is compared whether it is, and `text` tells the user."""
+    """What may be wrong at so many of the places that were compared; `text` tells the user."""
 
-    places_of: Callable[[Plane, Plane], NDArray[np.bool_]]
     text: str
     places: int = 0
     wrong: int = 0
 
-    def look_at(self, left: Plane, right: Plane) -> None:
-        if self.places < ENOUGH_PLACES:
-            found = self.places_of(left, right)
+    @property
+    def is_open(self) -> bool:
+        return self.places < ENOUGH_PLACES
+
+    def add(self, found: NDArray[np.bool_]) -> None:
+        """Add more places, each with whether it is wrong there, unless there are enough."""
+        if self.is_open:
             self.places += found.size
             self.wrong += int(found.sum())
 
@@ -54,10 +53,10 @@ class StereoCheck:
     def __init__(self, tables: RectificationTables | None = None) -> None:
         self._tables = tables
         self._frames = 0
-        self._doubts = (
-            _Doubt(exchanged_places, EXCHANGED),
-            _Doubt(places_in_other_rows, OTHER_ROWS),
-            _Doubt(places_nowhere, NOWHERE),
+        self._exchanged, self._other_rows, self._nowhere = self._doubts = (
+            _Doubt(EXCHANGED),
+            _Doubt(OTHER_ROWS),
+            _Doubt(NOWHERE),
         )
 
     def watch(self, frames: Iterable[StereoFrame]) -> Iterator[StereoFrame]:
@@ -68,7 +67,7 @@ class StereoCheck:
 
     def look_at(self, left: UyvyImage, right: UyvyImage) -> None:
         """Compare the pictures of a frame, unless they are one camera's, or enough was compared."""
-        is_done = self._frames == MOST_FRAMES or all(each.places >= ENOUGH_PLACES for each in self._doubts)
+        is_done = self._frames == MOST_FRAMES or not any(each.is_open for each in self._doubts)
         if is_done or np.array_equal(left, right):
             return
         self._frames += 1
@@ -79,8 +78,12 @@ class StereoCheck:
                 np.where(rows < 0, 0, luma[rows, columns])
                 for luma, (rows, columns) in zip(lumas, tables, strict=True)
             ]
-        for doubt in self._doubts:
-            doubt.look_at(*lumas)
+        if self._exchanged.is_open:
+            self._exchanged.add(exchanged_places(*lumas))
+        if self._other_rows.is_open or self._nowhere.is_open:
+            offsets = row_offsets(*lumas)
+            self._other_rows.add(in_other_rows(offsets))
+            self._nowhere.add(are_nowhere(offsets))
 
     @property
     def warnings(self) -> Iterator[str]:
