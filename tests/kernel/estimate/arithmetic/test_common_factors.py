@@ -19,5 +19,9 @@ def f(a: u8[:], o: i32[:], n: i32) -> None:
     for i in range(2, n):
         o[i] = a[i - 2] + 4 * a[i - 1] + 6 * a[i] + 4 * a[i + 1] + a[i + 2]
 """
-CASES = {"binomial": (BINOMIAL, 3008, 0.14), "of seven": (SEVEN, 4766, 0.13), "in words": (IN_WORDS, 3405, 0.01)}
+CASES = {
+    "binomial": (BINOMIAL, 3008, 0.14),
+    "of seven": (SEVEN, 4766, 0.13),
+    "in words": (IN_WORDS, 3405, 0.01),
+}
 test_estimates_are_near_what_gcc_makes, test_what_is_costed_is_what_runs = beside_gcc(CASES)
