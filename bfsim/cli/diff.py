@@ -19,7 +19,7 @@ from bfsim.running.watchers import Watchers
 if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case
     from bfsim.report.diff.difference import Difference
-    from bfsim.report.html.pictures import Pictures
+    from bfsim.report.html.undrawn import UndrawnFrames
     from bfsim.report.results.result import Result
 
 RESULT, BASELINE = ".json", ".toml"
@@ -88,8 +88,8 @@ def diff(
             from bfsim.run_page import require_page
 
             require_page(html, read)
-        pictures = [_pictures(stack) if html and isinstance(each, dict) else None for each in sides]
-        results = [_result(stack, *each) for each in zip(sides, pictures, strict=True)]
+        frames = [_undrawn(stack) if html and isinstance(each, dict) else None for each in sides]
+        results = [_result(stack, *each) for each in zip(sides, frames, strict=True)]
         difference = _difference(*results)
 
         def write() -> None:
@@ -97,7 +97,7 @@ def diff(
             from bfsim.report.html.diff_page import DiffPage, PagedSide
 
             if html:
-                named = (PagedSide(*each) for each in zip((before, after), pictures, strict=True))
+                named = (PagedSide(*each) for each in zip((before, after), frames, strict=True))
                 write_text(html, DiffPage(difference, *named).chunks())
 
         tell(
@@ -158,20 +158,18 @@ def _read(text: str, side: Result | Case | dict[str, Any]) -> Iterator[Path | No
         yield _named(text)[0]
 
 
-def _pictures(stack: ExitStack) -> Pictures:
-    """Return what draws the frames of a side, with room for those that a page shows."""
+def _undrawn(stack: ExitStack) -> UndrawnFrames:
+    """Return what keeps the frames of a side, to be drawn for a page that shows some of both."""
     from bfsim.report.html.diff_page import FRAMES
-    from bfsim.report.html.pictures import Pictures
+    from bfsim.report.html.undrawn import UndrawnFrames
 
-    pictures = stack.enter_context(Pictures())
-    pictures.frames = 2 * FRAMES
-    return pictures
+    return stack.enter_context(UndrawnFrames(2 * FRAMES))
 
 
 def _result(
-    stack: ExitStack, side: Result | Case | dict[str, Any], pictures: Pictures | None
+    stack: ExitStack, side: Result | Case | dict[str, Any], frames: UndrawnFrames | None
 ) -> Result | Case:
-    """Return what was read, or the result of a run, of which `pictures` are drawn."""
+    """Return what was read, or the result of a run, of which the `frames` are kept."""
     if not isinstance(side, dict):
         return side
-    return run_and_seen(stack, Watchers(seen=[pictures.add] if pictures else []), **side)
+    return run_and_seen(stack, Watchers(seen=[frames.add] if frames else []), **side)

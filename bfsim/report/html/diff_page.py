@@ -10,8 +10,8 @@ from bfsim.report.diff.cells import cells, labelled, listed
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.scope import frames_compared, scope, seen_lines
 from bfsim.report.diff.sentences import verdict, why
-from bfsim.report.html.pictures import Pictures
 from bfsim.report.html.rendering import rendered
+from bfsim.report.html.undrawn import UndrawnFrames
 
 FRAMES = 5
 """So many of the frames that changed most are shown."""
@@ -19,16 +19,14 @@ FRAMES = 5
 
 @dataclass(frozen=True, slots=True)
 class PagedSide:
-    """What was compared: its name, and its pictures if it was run for that. What was read from a file has none."""
+    """What was compared: its name, and its frames if it was run for that. What was read from a file has none."""
 
     name: str
-    pictures: Pictures | None
+    frames: UndrawnFrames | None
 
     def picture_uri(self, index: int) -> str:
         """Return what was seen in a frame as an address that holds the picture; nothing where there is none."""
-        if self.pictures is None or not self.pictures.has_overlay(index):
-            return ""
-        return self.pictures.overlay_uri(index)
+        return self.frames.picture_uri(index) if self.frames else ""
 
 
 @dataclass(frozen=True, slots=True)

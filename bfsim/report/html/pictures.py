@@ -51,9 +51,7 @@ class Pictures:
 
     def add(self, frame: SeenFrame) -> None:
         """Draw what was seen in a frame."""
-        self._overlays.put(
-            frame.index, webp_of(overlay_of(frame, LAYERS, _PANEL_WIDTH), self._room_bytes(1 - HEAT_SHARE))
-        )
+        self._overlays.put(frame.index, overlay_webp(frame, self.frames))
 
     def add_with_heat(self, frame: SeenFrame) -> None:
         """Draw what was seen in a frame whose cameras have their heat, and the heat, if it is wanted."""
@@ -61,7 +59,8 @@ class Pictures:
             return
         self.add(replace(frame, cameras=tuple(replace(each, heat=None) for each in frame.cameras)))
         self._heats.put(
-            frame.index, webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), self._room_bytes(HEAT_SHARE))
+            frame.index,
+            webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), _room_bytes(HEAT_SHARE, self.frames)),
         )
 
     def has_overlay(self, index: int) -> bool:
@@ -70,7 +69,7 @@ class Pictures:
 
     def overlay_uri(self, index: int) -> str:
         """Return what was seen in a frame as an address that holds the picture."""
-        return _uri(self._overlays[index])
+        return picture_uri(self._overlays[index])
 
     def has_heat(self, index: int) -> bool:
         """Whether there is a heat map of a frame: there is none of one that was cut short."""
@@ -78,15 +77,22 @@ class Pictures:
 
     def heat_uri(self, index: int) -> str:
         """Return the heat map of a frame as an address that holds the picture."""
-        return _uri(self._heats[index])
-
-    def _room_bytes(self, share: float) -> int:
-        """Return how large a picture may be; as an address it is a third larger."""
-        return int(share * PAGE_BYTES * 3 // 4 // self.frames)
+        return picture_uri(self._heats[index])
 
 
-def _uri(content: bytes) -> str:
+def overlay_webp(frame: SeenFrame, frames: int) -> bytes:
+    """Return what was seen in a frame as WebP, for a page of so many frames."""
+    return webp_of(overlay_of(frame, LAYERS, _PANEL_WIDTH), _room_bytes(1 - HEAT_SHARE, frames))
+
+
+def picture_uri(content: bytes) -> str:
+    """Return a picture as an address that holds it."""
     return f"data:image/webp;base64,{b64encode(content).decode()}"
+
+
+def _room_bytes(share: float, frames: int) -> int:
+    """Return how large a picture may be; as an address it is a third larger."""
+    return int(share * PAGE_BYTES * 3 // 4 // frames)
 
 
 def webp_of(image: Image.Image, nbytes: int) -> bytes:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import (
     Change,
@@ -14,7 +16,8 @@ from bfsim.report.diff.difference import (
     SeenChange,
 )
 from bfsim.report.html.diff_page import FRAMES, DiffPage, PagedSide
-from bfsim.report.html.pictures import Pictures
+from bfsim.report.html.undrawn import UndrawnFrames
+from bfsim.report.overlay.overlay import overlay_of
 from tests.report.evil import EVIL, Elements
 from tests.seen_frames import frame as seen_frame
 
@@ -64,10 +67,10 @@ DIFFERENCE = Difference(
 )
 
 
-def page(difference: Difference, pictures: Pictures | None = None, name: str = "now") -> Elements:
+def page(difference: Difference, frames: UndrawnFrames | None = None, name: str = "now") -> Elements:
     """The page of a difference to a result that was read."""
     return Elements(
-        "".join(DiffPage(difference, PagedSide("old.json", None), PagedSide(name, pictures)).chunks())
+        "".join(DiffPage(difference, PagedSide("old.json", None), PagedSide(name, frames)).chunks())
     )
 
 
@@ -83,11 +86,21 @@ def test_the_whole_tree_is_there() -> None:
     assert text.count("width:25.00%") == 2
 
 
-def test_the_frames_that_changed_most_have_the_pictures_that_there_are() -> None:
-    """Each in the clock of its own run; a result that was read has none, and says so."""
-    with Pictures() as pictures:
-        pictures.add(seen_frame(4))
-        found = page(DIFFERENCE, pictures)
+def test_the_frames_that_changed_most_have_the_pictures_that_there_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each in the clock of its own run, and no others are drawn; a result that was read has none, and says so."""
+    drawn = []
+    monkeypatch.setattr(
+        "bfsim.report.html.pictures.overlay_of",
+        lambda *given: drawn.append(given[0].index) or overlay_of(*given),
+    )
+    with UndrawnFrames(2) as frames:
+        frames.add(seen_frame(4))
+        frames.add(seen_frame(3))
+        assert not drawn
+        found = page(DIFFERENCE, frames)
+    assert drawn == [4]
     words = " ".join(found.words.split())
     assert "Frame 4 9.00 → 4.75 ms" in words
     assert found.names.count("img") == 1

@@ -1,0 +1,39 @@
+"""What was seen in each frame of a run, to be drawn when it is known which frames a page shows."""
+
+from __future__ import annotations
+
+import pickle
+import zlib
+from typing import Self
+
+from bfsim.files.spool import Spool
+from bfsim.report.html.pictures import overlay_webp, picture_uri
+from bfsim.seen import SeenFrame
+
+
+class UndrawnFrames:
+    """The frames of a run, outside of memory; a page of so many pictures asks for those that it shows. A context manager.
+
+    To keep a frame takes a tenth of the time of drawing it. Raises ConfigError where there is no room for its file.
+    """
+
+    def __init__(self, pictures: int) -> None:
+        self._pictures = pictures
+        self._spool = Spool()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._spool.__exit__()
+
+    def add(self, frame: SeenFrame) -> None:
+        """Keep what was seen in a frame."""
+        self._spool.put(frame.index, zlib.compress(pickle.dumps(frame), level=1))
+
+    def picture_uri(self, index: int) -> str:
+        """Return what was seen in a frame as an address that holds the picture; nothing if it was not seen."""
+        if index not in self._spool:
+            return ""
+        frame: SeenFrame = pickle.loads(zlib.decompress(self._spool[index]))  # noqa: S301  # a file without a name: nobody else's
+        return picture_uri(overlay_webp(frame, self._pictures))
