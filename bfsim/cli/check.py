@@ -113,7 +113,7 @@ def check(
         tell(
             json_path,
             lambda: [check_json(outcomes)],
-            lambda: _print(outcomes, path),
+            lambda: _print(outcomes, path, just_measured=update),
             lambda: _write(outcomes, path, outputs, history),
         )
         if history and json_path != STDOUT:
@@ -185,12 +185,12 @@ def _judged(runs: Sequence[tuple[Case, Result]], path: Path) -> list[Outcome]:
     return [judge(case, result, path) for case, result in runs]
 
 
-def _print(outcomes: Sequence[Outcome], path: Path) -> None:
+def _print(outcomes: Sequence[Outcome], path: Path, *, just_measured: bool) -> None:
     """Print what came out."""
     from bfsim.report.check.tables import check_report
 
     for each in outcomes:
-        print_report(check_report(each, path))
+        print_report(check_report(each, path, just_measured=just_measured))
     failed = sum(not each.passed for each in outcomes)
     if len(outcomes) > 1:
         click.echo(f"{len(outcomes) - failed} of {len(outcomes)} runs passed, {failed} FAILED.")

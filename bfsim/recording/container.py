@@ -178,7 +178,7 @@ class McapContainer:
         """Return the bytes of the index, after a look at both ends of the file."""
         head = self._stream.read(len(MAGIC))
         if head != MAGIC:
-            start = f"one that starts with {head!r}" if head else "an empty one"
+            start = f"one that starts with {shown(head.decode('latin-1'))}" if head else "an empty one"
             advice = _OTHER_FILES.get(self.path.suffix.lower(), _MADE_BY)
             raise RecordingError(f"{self.path}: recording must be an MCAP file, not {start}; {advice}")
         self._stream.seek(max(0, self.size_bytes - _TAIL_BYTES))

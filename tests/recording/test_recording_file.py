@@ -200,7 +200,7 @@ def test_corrupt_chunk_names_its_byte(tmp_path: Path) -> None:
         (b"", "not an empty one"),
         (
             b"\x89PNG\r\n\x1a\n" + bytes(99),
-            r"must be an MCAP file, not one that starts with b'\\x89PNG.*record import",
+            r"must be an MCAP file, not one that starts with '\\x89PNG.*record import",
         ),
     ],
 )

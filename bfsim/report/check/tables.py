@@ -21,8 +21,11 @@ from bfsim.report.tables.table import new_table, stacked
 from bfsim.report.wording.units import others_row
 
 
-def check_report(outcome: Outcome, path: Path) -> RenderableType:
-    """Return what the check of a run found: the broken limits and why first, then what became better, then warnings."""
+def check_report(outcome: Outcome, path: Path, *, just_measured: bool = False) -> RenderableType:
+    """Return what the check of a run found: the broken limits and why first, then what became better, then warnings.
+
+    Nothing is another than it was where the limits were `just_measured`.
+    """
     parts: list[RenderableType] = [Text(verdict_line(outcome))]
     if outcome.broken:
         parts.append(_table("Broken limit", outcome.broken, outcome))
@@ -30,7 +33,8 @@ def check_report(outcome: Outcome, path: Path) -> RenderableType:
     if outcome.better:
         parts.append(_table("Better than", outcome.better, outcome))
         parts += [Text(f"To keep it: {update_command(path, outcome.case.name)}")] if outcome.passed else []
-    parts += [Text(each) for each in changes(outcome)]
+    if not just_measured:
+        parts += [Text(each) for each in changes(outcome)]
     return stacked(*parts, *warning_table(outcome.run))
 
 

@@ -44,10 +44,9 @@ class _Block:
     def _own(self, value: str, *opcodes: str) -> Instruction | None:
         """What computes a value here by one of these operations, for one instruction alone."""
         each = self.flow.instruction(value)
-        is_here = each is not None and self.flow.defined[value][0] == self.block.label
-        return (
-            each if is_here and each.opcode in opcodes and len(self.flow.users.get(value, ())) == 1 else None
-        )
+        if each is None or each.opcode not in opcodes or self.flow.defined[value][0] != self.block.label:
+            return None
+        return each if len(self.flow.users.get(value, ())) == 1 else None
 
     def _is_stored(self, each: Instruction) -> bool:
         """Whether a sum is only stored: GCC adds up in words what is shifted before it is."""
