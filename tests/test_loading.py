@@ -247,7 +247,9 @@ def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Pa
     with pytest.raises(FirmwareError, match="fw_there.py must be a file, but there is none"):
         load_firmware("fw_there.py:fw")
     write("drive.mcap", "")
-    with pytest.raises(FirmwareError, match=r"drive\.mcap must be a file \*\.py or a package, but is another file"):
+    with pytest.raises(
+        FirmwareError, match=r"drive\.mcap must be a file \*\.py or a package, but is another file"
+    ):
         load_firmware("drive.mcap")
     (tmp_path / "firmware").mkdir()
     with pytest.raises(FirmwareError, match="but is missing .*; the built-in firmware is written one_eye"):

@@ -55,6 +55,33 @@ def test_two_bytes_are_told_by_their_order(
     assert not imported(tmp_path, picture(bits).astype("<u2").tobytes(), name=name, bits=bits)
 
 
+@pytest.mark.parametrize("name", ["a.grey", "a.raw"])
+def test_the_upper_byte_alone_is_no_swapped_one(tmp_path: Path, name: str) -> None:
+    """Of 8 bits in the upper byte it was said that the upper one came first, and that they would fit the other way round."""
+    if name.endswith(".raw"):
+        pytest.importorskip("cv2")
+    content = (picture(8) << 8).astype("<u2").tobytes()
+    (warning,) = imported(tmp_path, content, name=name)
+    assert (
+        "two bytes, of which the first one is always the same: the upper one has all, say `--bits 16`"
+        in warning
+    )
+    assert not imported(tmp_path, content, name=name, bits=16)
+    with pytest.raises(
+        RecordingError, match="lowest 8 bits of all are 0, .* say `--bits 16`, and no picture"
+    ):
+        imported(tmp_path, content, name=name, bits=8)
+
+
+def test_bits_at_the_upper_end_are_told(tmp_path: Path) -> None:
+    """As cameras send them that call it MSB-aligned."""
+    with pytest.raises(
+        RecordingError,
+        match=r"the lowest 4 bits of all are 0, so that the upper 12 are used: say `--bits 16`",
+    ):
+        imported(tmp_path, (picture(12) << 4).astype("<u2").tobytes(), bits=12)
+
+
 def test_one_byte_is_not_told(tmp_path: Path) -> None:
     """A picture, noise, a single value, two pixels, and columns that differ."""
     columns = np.tile(np.array([20, 200], np.uint8), (HEIGHT, WIDTH // 2))

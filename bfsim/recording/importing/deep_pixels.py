@@ -32,8 +32,19 @@ def upper_bits(pixels: NDArray[Any], bits: int | None) -> Plane:
         )
     if darkest < 0 or brightest >> bits:
         odd = darkest if darkest < 0 else brightest
-        raise RecordingError(f"pixels must fit into the bits of `--bits {bits}`, but one is {odd:,}")
+        advice = (
+            f"; the lowest {MOST_BITS - bits} bits of all are 0, so that the upper {bits} are used: say `--bits {MOST_BITS}`"
+            if are_uppermost(pixels, bits)
+            else ""
+        )
+        raise RecordingError(f"pixels must fit into the bits of `--bits {bits}`, but one is {odd:,}{advice}")
     return (pixels >> (bits - FEWEST_BITS)).astype(np.uint8)
+
+
+def are_uppermost(pixels: NDArray[Any], bits: int) -> bool:
+    """Whether the bits that a camera uses may be the uppermost of the 16, as some cameras send them: all others are 0."""
+    is_of_16 = pixels.min() >= 0 and not int(pixels.max()) >> MOST_BITS
+    return bool(is_of_16 and not (pixels & ((1 << (MOST_BITS - bits)) - 1)).any())
 
 
 def words(

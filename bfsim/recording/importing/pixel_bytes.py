@@ -39,6 +39,8 @@ def order_of_two_bytes(frame: NDArray[np.uint8]) -> str:
     first, second = float(steps[0::2].mean()), float(steps[1::2].mean())
     if first > ROUGHER * second:
         return "the lower one first: say with `--bits` how many of the 16 bits the camera uses"
+    if second and not first:
+        return "of which the first one is always the same: the upper one has all, say `--bits 16`"
     if second > ROUGHER * first:
         return "the upper one first: swap them, as `dd conv=swab` does, and say with `--bits` how many of the 16 bits the camera uses"
     return ""

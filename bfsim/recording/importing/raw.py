@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
 from bfsim.recording.importing.bayer import BayerPattern, planes_of_bayer
-from bfsim.recording.importing.deep_pixels import upper_bits, words
+from bfsim.recording.importing.deep_pixels import are_uppermost, upper_bits, words
 from bfsim.recording.importing.sources import PictureSource, Skipped
 from bfsim.recording.planes import YuvPlanes
 
@@ -128,10 +128,12 @@ def _open_sensor(
     def planes(data: bytes) -> YuvPlanes:
         if bits is None:
             return planes_of(np.frombuffer(data, np.uint8).reshape(height, width))
+        pixels = words(data, (height, width))
         try:
-            return planes_of(upper_bits(words(data, (height, width)), bits))
+            return planes_of(upper_bits(pixels, bits))
         except RecordingError as error:
-            is_swapped = not words(data, (height, width), is_big_endian=True).max() >> bits
+            fit_swapped = not words(data, (height, width), is_big_endian=True).max() >> bits
+            is_swapped = fit_swapped and not are_uppermost(pixels, bits)
             raise RecordingError(f"{error}{SWAPPED if is_swapped else ''}") from None
 
     return _open_raw(source, name, size, width * height * (1 if bits is None else 2), planes)
