@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run
@@ -72,12 +74,19 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
     tell(json_path, lambda: [placed_json(placed)], lambda: print_report(placed_report(placed, top)), write)
     if output and json_path != STDOUT:
         file = shlex.quote(str(output))
+        others = ",\nwith the other options that were given here" if has_others(what) else ""
         click.echo(
-            f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it,\n"
-            "with the other options that were given here."
+            f"Written: `bfsim run --ldf {file}` runs it, `bfsim ldf {file}` draws it{others}."
             if placed.ldf
             else f"{output} was not written: {placed.start} is as good."
         )
+
+
+def has_others(what: Iterable[str]) -> bool:
+    """Whether the command line says more than an LDF of `what` is run."""
+    ctx = click.get_current_context()
+    said = {each for each in what if ctx.get_parameter_source(each) is ParameterSource.COMMANDLINE}
+    return bool(said - {"ldf"})
 
 
 def _whole_run(**what: Any) -> RunRecord:

@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.cli.main import main
+from bfsim.cli.place import has_others, place
 from bfsim.recording.writer import RecordingWriter
 
 FIRMWARE = """
@@ -113,6 +114,20 @@ def test_from_sdram_to_l1(home: Path) -> None:
     assert "64 B; not used in the frames measured" in text
     shown = bfsim("ldf", "placed.ldf", "--firmware", name, "--size", "32x16")
     assert shown.exit_code == 0, shown.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "has"),
+    [
+        (["--ldf", "sdram", "-o", "placed.ldf"], False),
+        (["drive.mcap"], True),
+        (["--set", "sdram.nRP=3"], True),
+    ],
+)
+def test_other_options_are_told_of_where_there_are_some(arguments: list[str], has: bool) -> None:
+    """The LDF is the one that is written, and its file is no option of a run."""
+    with place.make_context("place", arguments) as ctx:
+        assert has_others(set(ctx.params) - {"output"}) is has
 
 
 def test_what_is_predicted_comes_true(home: Path) -> None:
