@@ -121,6 +121,19 @@ def test_of_pixels_of_16_bits_the_upper_8_that_the_camera_uses_are_taken(
     assert set(frame.left[:, 0::2].flat) == {128}
 
 
+@pytest.mark.parametrize("bits", [None, 12])
+@pytest.mark.parametrize("is_plain", [False, True])
+def test_a_pgm_says_its_brightest_pixel_itself(tmp_path: Path, bits: int | None, *, is_plain: bool) -> None:
+    """Pillow stretches its pixels to 16 bits: one of 12 bits was refused with `--bits 12`, for a number that is not in it."""
+    y = np.linspace(0, 4095, 8 * 256).astype(np.uint16).reshape(8, 256)
+    pixels = " ".join(map(str, y.ravel())).encode() if is_plain else y.astype(">u2").tobytes()
+    (tmp_path / "a.pgm").write_bytes(b"%s\n256 8\n4095\n%s" % (b"P2" if is_plain else b"P5", pixels))
+    import_recording([tmp_path / "a.pgm"], tmp_path / "a.mcap", mono=True, bits=bits)
+    with RecordingReader(tmp_path / "a.mcap") as reader:
+        (frame,) = reader.frames()
+    np.testing.assert_array_equal(frame.left[:, 1::2], y >> 4)
+
+
 def test_of_a_sensors_pixels_of_16_bits_the_upper_8_have_the_same_colours(tmp_path: Path) -> None:
     """A pattern of 12 bits is that of its upper 8."""
     pytest.importorskip("cv2")

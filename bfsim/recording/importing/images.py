@@ -10,7 +10,7 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError, cut
 from bfsim.recording.frames import UyvyImage
@@ -21,6 +21,7 @@ from bfsim.recording.planes import YuvPlanes
 
 _DEEP = ";16"
 """In Pillow's names of what pixels of 16 bits are like: `I;16`, `RGB;16B`."""
+_BRIGHTEST = (1 << MOST_BITS) - 1
 _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
 
 
@@ -171,7 +172,7 @@ def decoded(
 ) -> Image.Image:
     """Return the image in a file, of all formats or of these, as `load_image`. RecordingError does not name the file.
 
-    `bits`: how many a camera uses, whose pixels have 16 in the file.
+    `bits`: how many a camera uses, whose pixels have 16 in the file. A PGM that has another maximum says that itself.
     """
     try:
         with warnings.catch_warnings():
@@ -181,6 +182,7 @@ def decoded(
                 # A phone may keep a smaller copy of the picture behind it (MPO).
                 count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
                 has_deep_colours = _DEEP in str(image.tile) and image.mode in _EIGHT_BIT_MODES
+                deep_bits = MOST_BITS if _says_its_maximum(image) else bits
                 image.load()
                 upright = ImageOps.exif_transpose(image)
     except UnidentifiedImageError:
@@ -198,7 +200,7 @@ def decoded(
             "`magick in.webp -coalesce %03d.png` makes one file of each picture of others"
         )
     if upright.mode == "I" or upright.mode.startswith(f"I{_DEEP}"):
-        return Image.fromarray(upper_bits(np.asarray(upright), bits))
+        return Image.fromarray(upper_bits(np.asarray(upright), deep_bits))
     if upright.mode not in _EIGHT_BIT_MODES:
         raise RecordingError(
             f"image must have pixels of 8 bits, or grey ones of 16, not the pixel format {upright.mode}"
@@ -209,3 +211,11 @@ def decoded(
             f"image must have grey pixels of 16 bits for `--bits {bits}`, not {'colours' if has_deep_colours else 'pixels of 8'}"
         )
     return upright
+
+
+def _says_its_maximum(image: ImageFile.ImageFile) -> bool:
+    """Whether a grey image, not loaded yet, says how bright its pixels can be: of a PGM's maximum above 255 Pillow makes 65,535."""
+    if image.format != "PPM" or image.mode != "I":
+        return False
+    found = image.tile[0].args  # (mode, maximum), or a name where Pillow does not stretch
+    return isinstance(found, tuple) and found[-1] != _BRIGHTEST
