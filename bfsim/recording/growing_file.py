@@ -12,6 +12,18 @@ from bfsim.errors import RecordingError
 from bfsim.files.drafts import growing_draft
 
 
+def require_free(path: Path, *, force: bool) -> None:
+    """Raise RecordingError unless a recording may be written at `path`: nothing is there, or a *.mcap that `force` overwrites."""
+    if not path.exists():
+        return
+    if not force:
+        raise RecordingError(f"{path}: recording must not exist yet; `--force` overwrites it")
+    if path.suffix.lower() != ".mcap":
+        raise RecordingError(
+            f"{path}: recording must not exist yet, or be called *.mcap: `--force` overwrites nothing else, as a source by a slip"
+        )
+
+
 def growing_file(path: Path) -> AbstractContextManager[IO[bytes]]:
     """Yield a stream beside `path` that takes its place on a clean exit of the `with` block.
 

@@ -251,6 +251,16 @@ def test_forgotten_output_costs_no_picture(tmp_path: Path, name: str) -> None:
         import_recording([output], output, mono=True, force=True)
 
 
+def test_force_overwrites_no_source(tmp_path: Path) -> None:
+    """`record import --force eye.py left/` put a recording in the place of the firmware."""
+    save_grey(tmp_path / "a.png", 7)
+    for name in ("eye.py", "placed.ldf", "notes"):
+        (tmp_path / name).write_bytes(b"precious")
+        with pytest.raises(RecordingError, match=f"{name}: recording must not exist yet, or be called"):
+            import_recording([tmp_path / "a.png"], tmp_path / name, mono=True, force=True)
+        assert (tmp_path / name).read_bytes() == b"precious"
+
+
 def test_progress(tmp_path: Path) -> None:
     """The caller hears of every frame."""
     for k in range(3):

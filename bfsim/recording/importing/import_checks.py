@@ -9,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from bfsim.errors import RecordingError
+from bfsim.recording.growing_file import require_free
 from bfsim.recording.importing.deep_pixels import check_bits
 from bfsim.recording.importing.sources import (
     DEEP_FORMATS,
@@ -47,8 +48,7 @@ def check_call(
             f"{output}: recording must be a file of its own, not one that it is made of; it comes first: "
             "`bfsim record import run.mcap drive.bag`"
         )
-    if output.exists() and not force:
-        raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
+    require_free(output, force=force)
     if side_by_side and mono:
         raise RecordingError("a recording must be made with `--side-by-side` or `--mono`, not both")
     _check_sources(names, is_bag=is_bag, is_single=side_by_side or mono)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from bfsim.errors import RecordingError
 from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.growing_file import require_free
 from bfsim.recording.importing.importer import Progress
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Misfit
@@ -37,8 +38,7 @@ def render(
     """
     chosen = _by_path(scenes, Path(output), distances_mm, geometry)
     for path in chosen:
-        if path.exists() and not force:
-            raise RecordingError(f"{path}: recording must not exist yet; `--force` overwrites it")
+        require_free(path, force=force)
     if isinstance(scenes, Mapping):
         _make(Path(output))
     if chessboards is not None:
