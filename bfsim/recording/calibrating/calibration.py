@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import RecordingError
+from bfsim.errors import RecordingError, listed
 from bfsim.recording.calibrating.boards import BoardView, find_views
 from bfsim.recording.calibrating.residual_plot import draw_residuals
 from bfsim.recording.calibration_report import (
@@ -180,9 +180,14 @@ def _too_few(
     folder: Path, views: Sequence[BoardView], skipped: Sequence[Skipped], *, mono: bool
 ) -> RecordingError:
     what = "pictures" if mono else "pairs"
-    listed = "; ".join(f"{each.name}: {each.reason}" for each in skipped[:_SKIPPED_LISTED])
-    more = f"; and {len(skipped) - _SKIPPED_LISTED} more" if len(skipped) > _SKIPPED_LISTED else ""
-    left_out = f"; skipped were {listed}{more}" if skipped else ""
+    names: dict[str, dict[str, None]] = {}
+    for each in skipped:
+        names.setdefault(each.reason, {})[each.name] = None  # a name may be of both folders
+    reasons = [f"{listed([*of_one], _SKIPPED_LISTED)}: {reason}" for reason, of_one in names.items()]
+    more = (
+        f"; and for {len(reasons) - _SKIPPED_LISTED} more reasons" if len(reasons) > _SKIPPED_LISTED else ""
+    )
+    left_out = f"; skipped were {'; '.join(reasons[:_SKIPPED_LISTED])}{more}" if skipped else ""
     return RecordingError(
         f"{folder}: chessboard {what} must be at least {FEWEST_VIEWS}, not {len(views)}{left_out}; "
         "`--corners` says how many inner corners the board has"
