@@ -53,6 +53,18 @@ def test_a_part_of_a_file_is_refused(work: Path, folder: Path, part: float) -> N
         simulate(frames=FRAMES, work=cut)
 
 
+@pytest.mark.parametrize(("byte", "number"), [(6, 118), (8, 1), (10, 99), (10, 8), (42, 255)])
+def test_a_broken_index_is_refused(work: Path, folder: Path, byte: int, number: int) -> None:
+    """A later version of ZIP, an encrypted or packed part, a place that cannot be: each is an error of another type."""
+    octets = bytearray(work.read_bytes())
+    for at in (octets.index(b"PK\x01\x02"), octets.rindex(b"PK\x01\x02")):
+        octets[at + byte] = number
+    broken = folder / "index.work"
+    broken.write_bytes(octets)
+    with pytest.raises(WorkError, match=r"index\.work must be a whole file"):
+        simulate(frames=FRAMES, work=broken)
+
+
 def test_another_version_is_refused(work: Path, folder: Path) -> None:
     """Another bfsim may cost kernels otherwise."""
     other = folder / "other.work"

@@ -8,7 +8,9 @@ what was known only then.
 from __future__ import annotations
 
 import json
+import struct
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import asdict, dataclass, fields
@@ -48,6 +50,12 @@ SIGNED = dict.fromkeys(TABLES, np.int64) | {"accesses": np.int32}
 """How the numbers of a table are written: steps go round where they would not fit."""
 LARGEST_FRAME_BYTES = 1 << 30
 """What a frame decompresses to, at most: some hundred times as much as one of the built-in firmware has in SDRAM."""
+
+_DAMAGE = (
+    ValueError, LookupError, TypeError, ArithmeticError, RuntimeError, EOFError, struct.error, zlib.error, zipfile.BadZipFile,
+    zstandard.ZstdError,
+)  # fmt: skip
+"""What reading says of a broken file; by the bytes that are hit, Python finds a ZIP encrypted, packed otherwise or of a later version."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,16 +140,14 @@ class WorkReader:
             try:
                 work = _read(core, _decompressed(self._zip.read(name)))
                 check(work, len(self.recorded.buffers))
-            except (
-                ValueError, KeyError, TypeError, IndexError, zipfile.BadZipFile, zstandard.ZstdError, OSError,
-            ) as error:  # fmt: skip
+            except (*_DAMAGE, OSError) as error:
                 raise self._broken() from error
             yield work
 
     def _json(self, name: str) -> dict[str, Any]:
         try:
             found = json.loads(self._zip.read(name))
-        except (KeyError, ValueError, RecursionError, zipfile.BadZipFile, OSError) as error:
+        except (*_DAMAGE, OSError) as error:
             raise self._broken() from error
         if not isinstance(found, dict):
             raise self._broken()
@@ -162,7 +168,7 @@ def opened(path: Path) -> Iterator[WorkReader]:
         zipped = zipfile.ZipFile(path)
     except OSError as error:
         raise WorkError(f"{path} must be a file that can be read: {error.strerror}") from error
-    except zipfile.BadZipFile as error:
+    except _DAMAGE as error:
         raise WorkError(
             f"{path} must be a whole file of `bfsim run --record-work`, and is none, or a part of one; record it again"
         ) from error
