@@ -216,6 +216,13 @@ def test_distances_of_another_form_are_a_usage_error(tmp_path: Path) -> None:
     )
 
 
+def test_more_samples_than_anybody_waits_for_are_refused(tmp_path: Path) -> None:
+    """Those that mitsuba has no number for ended in a traceback."""
+    assert "999999999999 is not in the range" in run(
+        "render", "soccer", tmp_path / "a.mcap", "--samples", 999999999999
+    )
+
+
 def test_existing_recording_is_not_overwritten(tmp_path: Path) -> None:
     """Without --force a file stays, and nothing is rendered."""
     (tmp_path / "a.mcap").touch()

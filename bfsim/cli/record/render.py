@@ -11,6 +11,9 @@ from bfsim import shipped
 from bfsim.errors import shown
 from bfsim.process.terminal import progress_bar
 
+MOST_SAMPLES = 1_000_000
+"""More than anybody waits for; mitsuba counts to 2**32 - 1, and hears no Ctrl-C while it renders a picture."""
+
 
 class _Distances(click.ParamType[tuple[float, ...]]):
     name = "MM,MM"
@@ -47,7 +50,11 @@ Examples:
 @click.argument("name", metavar="SCENE")
 @click.argument("output", type=click.Path(path_type=Path))
 @click.option("--frames", type=click.IntRange(min=1), help="Render only so many frames.")
-@click.option("--samples", type=click.IntRange(min=1), help="Light paths a pixel.  [default: the scene's]")
+@click.option(
+    "--samples",
+    type=click.IntRange(min=1, max=MOST_SAMPLES),
+    help="Light paths a pixel.  [default: the scene's]",
+)
 @click.option(
     "--distances",
     type=_Distances(),
