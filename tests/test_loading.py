@@ -281,6 +281,15 @@ def test_an_error_while_importing_is_told_with_its_line(write: Write, text: str,
     assert str(caught.value).endswith(f"({path}:2)")
 
 
+def test_a_file_that_is_no_text_has_no_line(write: Write) -> None:
+    """As one that an editor saved as UTF-16: `(None:None)` stood behind it."""
+    write("fw_wide.py", "import json\n\0")
+    with pytest.raises(
+        FirmwareError, match=r"importing fw_wide failed with SyntaxError: source code .* null bytes$"
+    ):
+        load_firmware("fw_wide.py:fw")
+
+
 def test_an_error_in_a_module_of_the_firmware_names_that_module(write: Write) -> None:
     """The file is the one with the mistake, not the one that imports it."""
     write("fw_deep/__init__.py", "from fw_deep import stage\n")

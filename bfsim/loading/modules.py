@@ -52,7 +52,9 @@ def import_more(module: str, own: OwnModules) -> ModuleType:
 
 def _failed(module: str, error: BaseException) -> FirmwareError:
     """Say what went wrong while `module` was imported, and on which of its lines."""
-    place = f" ({error.filename}:{error.lineno})" if isinstance(error, SyntaxError) else line_of(error)
+    place = line_of(error)
+    if isinstance(error, SyntaxError) and error.filename:  # a file that is no text has no place
+        place = f" ({error.filename}:{error.lineno})"
     return FirmwareError(
         f"importing {cut(module)} failed with {type(error).__name__}: {cut(str(error))}{place}"
     )
