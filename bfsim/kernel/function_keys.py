@@ -27,8 +27,7 @@ def program_key(functions: Iterable[Function], entries: Collection[str]) -> str:
     found = sorted(functions, key=lambda each: (each.file, each.first_line))
     files = {file: number for number, file in enumerate(dict.fromkeys(each.file for each in found))}
     rows = [
-        (files[each.file], PurePath(each.file).parts[-2:], each.symbol, each.source, each.digest)
-        for each in found
+        (files[each.file], PurePath(each.file).name, each.symbol, each.source, each.digest) for each in found
     ]
     public = [each.symbol for each in found if each.is_static and each.symbol in entries]
     return digest("C", _writer(), repr(rows), repr(public))

@@ -152,9 +152,8 @@ def _source(
         Definition(each, names, constants, is_static=each in static, place=place(each) if place else None)
         for each in members
     ]
-    parts = PurePath(file).parts[-2:]
     lines = [
-        *c_comment(f"Exported by bfsim from {'/'.join(parts)}."),
+        *c_comment(f"Exported by bfsim from {PurePath(file).name}."),
         f'#include "{HEADER}"',
         f'#include "{OPERATORS}"',
         *([f'#include "{INTRINSICS}"'] if intrinsics_in(members) else []),

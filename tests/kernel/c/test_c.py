@@ -13,7 +13,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.c import CProgram, c_program, in_python
+from bfsim.kernel.c import CProgram, Place, c_program, in_python
+from bfsim.kernel.function_keys import program_key
 from bfsim.kernel.types import ArrayType, FloatType
 from tests.kernel import c_kernels
 from tests.kernel.host_c import COMPILER, call, compiled, copies, exported, needs_compiler
@@ -195,3 +196,16 @@ def test_what_headers_declare_beyond_c99_is_left_to_them(name: str, tmp_path: Pa
         command = [COMPILER or "cc", standard, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *sources]
         done = subprocess.run(command, check=False, capture_output=True, text=True)
         assert not done.returncode, done.stderr
+
+
+def test_c_is_the_same_in_whatever_folder_the_python_lies(tmp_path: Path) -> None:
+    """So is what it is kept under: code that was compiled for firmware is found again when its folder was renamed."""
+    text = "@kernel\ndef twice(x: i32) -> i32:\n    return x + x\n"
+    functions = []
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+        functions.append(import_text(text, tmp_path / name, "eye").twice.function)
+    one, other = (c_program([each], place=lambda function: Place(function.symbol, 1)) for each in functions)
+    assert one.files == other.files
+    assert "from eye.py" in one.files["eye.c"]
+    assert program_key(functions[:1], []) == program_key(functions[1:], [])
