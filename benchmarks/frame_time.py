@@ -46,7 +46,7 @@ PARTS = {
     SIMULATOR / "kernel": KERNELS,
     SIMULATOR / "blackfin": KERNELS,
     SIMULATOR / "machine" / "calls": KERNELS,
-    SIMULATOR / "machine" / "core" / "tasks.py": KERNELS,
+    SIMULATOR / "machine" / "core" / "tasks" / "tasks.py": KERNELS,
     SIMULATOR / "machine" / "bus": WEAVE,
     SIMULATOR / "machine" / "dma": "rings and DMA",
     SIMULATOR / "machine" / "core": "clocks of the cores, and what runs ahead",

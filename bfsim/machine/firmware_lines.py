@@ -25,7 +25,7 @@ NOT_FIRMWARE = re.compile(
     )
 )
 """Matches the paths of what firmware calls: bfsim, numpy and Python's own library, in which installed firmware may lie."""
-TASKS = str(Path(__file__).parent / "core" / "tasks.py")
+TASKS = str(Path(__file__).parent / "core" / "tasks" / "tasks.py")
 """What goes on with the generators of the firmware."""
 
 

@@ -44,7 +44,7 @@ def test_firmware_and_what_is_written_have_such_names(folder: Path, arguments: l
 def test_exported_c_says_where_it_comes_from(folder: Path) -> None:
     """As text that an editor reads: the byte that is none is replaced."""
     assert call("export", f"{NAME}.py", "c").exit_code == 0
-    assert "/gr\ufffdn.py" in (folder / "c" / "gr_n.c").read_text("utf-8")
+    assert "from gr\ufffdn.py" in (folder / "c" / "gr_n.c").read_text("utf-8")
 
 
 def test_points_of_a_sweep_are_called_so(folder: Path) -> None:

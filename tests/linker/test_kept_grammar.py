@@ -10,7 +10,7 @@ from lark import Lark
 
 from bfsim import shipped
 from bfsim.errors import BfsimWarning, LinkError
-from bfsim.linker import grammar, parse_ldf
+from bfsim.linker import grammar, parse_ldf, parser
 
 
 @pytest.fixture
@@ -32,6 +32,7 @@ def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[str]]
 def told_of(ldf: Path) -> str:
     """What a new process makes of an LDF, or says against it."""
     grammar._grammar.cache_clear()
+    parser._script.cache_clear()
     try:
         return repr(parse_ldf(ldf))
     except LinkError as error:
