@@ -179,6 +179,7 @@ GCC: dict[Rule, str] = {
     Rule.STRENGTH_REDUCTION: "gimple-ssa-strength-reduction.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
+    Rule.COMMON_FACTORS: "undistribute_ops_list in tree-ssa-reassoc.cc",
     Rule.DIVIDED_COUNTS: '"Costs of niter computation too high" in loop-doloop.cc',
     Rule.INCLUSIVE_LOOPS: '"possible infinite iteration case" in loop-doloop.cc',
     Rule.FIXED_STARTS: '"possible infinite iteration case" in loop-doloop.cc',

@@ -1,8 +1,6 @@
 """Size and time of a routine as GCC's inliner estimates them, in statements of its own intermediate code.
 
-One instruction of LLVM's IR, optimised within its own function only, stands for one statement [estimate_num_insns in
-tree-inline.cc of GCC 12]: an address that is computed counts once, and once more for its scale; a load, a store and a sum
-count one; phis and widenings are free. Of an access to a fixed element of a parameter, such as state[0], half is expected to go where the
+Sizes are those of its statements (`statements`). Of an access to a fixed element of a parameter, such as state[0], half is expected to go where the
 routine is inlined [eliminated_by_inlining_prob in ipa-fnsummary.cc]. The size of 549 routines was 7.5 % off on average.
 """
 
@@ -19,26 +17,24 @@ import llvmlite.binding as llvm
 from bfsim.files import store
 from bfsim.kernel import function_keys
 from bfsim.kernel.emitting.emit import emit_alone
+from bfsim.kernel.estimate.inlining.statements import statement_size
 from bfsim.kernel.estimate.prediction.frequencies import frequencies
 from bfsim.kernel.estimate.prediction.predict import Likelihood
 from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, LARGEST, Range
 from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.ir import llvm_passes
-from bfsim.kernel.ir.control_flow import ControlFlow, pointee_nbytes
+from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.reading import read_module
 from bfsim.kernel.ir.text import Instruction, Routine, is_number, without_marks
-from bfsim.kernel.ir.widths import WORD
 from bfsim.kernel.language.function import Function
 
 GONE = 0.5  # [ipa-fnsummary.cc] of an access that may go
 # [tree-inline.cc] time of a call, of a division by no constant, of a return; everything else takes as long as it is large
 CALL_TIME, DIVISION_TIME, RETURN_TIME = 10, 10, 2
-TEST_SIZE = 2  # [tree-inline.cc] of a comparison that a branch takes
 EARLY_PASSES = (
     "sroa", "simplify_cfg", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce",
     "simplify_cfg",
 )  # fmt: skip
-SHIFTS = ("shl", "lshr", "ashr")
 ANSWERING = (
     "instruction_combine",
     "sccp",
@@ -48,7 +44,6 @@ ANSWERING = (
     "simplify_cfg",
 )
 """Where ranges of arguments are known, too."""
-FREE = ("phi", "trunc", "zext", "sext", "freeze", "bitcast", "unreachable", "ret")
 
 Given = tuple[Range | None, ...]
 
@@ -88,6 +83,7 @@ def estimate(function: Function) -> Estimate:
     return Estimate(**{**found, "calls": tuple(CallSite(**each) for each in found["calls"])})
 
 
+@cache
 def _estimated(function: Function, given: Given = ()) -> Estimate:
     """Estimate a kernel; `given`: what is known of its arguments, in the order of the parameters in LLVM's IR."""
     module = llvm_passes.parsed(emit_alone(function))
@@ -206,44 +202,6 @@ class _Estimator:
     def frequency(self) -> dict[str, float]:
         """Runs of each block per run of the routine."""
         return frequencies(self.flow, Likelihood(self.flow).taken)
-
-
-def statement_size(flow: ControlFlow, each: Instruction) -> int:
-    """Return the size of what is no call."""
-    if each.opcode in FREE or _is_shift_mask(flow, each):
-        return 0
-    if each.opcode == "getelementptr":
-        return _address_size(flow, each)
-    if each.opcode in ("icmp", "fcmp"):
-        return int(not _only_branches(flow, each))
-    if each.opcode == "br":
-        return TEST_SIZE if each.operands else 0
-    if each.opcode == "switch":
-        return 2 * (1 + len(each.text.split("label")) - 2)
-    return 1
-
-
-def _is_shift_mask(flow: ControlFlow, each: Instruction) -> bool:
-    """Whether it only keeps what a shift is by within a word, for which C does not ask."""
-    users = flow.users.get(each.result or "", [])
-    mask = each.opcode == "and" and each.operands[1] == str(WORD - 1)
-    return mask and all(user.opcode in SHIFTS and user.operands[1] == each.result for user in users)
-
-
-def _address_size(flow: ControlFlow, address: Instruction) -> int:
-    """An index is scaled and added; LLVM shares what of it is the same in several, of which GCC adds up each."""
-    if address.operands[-1].startswith("%"):
-        return min(pointee_nbytes(address), 2)
-    base = flow.instruction(address.operands[0])
-    if base is None or base.opcode != "getelementptr":
-        return 0
-    users = flow.users.get(base.result or "", [])
-    return 1 + (_address_size(flow, base) if users[0] is not address else 0)
-
-
-def _only_branches(flow: ControlFlow, test: Instruction) -> bool:
-    users = flow.users.get(test.result or "", [])
-    return bool(users) and all(each.opcode == "br" for each in users)
 
 
 def _callee(call: Instruction) -> str:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from bfsim.kernel.estimate.arithmetic.bits_set import STATEMENTS as WORD_COUNT
 from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
 from bfsim.kernel.estimate.conditions.short_circuits import SECOND
-from bfsim.kernel.estimate.inlining.gimple_size import TEST_SIZE, statement_size
+from bfsim.kernel.estimate.inlining.statements import TEST_SIZE, statement_size
 from bfsim.kernel.estimate.jump_threading.flags import JumpThreading
 from bfsim.kernel.estimate.loops.same_values import is_same
 from bfsim.kernel.ir.control_flow import COPIED, ControlFlow, Loop
