@@ -89,7 +89,7 @@ def _estimated(function: Function, given: Given = ()) -> Estimate:
     module = llvm_passes.parsed(emit_alone(function))
     llvm_passes.run(EARLY_PASSES, module)
     (routine,) = map(without_marks, read_module(str(module)))
-    known = _kept(routine, given)
+    known = _unchanged(routine, given)
     if any(known):
         module = llvm.parse_assembly(_with_ranges(str(module), function.symbol, known))
         llvm_passes.run(ANSWERING, module)
@@ -97,7 +97,7 @@ def _estimated(function: Function, given: Given = ()) -> Estimate:
     return _Estimator(ControlFlow(routine), {each.symbol: each for each in function.callees()}).run()
 
 
-def _kept(routine: Routine, given: Given) -> Given:
+def _unchanged(routine: Routine, given: Given) -> Given:
     """What is known of arguments, but for those that the routine has other values of, too: no test is of the argument then."""
     merged = {
         value

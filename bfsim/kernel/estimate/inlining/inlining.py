@@ -118,7 +118,7 @@ class Inliner:
     unseen: frozenset[tuple[str, str]]
     """(caller, callee) of the calls whose callee the compiler does not see."""
     nodes: dict[str, _Node] = field(init=False)
-    at_first: dict[str, int] = field(init=False)
+    first_growth: dict[str, int] = field(init=False)
     """By how much the program grew if all calls of each callee were inlined, before any but tiny ones was."""
     found: dict[tuple[str, int, str], Decision] = field(init=False, default_factory=dict)
 
@@ -127,7 +127,7 @@ class Inliner:
         self.nodes = {name: self._node(name, each) for name, each in self.estimates.items()}
         for name in self.nodes:
             self._early(name)
-        self.at_first = {name: self._overall_growth(name) for name in self.nodes}
+        self.first_growth = {name: self._overall_growth(name) for name in self.nodes}
         while (best := self._best()) is not None:
             name, edge, why = best
             self._inline(name, edge, why)
@@ -206,7 +206,7 @@ class Inliner:
         growth = self._growth(edge)
         if growth <= 0:
             return -1e12 + growth
-        overall = self.at_first[edge.callee]
+        overall = self.first_growth[edge.callee]
         weight = growth * (self.nodes[name].size + growth) * (overall * overall if overall > 0 else 1)
         badness = -self._gain(edge) / weight
         return badness * 4 if overall <= 0 else badness

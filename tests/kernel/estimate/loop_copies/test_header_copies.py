@@ -87,7 +87,7 @@ def test_a_bound_may_be_a_sum_that_stays(text: str, cycles: int, near: float, tm
 
 
 def test_a_loop_that_ends_with_a_break_is_turned_round_already(tmp_path: Path) -> None:
-    """[do_while_loop_p in tree-ssa-loop-ch.cc of GCC 12.] The estimate was eleven times as much: behind a first iteration of its own, what
+    """[do_while_loop_p in tree-ssa-loop-ch.cc of GCC 12.] The estimate was 16 times as much: behind a first iteration of its own, what
     is divided is known to be positive, and GCC calls a routine for that.
     """
     check_estimate(ENDS_WITH_BREAK, 15010, 0.10, tmp_path)
