@@ -16,7 +16,7 @@ from enum import StrEnum
 from functools import cache
 
 from bfsim.kernel.emitting.values import InlinedCall
-from bfsim.kernel.estimate.inlining.gimple_size import RETURN_TIME, Estimate, estimate
+from bfsim.kernel.estimate.inlining.gimple_size import RETURN_TIME, CallSite, Estimate, estimate
 from bfsim.kernel.function_keys import compiled_with
 from bfsim.kernel.language.function import Function
 from bfsim.kernel.profile import CompilerProfile, Inlines
@@ -52,17 +52,16 @@ class Decision:
     growth: int
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Edge:
-    """A call in code as it stands now; `site` is the (routine, line) where the source has it."""
+    """A call in code as it stands now; `source`: the routine that has it in the source."""
 
-    callee: str
-    site: tuple[str, int]
-    frequency: float
-    size: int
-    time: float
-    spared_size: int
-    spared_time: float
+    source: str
+    site: CallSite
+
+    @property
+    def callee(self) -> str:
+        return self.site.callee
 
 
 @dataclass(slots=True)
@@ -141,31 +140,20 @@ class Inliner:
         return tuple(self.found.values())
 
     def _node(self, name: str, estimate: Estimate) -> _Node:
-        edges = [
-            _Edge(
-                each.callee,
-                (name, each.line),
-                each.frequency,
-                each.size,
-                each.time,
-                each.spared_size,
-                each.spared_time,
-            )
-            for each in estimate.calls
-        ]
+        edges = [_Edge(name, each) for each in estimate.calls]
         gone = estimate.gone_size + KEPT_STATEMENTS, estimate.gone_time + RETURN_TIME
         return _Node(estimate.size, estimate.time, *gone, edges, name in self.static)
 
     def _sees(self, edge: _Edge) -> bool:
-        return (edge.site[0], edge.callee) not in self.unseen
+        return (edge.source, edge.callee) not in self.unseen
 
     def _growth(self, edge: _Edge) -> int:
-        return self.nodes[edge.callee].size - edge.spared_size - edge.size
+        return self.nodes[edge.callee].size - edge.site.spared_size - edge.site.size
 
     def _early(self, name: str) -> None:
         """Inline what is tiny, whatever its arguments; of a callee that calls others, what is tiny even if each of them is inlined too."""
         for edge in list(self.nodes[name].edges):
-            growth, calls = self._growth(edge) + edge.spared_size, len(self.nodes[edge.callee].edges)
+            growth, calls = self._growth(edge) + edge.site.spared_size, len(self.nodes[edge.callee].edges)
             if self._sees(edge) and (growth <= 0 or growth * (calls + 1) <= EARLY_STATEMENTS):
                 self._inline(name, edge, Why.SHRINKS if growth <= 0 else Why.SMALL)
 
@@ -193,12 +181,14 @@ class Inliner:
 
     def _gain(self, edge: _Edge) -> float:
         """Time that is saved: that of the call, and of what is gone or spared."""
-        return (edge.time + self.nodes[edge.callee].gone_time + edge.spared_time) * edge.frequency
+        return (
+            edge.site.time + self.nodes[edge.callee].gone_time + edge.site.spared_time
+        ) * edge.site.frequency
 
     def _is_much_faster(self, name: str, edge: _Edge) -> bool:
         """Whether the caller, with the time in the callee, gets faster by 30 % [big_speedup_p]."""
         caller, callee = self.nodes[name], self.nodes[edge.callee]
-        time = caller.time + (callee.time + callee.gone_time) * edge.frequency
+        time = caller.time + (callee.time + callee.gone_time) * edge.site.frequency
         return self._gain(edge) > LEAST_SPEEDUP * time
 
     def _badness(self, name: str, edge: _Edge) -> float:
@@ -229,10 +219,11 @@ class Inliner:
         node, callee = self.nodes[name], self.nodes[edge.callee]
         self._note(edge, inlined=True, why=why)
         node.size += self._growth(edge)
-        node.time += (callee.time - edge.spared_time - edge.time) * edge.frequency
+        node.time += (callee.time - edge.site.spared_time - edge.site.time) * edge.site.frequency
         place = next(index for index, each in enumerate(node.edges) if each is edge)
         node.edges[place : place + 1] = [
-            replace(each, frequency=each.frequency * edge.frequency) for each in callee.edges
+            _Edge(each.source, replace(each.site, frequency=each.site.frequency * edge.site.frequency))
+            for each in callee.edges
         ]
         if edge.callee in self.static and not self._calls_of(edge.callee):
             callee.edges = []  # nothing calls it any more: it is gone
@@ -241,8 +232,8 @@ class Inliner:
         self._note(edge, inlined=False, why=Why.LARGE if self._sees(edge) else Why.UNSEEN)
 
     def _note(self, edge: _Edge, *, inlined: bool, why: Why) -> None:
-        key = (*edge.site, edge.callee)
+        key = (edge.source, edge.site.line, edge.callee)
         if key not in self.found or (inlined and not self.found[key].inlined):
             self.found[key] = Decision(
-                *edge.site[:1], edge.callee, edge.site[1], inlined, why, self._growth(edge)
+                edge.source, edge.callee, edge.site.line, inlined, why, self._growth(edge)
             )
