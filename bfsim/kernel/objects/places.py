@@ -99,8 +99,15 @@ class Places:
         return found
 
     def function_at(self, address: int) -> Function:
-        """Return the kernel, or other function, that has the code at an address."""
-        return self.functions[self.line_of(self._routine(address).address).routine]
+        """Return the kernel, or other function, that has the code at an address, also that of a clone, such as `_row.constprop.0`.
+
+        That of a kernel may begin with a line of another one that is inlined in it.
+        """
+        routine = self._routine(address)
+        kernel = self.kernels.get(routine.name.partition(".")[0])
+        if kernel is None:
+            return self.functions[self.line_of(routine.address).routine]
+        return self.functions.setdefault(kernel.symbol, kernel)
 
     def function_called(self, symbol: str) -> Function:
         """Return the kernel, or other function, that instructions of the image are of, by its own symbol."""
