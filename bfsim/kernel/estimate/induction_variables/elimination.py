@@ -83,13 +83,14 @@ def eliminated_counters(
 
 
 def _differences(choice: Choice) -> dict[str, EliminatedCounter]:
-    counter = choice.wishes.counter
-    return {
-        each.name: EliminatedCounter(
-            each.name, choice.variable, each.blocks, choice.sums(each), each.name != counter
+    counter, found = choice.wishes.counter, dict[str, EliminatedCounter]()
+    for each in choice.wishes.all:
+        blocks = each.blocks | (found[each.name].blocks if each.name in found else frozenset())
+        is_stepped = each.name != counter
+        found[each.name] = EliminatedCounter(
+            each.name, choice.variable, blocks, choice.sums(each), is_stepped
         )
-        for each in choice.wishes.all
-    }
+    return found
 
 
 def _seldom_wanted(

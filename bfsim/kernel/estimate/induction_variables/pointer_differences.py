@@ -55,7 +55,7 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
     None if it wants something else, too, or a sum in blocks of which none comes behind the others: how often that is computed is up to
     passes before [tree-ssa-pre.cc].
     """
-    found: dict[str, set[str]] = {}
+    found: dict[tuple[str, bool], set[str]] = {}
     waiting, seen = [counter], {counter}
     while waiting:
         name = waiting.pop()
@@ -71,17 +71,22 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
                     seen.add(user.result or "")
                     waiting.append(user.result or "")
                 continue
-            found.setdefault(name, set()).update(homes_of(flow, user, name))
+            cuts = _cuts(flow, user)
+            if cuts:
+                found.setdefault((name, True), set()).update(flow.defined[each.result or ""][0] for each in cuts)
+            if len(cuts) < len(flow.users.get(user.result or "", [user])):
+                is_narrow = _is_narrow(flow.instruction(name))
+                found.setdefault((name, is_narrow), set()).update(homes_of(flow, user, name))
     blocks = {label for each in found.values() for label in each}
     if not blocks or any(
         flow.innermost(each) is not loop or flow.every_iteration(each, loop) for each in blocks
     ):
         return None
-    if any(name != counter and _places(flow, wanting) > 1 for name, wanting in found.items()):
+    if any(name != counter and _places(flow, wanting) > 1 for (name, _), wanting in found.items()):
         return None
     wanted = (
-        Wanted(each, sum_of(evolution, each), _is_narrow(flow.instruction(each)), frozenset(found[each]))
-        for each in found
+        Wanted(name, sum_of(evolution, name), is_narrow, frozenset(wanting))
+        for (name, is_narrow), wanting in found.items()
     )
     return Wishes(counter, tuple(wanted))
 
@@ -110,6 +115,14 @@ def _is_narrow(each: Instruction | None) -> bool:
 def _places(flow: ControlFlow, blocks: set[str]) -> int:
     """In how many of `blocks` a value is computed: one that comes behind another one has it."""
     return sum(blocks.isdisjoint(flow.dominators[each] - {each}) for each in blocks)
+
+
+def _cuts(flow: ControlFlow, each: Instruction) -> list[Instruction]:
+    """What cuts off the upper bits of a result: C computes that of operands that are cut [shorten in convert_to_integer]."""
+    if each.opcode not in ("add", "sub", "mul", "and", "or", "xor"):
+        return []
+    users = flow.users.get(each.result or "", [])
+    return [one for one in users if one.opcode == "trunc" and _is_narrow(one)]
 
 
 def _is_multiple(each: Instruction) -> bool:
