@@ -25,7 +25,7 @@ from bfsim.kernel.estimate.jump_threading.threaded_choices import with_threaded_
 from bfsim.kernel.estimate.jump_threading.threaded_hints import with_threaded_hints
 from bfsim.kernel.estimate.loop_copies.rotations import held, released
 from bfsim.kernel.estimate.loop_copies.unrolled import marked
-from bfsim.kernel.estimate.rewrites import rewritten, rewritten_early, with_counted_fills
+from bfsim.kernel.estimate.rewrites import rewritten, rewritten_early, rewritten_last
 from bfsim.kernel.estimate.switches.hidden_numbers import revealed
 from bfsim.kernel.estimate.switches.switches import with_switches
 from bfsim.kernel.estimate.unoptimised import lowering as unoptimised
@@ -94,7 +94,7 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         llvm_passes.run(("loop_unroll", *CLEANING), module)
         text = str(module)
     text = _threaded(rewritten(with_rounded_names(text, function), profile), profile)
-    return with_counted_fills(text, profile)
+    return rewritten_last(text, profile)
 
 
 def _threaded(text: str, profile: CompilerProfile) -> str:

@@ -16,6 +16,7 @@ from bfsim.kernel.estimate.arithmetic.shifted_products import with_shifted_produ
 from bfsim.kernel.estimate.arithmetic.strength_reduction import with_reduced_strength
 from bfsim.kernel.estimate.arithmetic.summed_indices import with_summed_indices
 from bfsim.kernel.estimate.choices.extremes import with_extremes
+from bfsim.kernel.estimate.choices.known_values import with_known_values
 from bfsim.kernel.estimate.choices.narrow_sums import with_narrow_sums
 from bfsim.kernel.estimate.choices.restored_values import with_restored_values
 from bfsim.kernel.estimate.choices.sides_apart import with_sides_apart
@@ -150,6 +151,11 @@ def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:
     return routine
 
 
-def with_counted_fills(text: str, profile: CompilerProfile) -> str:
-    """Return the module `text` with what counts fills that a routine of the library makes; no pass may follow, for it would leave that out."""
+def rewritten_last(text: str, profile: CompilerProfile) -> str:
+    """Return the module `text` as it is costed; no pass may follow.
+
+    One would put numbers back in place of variables, and leave out what counts the fills that a routine of the library makes.
+    """
+    if profile.applies(Rule.KNOWN_VALUES):
+        text = _each(text, with_known_values)
     return _each(text, count_fills) if profile.library.fill else text

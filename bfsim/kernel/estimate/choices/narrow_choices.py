@@ -12,7 +12,7 @@ from bfsim.kernel.ir.text import Instruction, is_number
 from bfsim.kernel.ir.widths import WORD
 
 CHOSEN = "chosen"
-"""Beginning of the label of a block behind the two sides of a conditional expression (`emitting/values.py`)."""
+"""Beginning of the label of a block behind the two sides of a conditional expression, and of the name of its value (`emitting/values.py`)."""
 NARROWED = ("add", "sub", "mul", "and", "or", "xor")
 
 

@@ -60,10 +60,8 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
     while waiting:
         name = waiting.pop()
         for user in flow.users.get(name, []):
-            if user.opcode == "getelementptr" or user.result == evolution.exit_test(loop):
-                continue
-            if user.result == counter:
-                continue  # its step
+            if user.opcode == "getelementptr" or user.result in (evolution.exit_test(loop), counter):
+                continue  # an address, the end of the loop, its step
             if _is_multiple(user):
                 return None  # a variable that steps by more
             if user.opcode in ("add", "sub", "xor", "trunc") and _is_sum(evolution, loop, counter, user):
@@ -71,12 +69,8 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
                     seen.add(user.result or "")
                     waiting.append(user.result or "")
                 continue
-            cuts = _cuts(flow, user)
-            if cuts:
-                found.setdefault((name, True), set()).update(flow.defined[each.result or ""][0] for each in cuts)
-            if len(cuts) < len(flow.users.get(user.result or "", [user])):
-                is_narrow = _is_narrow(flow.instruction(name))
-                found.setdefault((name, is_narrow), set()).update(homes_of(flow, user, name))
+            for is_narrow, home in _wanted_by(flow, user, name):
+                found.setdefault((name, is_narrow), set()).add(home)
     blocks = {label for each in found.values() for label in each}
     if not blocks or any(
         flow.innermost(each) is not loop or flow.every_iteration(each, loop) for each in blocks
@@ -117,12 +111,19 @@ def _places(flow: ControlFlow, blocks: set[str]) -> int:
     return sum(blocks.isdisjoint(flow.dominators[each] - {each}) for each in blocks)
 
 
-def _cuts(flow: ControlFlow, each: Instruction) -> list[Instruction]:
-    """What cuts off the upper bits of a result: C computes that of operands that are cut [shorten in convert_to_integer]."""
-    if each.opcode not in ("add", "sub", "mul", "and", "or", "xor"):
-        return []
-    users = flow.users.get(each.result or "", [])
-    return [one for one in users if one.opcode == "trunc" and _is_narrow(one)]
+def _wanted_by(flow: ControlFlow, user: Instruction, name: str) -> Iterator[tuple[bool, str]]:
+    """Yield whether `user` wants a value as narrow, and the block in which.
+
+    What is cut off a result is computed of operands that are cut in C [shorten in convert_to_integer].
+    """
+    users = flow.users.get(user.result or "", [user])
+    is_whole = user.opcode in ("add", "sub", "mul", "and", "or", "xor")
+    cuts = [each for each in users if is_whole and each.opcode == "trunc" and _is_narrow(each)]
+    for each in cuts:
+        yield True, flow.defined[each.result or ""][0]
+    if len(cuts) < len(users):
+        is_narrow = _is_narrow(flow.instruction(name))
+        yield from ((is_narrow, home) for home in homes_of(flow, user, name))
 
 
 def _is_multiple(each: Instruction) -> bool:

@@ -11,6 +11,7 @@ import re
 from dataclasses import dataclass, replace
 
 from bfsim.kernel.estimate.choices.if_conversion import ConversionKind, IfConversion
+from bfsim.kernel.estimate.choices.known_values import KnownValues
 from bfsim.kernel.estimate.conditions.number_tests import CONVERSIONS
 from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
@@ -87,15 +88,16 @@ def _narrowing(
     phi = flow.instruction(wide)
     assert phi is not None
     bits = int(each.text.rsplit("i", 1)[1])
-    values, rows = dict[str, str](), dict[str, list[Instruction]]()
-    for source, value in arms_of(phi).items():
+    known, values, rows = KnownValues(flow), dict[str, str](), dict[str, list[Instruction]]()
+    for source, variable in arms_of(phi).items():
+        value = known.number(variable, source, block.label) or variable
         if is_number(value):
             values[source] = str((int(value) + (1 << bits - 1)) % (1 << bits) - (1 << bits - 1))
         elif (made := flow.instruction(value)) is not None and made.opcode == "phi":
             return None  # what a loop carries, and is often known to be one of few numbers
         else:
             rows[source] = [replace(renamed(each, {wide: value}), result=f"{each.result}.{source}")]
-    return _Redundancy(block.label, each, values, rows) if values and rows else None
+    return _Redundancy(block.label, each, values, rows) if values else None
 
 
 def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) -> _Redundancy | None:

@@ -1,0 +1,112 @@
+"""A number that a variable is known to be is taken from it where ways meet, so that nothing is loaded [tree-ssa-uncprop.cc of GCC 12].
+
+Behind `if state == 3`, passes put 3 in place of `state`, which helps them. Where `state` is then chosen among others, 3 would have to be
+loaded into its register, where it is already.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from bfsim.kernel.estimate.choices.narrow_choices import CHOSEN
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.text import Instruction, Routine, arms_of, each_arm, is_number, predicate, with_each_arm
+
+FLAG = {"0": "1", "1": "0"}
+"""What a flag is where it is not the one."""
+
+
+def with_known_values(routine: Routine) -> Routine:
+    """Return `routine` with variables in place of the numbers that they are known to be, in its choices."""
+    known = KnownValues(ControlFlow(routine))
+    blocks = (
+        replace(block, instructions=tuple(known.chosen(block.label, each) for each in block.instructions))
+        for block in routine.blocks
+    )
+    return replace(routine, blocks=tuple(blocks))
+
+
+@dataclass(frozen=True)
+class KnownValues:
+    """What tests have found out of variables in a routine."""
+
+    flow: ControlFlow
+
+    def chosen(self, home: str, each: Instruction) -> Instruction:
+        """Return an instruction of block `home`; if it is a choice of words, from variables."""
+        if not each.text.startswith("phi i32 "):
+            return each
+        arms = [
+            (value if self._is_computed(each, label, home) else self._variable(value, label, home), label)
+            for value, label in each_arm(each)
+        ]
+        return each if arms == each_arm(each) else with_each_arm(each, arms)
+
+    def number(self, name: str, label: str, home: str) -> str | None:
+        """Return the number that a variable is known to be on the way from block `label` to block `home`."""
+        return next((number for each, number in self._found_out(label, home) if each == name), None)
+
+    def _is_computed(self, choice: Instruction, label: str, home: str) -> bool:
+        """Whether a choice between numbers was computed before [tree-ssa-phiopt.cc]: `1 if test else 0`, or by a test that chooses nothing else."""
+        is_expression = (choice.result or "").startswith(f"%{CHOSEN}")
+        if is_expression and all(is_number(value) for value, _ in each_arm(choice)):
+            return True
+        phis = [each for each in self.flow.blocks[home].instructions if each.opcode == "phi"]
+        return any(
+            label != other
+            and self._test_of(label) == self._test_of(other)
+            and all(arms_of(phi)[label] == arms_of(phi)[other] for phi in phis if phi is not choice)
+            for value, other in each_arm(choice)
+            if is_number(value)
+        )
+
+    def _test_of(self, label: str) -> str:
+        """The block of the test whose side a block is, with nothing else in it, or that is in the block itself."""
+        block, before = self.flow.blocks[label], self.flow.predecessors[label]
+        is_empty = len(block.instructions) == 1 and len(set(block.successors)) == 1 and len(before) == 1
+        return before[0] if is_empty else label
+
+    def _variable(self, value: str, label: str, home: str) -> str:
+        if not is_number(value):
+            return value
+        equal = (name for name, number in self._found_out(label, home) if number == value)
+        return next(equal, value)
+
+    def _found_out(self, label: str, home: str) -> Iterator[tuple[str, str]]:
+        """Yield the variables that are numbers on the way from block `label` to block `home`, what was found out last first."""
+        ways = self.flow.blocks[label].successors
+        if ways.count(home) == 1:
+            yield from self._by_test(label, home)
+        while len(before := self.flow.predecessors[label]) == 1:
+            yield from self._by_test(before[0], label)
+            (label,) = before
+
+    def _by_test(self, label: str, way: str) -> Iterator[tuple[str, str]]:
+        """Yield what the test that ends block `label` finds out if it goes to block `way`."""
+        ending = self.flow.blocks[label].terminator
+        test = self.flow.instruction(ending.operands[0]) if ending.operands else None
+        ways = self.flow.blocks[label].successors
+        if ending.opcode != "br" or test is None or test.opcode != "icmp" or len(set(ways)) != 2:
+            return
+        name, number = test.operands
+        if predicate(test) not in ("eq", "ne") or not self._is_word(name, test) or not is_number(number):
+            return
+        if (ways[0] == way) is (predicate(test) == "eq"):
+            yield name, number
+        elif number in FLAG and self._is_flag(name, set()):
+            yield name, FLAG[number]
+
+    def _is_word(self, name: str, test: Instruction) -> bool:
+        """Whether a test is of a word: one of a byte or a half-word is done on that [match.pd]."""
+        made = self.flow.instruction(name)
+        return " i32 " in test.text and not (made is not None and made.opcode in ("zext", "sext"))
+
+    def _is_flag(self, name: str, seen: set[str]) -> bool:
+        """Whether a value is 0 or 1 on all ways [ssa_name_has_boolean_range]."""
+        made = self.flow.instruction(name)
+        if name in FLAG or name in seen:
+            return True
+        if made is None or made.opcode != "phi":
+            return made is not None and made.opcode == "zext" and " i1 " in made.text
+        return all(self._is_flag(value, seen | {name}) for value, _ in each_arm(made))
