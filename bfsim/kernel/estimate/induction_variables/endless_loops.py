@@ -51,8 +51,37 @@ class EndlessLoops:
         }
         wide = bool(steps) and 1 not in steps
         fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        known = fixed or self._starts_in_front(loop)
+        known = (fixed and not self._is_computed_further_out(loop)) or self._starts_in_front(loop)
         return wide and not known and not self._may_not_start(loop)
+
+    def _is_computed_further_out(self, loop: Loop) -> bool:
+        """Whether the addresses that a loop walks from, and their ends, are computed before the loop around it: nothing is known of the two there.
+
+        So it is if a pointer stands for the counter, of which nothing else is wanted, and takes more steps than that has to come round
+        [may_eliminate_iv; iv_period in tree-ssa-loop-niter.cc].
+        """
+        around, test = self.flow.around(loop), self.flow.instruction(self.evolution.exit_test(loop) or "")
+        walking = [each for each in self.induction_variables.all if each.loop is loop]
+        if around is None or test is None or any(each.increment.symbolic for each in walking):
+            return False
+        counter, end = test.operands
+        gain = self.evolution.increment(counter, loop)
+        if gain is None or gain.symbolic or self._is_value(counter, loop):
+            return False
+        lowest_bits = (each.increment.constant & -each.increment.constant for each in walking)
+        made_of = {end, *(name for each in walking for name, _ in each.start)}
+        return any(each <= 2 * abs(gain.constant) for each in lowest_bits) and all(
+            self.flow.is_invariant(each, around) for each in made_of
+        )
+
+    def _is_value(self, counter: str, loop: Loop) -> bool:
+        """Whether something else than an address, a step or the loop's test wants a counter, or its next value."""
+        made = self.flow.instruction(counter)
+        names = {counter, *(made.operands if made else ())}
+        counting = {each for each in names if not self.flow.is_invariant(each, loop)}
+        others = counting | {self.evolution.exit_test(loop)}
+        users = (user for name in counting for user in self.flow.users.get(name, ()))
+        return any(each.result not in others and each.opcode != "getelementptr" for each in users)
 
     def _starts_in_front(self, loop: Loop) -> bool:
         """Whether a loop walks from an address that is computed right before it, of no constant: what is left to its end is a multiple of the step then.

@@ -15,6 +15,7 @@ from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
 from bfsim.kernel.estimate.conditions.short_circuits import SECOND
 from bfsim.kernel.estimate.inlining.statements import TEST_SIZE, statement_size
 from bfsim.kernel.estimate.jump_threading.flags import JumpThreading
+from bfsim.kernel.estimate.loop_copies.values_behind import type_of, with_values_chosen_behind
 from bfsim.kernel.estimate.loops.same_values import is_same
 from bfsim.kernel.ir.control_flow import COPIED, ControlFlow, Loop
 from bfsim.kernel.ir.edges import going_to
@@ -36,7 +37,6 @@ WHILE = re.compile(
 )  # the test of a `while` by itself: what the loop steps would stand before it
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
-TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
 
 
 def copy_headers(routine: Routine) -> Routine:
@@ -53,7 +53,10 @@ def _copied(routine: Routine, wanted: Callable[[ControlFlow, Loop], bool]) -> Ro
     for header in [loop.header for loop in ControlFlow(routine).loops]:
         flow = ControlFlow(routine)
         loop = next((each for each in flow.loops if each.header == header), None)
-        if loop is not None and wanted(flow, loop) and _is_copied(flow, loop):
+        if loop is None or not wanted(flow, loop):
+            continue
+        flow = ControlFlow(with_values_chosen_behind(flow, loop))
+        if _is_copied(flow, loop):
             routine = _Rotation(flow, loop).routine()
     return routine
 
@@ -192,7 +195,7 @@ class _Rotation:
         first = [self.first.get(each, each) for each in test.operands[:2]]
         self.is_sure = _holds(predicate(test), first) is (self.header.successors[0] == self.inside)
         """Whether constants say that the first test does not leave the loop."""
-        self.types = {each.result: _type(each) for each in self.header.instructions if each.result}
+        self.types = {each.result: type_of(each) for each in self.header.instructions if each.result}
 
     def routine(self) -> Routine:
         blocks = []
@@ -288,12 +291,3 @@ def _holds(relation: str, values: list[str]) -> bool | None:
         "gt": left > right,
         "ge": left >= right,
     }[relation[-2:]]
-
-
-def _type(each: Instruction) -> str:
-    if each.opcode in ("icmp", "fcmp"):
-        return "i1"
-    if each.opcode == "getelementptr":
-        return "ptr"
-    found = TYPE.findall(each.text)
-    return str(found[-1] if each.opcode in ("zext", "sext", "trunc") else found[0])
