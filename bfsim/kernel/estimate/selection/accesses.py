@@ -169,9 +169,19 @@ class Accesses:
                 loose = (
                     variable.loop.header not in self.context.counters.counted
                     and len(self.flow.exits(variable.loop)) > 1
+                    and self._is_wanted_behind(variable)
                 )
                 if loose and self.context.profile.applies(Rule.POINTER_COPIES):
                     # the exits see the pointer before and after its step
                     self.emitter.code.add(
                         latch, MachineInstruction(Op.MOVE, line, None, POINTER, ((variable.name, POINTER),))
                     )
+
+    def _is_wanted_behind(self, variable: InductionVariable) -> bool:
+        """Whether a counter that the addresses of `variable` are made of, or its next value, is wanted behind the loop."""
+        loop, address = variable.loop, variable.accesses[0][1].operands[-1]
+        terms = (name for name, _ in self.context.evolution.affine(address).terms)
+        counters = {name for name in terms if not self.flow.is_invariant(name, loop)}
+        steps = {user.result for name in counters for user in self.flow.users[name] if user.opcode == "add"}
+        outside = (block for label, block in self.flow.blocks.items() if label not in loop.blocks)
+        return any((counters | steps) & {*each.operands} for block in outside for each in block.instructions)
