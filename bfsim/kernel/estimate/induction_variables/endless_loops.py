@@ -51,11 +51,11 @@ class EndlessLoops:
         }
         wide = bool(steps) and 1 not in steps
         fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        known = (fixed and not self._is_computed_further_out(loop)) or self._starts_in_front(loop)
+        known = (fixed and not self._ends_further_out(loop)) or self._starts_in_front(loop)
         return wide and not known and not self._may_not_start(loop)
 
-    def _is_computed_further_out(self, loop: Loop) -> bool:
-        """Whether the addresses that a loop walks from, and their ends, are computed before the loop around it: nothing is known of the two there.
+    def _ends_further_out(self, loop: Loop) -> bool:
+        """Whether how far a loop walks is computed before the loop around it: nothing is known of that there.
 
         So it is if a pointer stands for the counter, of which nothing else is wanted, and takes more steps than that has to come round
         [may_eliminate_iv; iv_period in tree-ssa-loop-niter.cc].
@@ -69,10 +69,8 @@ class EndlessLoops:
         if gain is None or gain.symbolic or self._is_value(counter, loop):
             return False
         lowest_bits = (each.increment.constant & -each.increment.constant for each in walking)
-        made_of = {end, *(name for each in walking for name, _ in each.start)}
-        return any(each <= 2 * abs(gain.constant) for each in lowest_bits) and all(
-            self.flow.is_invariant(each, around) for each in made_of
-        )
+        stands_for_it = any(each <= 2 * abs(gain.constant) for each in lowest_bits)
+        return stands_for_it and self.flow.is_invariant(end, around)
 
     def _is_value(self, counter: str, loop: Loop) -> bool:
         """Whether something else than an address, a step or the loop's test wants a counter, or its next value."""

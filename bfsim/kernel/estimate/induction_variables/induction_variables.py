@@ -40,6 +40,10 @@ class InductionVariable:
         return f"{self.name}.stride" if self.increment.symbolic else None
 
 
+BYTE = 8
+COUNTING = ("getelementptr", "icmp", "phi", "br")
+
+
 class InductionVariables:
     """The induction variables of one routine; `of` finds that of an access by its identity."""
 
@@ -63,10 +67,52 @@ class InductionVariables:
         for variable in self.all:
             variable.steps_free = self._steps_free(variable)
             variable.offset_apart = not any(offset == 0 for _, _, offset in variable.accesses)
+        indexed = [each for each in self.all if self._is_indexed(each)]
+        self.all = [each for each in self.all if each not in indexed]
+        self.of = {access: each for access, each in self.of.items() if each not in indexed}
         for variable in self.all:
             variable.neighbour = next((other for other in self.all if self._serves(other, variable)), None)
             if variable.neighbour is not None:
                 variable.distance = self._distance(variable.neighbour, variable)
+
+    def _is_indexed(self, variable: InductionVariable) -> bool:
+        """Whether one byte is accessed by a counter that every iteration wants anyway: its address costs less than a pointer that has to be stepped.
+
+        [determine_group_iv_cost_address: six, and one for the array's register; a pointer one, five for its step, and two for its register]
+        """
+        if variable.steps_free or variable.increment.symbolic or len(variable.accesses) > 1:
+            return False
+        if variable.accesses[0][1].bits != BYTE:
+            return False
+        loop, terms = variable.loop, self.evolution.affine(variable.accesses[0][1].operands[-1]).terms
+        counters = [name for name, times in terms if times == 1]
+        return any(
+            self.flow.defined.get(each, ("",))[0] == loop.header and self._stays(each, loop)
+            for each in counters
+        )
+
+    def _stays(self, counter: str, loop: Loop) -> bool:
+        """Whether a counter of `loop` is wanted in each iteration or behind the loop, or no pointer can end that for it: for that there would have to be a division."""
+        increment = self.evolution.increment(counter, loop)
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        if increment is None or test is None:
+            return False
+        steps = {
+            each.result
+            for each in self.flow.users[counter]
+            if each.opcode == "add" and self.evolution.increment(each.result or "", loop) is not None
+        }
+        names = {counter, *steps}
+        divides = abs(increment.constant).bit_count() > 1 and not is_number(test.operands[1])
+        if divides and test.operands[0] in names:
+            return True
+        return any(
+            names & {*each.operands}
+            and (label not in loop.blocks or (each.result not in names and each.opcode not in COUNTING))
+            for label, block in self.flow.blocks.items()
+            if label not in loop.blocks or self.flow.every_iteration(label, loop)
+            for each in block.instructions
+        )
 
     def _serves(self, one: InductionVariable, other: InductionVariable) -> bool:
         """Whether the pointer of one variable takes the place of another's [cost of an iv use, tree-ssa-loop-ivopts.cc].
