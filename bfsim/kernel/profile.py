@@ -182,7 +182,8 @@ VDSP_O2 = CompilerProfile(
              Rule.CODE_HOISTING, Rule.THREADED_CHOICES, Rule.KEPT_BOUNDS, Rule.CROSS_JUMPS, Rule.POINTER_DIFFERENCES,
              Rule.FIELD_ADDRESSES, Rule.SPILLED_SUMS, Rule.OPPOSITE_FLAGS, Rule.EVEN_ADDRESSES,
              Rule.FIRST_ITERATIONS, Rule.COMPUTED_STARTS, Rule.ENDS_OF_RANGES, Rule.EITHER_BANK,
-             Rule.COMMON_FACTORS, Rule.KNOWN_VALUES),  # GCC's alone: nothing says that VisualDSP++ does so
+             Rule.COMMON_FACTORS, Rule.KNOWN_VALUES,
+             Rule.ADJACENT_NUMBERS),  # GCC's alone: nothing says that VisualDSP++ does so
 )  # fmt: skip
 GCC_ADI = replace(
     GCC, name="gcc-adi", interlocks=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]

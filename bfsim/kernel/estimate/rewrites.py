@@ -15,6 +15,7 @@ from bfsim.kernel.estimate.arithmetic.saturations import without_saturations
 from bfsim.kernel.estimate.arithmetic.shifted_products import with_shifted_products
 from bfsim.kernel.estimate.arithmetic.strength_reduction import with_reduced_strength
 from bfsim.kernel.estimate.arithmetic.summed_indices import with_summed_indices
+from bfsim.kernel.estimate.choices.adjacent_numbers import with_adjacent_numbers
 from bfsim.kernel.estimate.choices.extremes import with_extremes
 from bfsim.kernel.estimate.choices.known_values import with_known_values
 from bfsim.kernel.estimate.choices.narrow_sums import with_narrow_sums
@@ -124,6 +125,8 @@ def _rewritten_early(routine: Routine, profile: CompilerProfile) -> Routine:
     routine = without_repeated_loads(routine)
     if profile.applies(Rule.BIT_TESTS):
         routine = with_range_tests(routine)
+    if profile.applies(Rule.ADJACENT_NUMBERS):
+        routine = with_adjacent_numbers(routine)
     if profile.applies(Rule.REMAINDERS):
         routine = with_remainders(routine)
     if profile.applies(Rule.NARROW_CHOICES):
