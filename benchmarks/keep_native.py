@@ -24,7 +24,6 @@ from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
 from bfsim.machine.retiming.stretch_writer import write_stretch
-from bfsim.machine.retiming.work_check import are_accesses, calls_in
 
 FOLDER = Path(native.__file__).parent / KEPT
 ENTRIES = (
@@ -46,8 +45,6 @@ ENTRIES = (
     charge_events,
     charge_sites,
     write_stretch,
-    calls_in,
-    are_accesses,
 )
 
 

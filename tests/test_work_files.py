@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import json
 import zipfile
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +14,11 @@ import zstandard
 from bfsim.errors import WorkError
 from bfsim.kernel.calls import access_log as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.work import BYTE, CALL, KIND, SITE, FrameWork
-from bfsim.machine.retiming.work_check import check
+from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, FrameWork
 from bfsim.run import simulate
+from bfsim.running.frame_file import TABLES, read, written
 from bfsim.running.work_file import FORMAT
-from tests.work_files import changed, rewritten
+from tests.work_files import changed, rewritten, unpacked
 
 FRAMES = 2
 
@@ -176,23 +176,78 @@ def test_what_was_run_must_be_a_table(work: Path, folder: Path) -> None:
             simulate(frames=FRAMES, work=folder / "odd.work")
 
 
-NOTHING = FrameWork(
-    core="A",
-    operations=np.zeros((0, 5), np.int64),
-    accesses=np.zeros((0, 5), np.uint32),
-    events=np.zeros((0, 3), np.int64),
-    copies=np.zeros((0, 6), np.int64),
-    calls=(),
-    accounts=(),
-)
+@pytest.mark.parametrize(
+    ("kind", "column", "number"),
+    [(w.RUN, 0, CALL + 1), (w.RUN, 0, -1), (w.RUN, 1, -1), (w.RUN, 2, 1 << 41), (w.SET_UP, 3, w.MAX_ACCOUNTS), (w.AWAIT, 1, 0)],
+)  # fmt: skip
+def test_numbers_that_the_bus_cannot_play_are_refused(
+    work: Path, folder: Path, kind: int, column: int, number: int
+) -> None:
+    """Kinds that there are not, negative cycles and such of centuries, accounts that have no room."""
+
+    def change(done: FrameWork) -> None:
+        done.operations[done.operations[:, 0] == kind, column] = number
+
+    with pytest.raises(WorkError, match="a number that is out of its range"):
+        simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
 
 
 @pytest.mark.parametrize(
-    "operation",
-    [(CALL + 1, 0, 0, 0, 0), (w.RUN, -1, 0, 0, 0), (w.ACCESS, 1, 0, 1, 0), (w.SET_UP, 1, 0, w.MAX_ACCOUNTS, 0), (CALL, 0, 0, 0, 0)],
+    ("column", "number"), [(KIND, log.FETCHES + 1), (OWNER, 1 << 20), (BYTE, log.OFFSET_MASK + 1), (SITE, w.MAX_SITES)]
 )  # fmt: skip
-def test_numbers_that_the_bus_cannot_play_are_refused(operation: tuple[int, ...]) -> None:
-    """Kinds that there are not, negative cycles, accesses and calls that are missing, accounts that have no room."""
-    check(NOTHING, 3)
-    with pytest.raises(ValueError, match=r"out of its range|as many calls"):
-        check(replace(NOTHING, operations=np.array([operation], np.int64)), 3)
+def test_accesses_that_the_bus_cannot_play_are_refused(
+    work: Path, folder: Path, column: int, number: int
+) -> None:
+    """They would be of no kind, or counted in memory that is somebody else's."""
+
+    def change(done: FrameWork) -> None:
+        done.accesses[len(done.accesses) // 2, column] = number
+
+    with pytest.raises(WorkError, match="a number that is out of its range"):
+        simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
+
+
+def test_calls_and_accesses_that_are_missing_are_refused(work: Path, folder: Path) -> None:
+    """There must be as many calls as operations that stand for one, and the accesses that operations have."""
+
+    def more_calls(done: FrameWork) -> None:
+        done.operations[done.operations[:, 0] == w.RUN, 0] = CALL
+
+    def more_accesses(done: FrameWork) -> None:
+        done.operations[np.flatnonzero(done.operations[:, 0] == w.ACCESS)[-1], 3] += 1
+
+    for change, said in (
+        (more_calls, r"odd\.work must be a whole file"),
+        (more_accesses, "that is not there"),
+    ):
+        with pytest.raises(WorkError, match=said):
+            simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
+
+
+@pytest.mark.parametrize(
+    "odd", [{"rows": {"operations": -1}}, {"rows": {"accesses": 1 << 40}}, {"widths": [-2] * 19}, {"widths": [4] * 19}, {"widths": []}]
+)  # fmt: skip
+def test_columns_that_are_not_in_the_file_are_refused(odd: dict[str, Any]) -> None:
+    """Compiled code reads them, which would read memory behind the file."""
+    head = {"calls": [], "accounts": [], "widths": [0] * 19, "rows": dict.fromkeys(TABLES, 0)}
+    assert read("A", json.dumps(head).encode() + b"\n").calls == ()
+    head = {**head, **odd, "rows": dict.fromkeys(TABLES, 0) | odd.get("rows", {})}
+    with pytest.raises(ValueError, match=r"columns must be|not in range|shorter than"):
+        read("A", json.dumps(head).encode() + b"\n")
+
+
+def test_a_frame_is_read_as_it_was_written() -> None:
+    """Whatever its numbers: narrow and wide ones, calls without accesses, and stamps that begin anew with each call."""
+    among = np.random.default_rng(0)
+    for top in (1 << 6, 1 << 12, 1 << 30):
+        counts = [0, 3, 0, 5, 1]
+        accesses = among.integers(0, top, (sum(counts), 5)).astype(np.uint32)
+        operations = np.array([(w.ACCESS, 1, top, count, 0) for count in counts], np.int64)
+        events, copies = among.integers(0, top, (4, 3)), among.integers(0, top, (2, 6))
+        work = FrameWork(
+            core="A", operations=operations, accesses=accesses, events=events, copies=copies, calls=(("post", ("x",)),), accounts=("y",)
+        )  # fmt: skip
+        again = unpacked(read("A", written(work)))
+        for table in TABLES:
+            assert (getattr(again, table) == getattr(work, table)).all(), table
+        assert (again.calls, again.accounts) == (work.calls, work.accounts)

@@ -8,10 +8,38 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import zstandard
 
-from bfsim.machine.retiming.work import FrameWork
-from bfsim.running.work_file import _read, _written
+from bfsim.machine.bus import state as w
+from bfsim.machine.retiming.packed_work import ACCESSES, EVENTS, OPERATIONS, PackedWork
+from bfsim.machine.retiming.work import BYTE, STAMP, FrameWork
+from bfsim.running.frame_file import TABLES, read, written
+
+
+def unpacked(work: PackedWork) -> FrameWork:
+    """Return the tables of a packed work."""
+    operations, accesses, events = (
+        np.column_stack([work.column(first + number, work.rows[name]) for number in range(TABLES[name])])
+        .astype(np.int64)
+        .reshape(-1, TABLES[name])
+        for name, first in (("operations", OPERATIONS), ("accesses", ACCESSES), ("events", EVENTS))
+    )
+    begin = 0
+    for count in operations[operations[:, 0] == w.ACCESS, 3]:
+        accesses[begin : begin + count, STAMP] = np.cumsum(accesses[begin : begin + count, STAMP])
+        begin += count
+    accesses[:, BYTE] = np.cumsum(accesses[:, BYTE])
+    events[:, 1] = np.cumsum(events[:, 1])
+    return FrameWork(
+        core=work.core,
+        operations=operations,
+        accesses=accesses.astype(np.uint32),
+        events=events,
+        copies=work.copies,
+        calls=work.calls,
+        accounts=work.accounts,
+    )
 
 
 def changed(work: Path, path: Path, change: Callable[[FrameWork], None]) -> Path:
@@ -20,9 +48,9 @@ def changed(work: Path, path: Path, change: Callable[[FrameWork], None]) -> Path
         for name in old.namelist():
             content = old.read(name)
             if name == "A/000001":
-                done = _read("A", zstandard.decompress(content))
+                done = unpacked(read("A", zstandard.decompress(content)))
                 change(done)
-                content = zstandard.compress(_written(done))
+                content = zstandard.compress(written(done))
             new.writestr(name, content)
     return path
 

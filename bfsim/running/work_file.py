@@ -1,8 +1,7 @@
 """The file of a recorded run: what its cores did, to be played again on other hardware. Opening it runs nothing.
 
-It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork`, compressed with Zstandard: a line
-of JSON and then the columns of its tables, each in the narrowest integers that hold it; `end.json`, written last, says
-what was known only then.
+It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork` (`frame_file`), compressed with Zstandard;
+`end.json`, written last, says what was known only then.
 """
 
 from __future__ import annotations
@@ -13,41 +12,22 @@ import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import IO, Any
 
-import numpy as np
 import zstandard
-from numpy.typing import NDArray
 
 from bfsim.errors import ConfigError, WorkError
 from bfsim.fields import require_types
 from bfsim.files.save import writing
 from bfsim.kernel import keys
-from bfsim.machine.retiming.work import (
-    ACCESS_COLUMNS,
-    BYTE,
-    COPY_COLUMNS,
-    DESTINATION_BYTE,
-    EVENT_COLUMNS,
-    OPERATION_COLUMNS,
-    SOURCE_BYTE,
-    STAMP,
-    FrameWork,
-    Place,
-)
+from bfsim.machine.retiming.packed_work import PackedWork
+from bfsim.machine.retiming.work import FrameWork
 from bfsim.machine.retiming.work_check import check
+from bfsim.running import frame_file
 
-FORMAT = 6
-WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
-TABLES = {
-    "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
-}  # fmt: skip
-IN_STEPS = {"accesses": (STAMP, BYTE), "events": (1,), "copies": (SOURCE_BYTE, DESTINATION_BYTE)}
-"""Columns that are written as differences from row to row: stamps, bytes and counters, which go up in steps."""
-SIGNED = dict.fromkeys(TABLES, np.int64) | {"accesses": np.int32}
-"""How the numbers of a table are written: steps go round where they would not fit."""
+FORMAT = 7
 LARGEST_FRAME_BYTES = 1 << 30
 """What a frame decompresses to, at most: some hundred times as much as one of the built-in firmware has in SDRAM."""
 
@@ -94,7 +74,7 @@ class WorkWriter(AbstractContextManager["WorkWriter"]):
     def add(self, work: FrameWork) -> None:
         """Write what a core did in a frame."""
         number = self._counts[work.core] = self._counts.get(work.core, 0) + 1
-        self._write(f"{work.core}/{number - 1:06}", zstandard.compress(_written(work)))
+        self._write(f"{work.core}/{number - 1:06}", zstandard.compress(frame_file.written(work)))
 
     def add_obstacle(self, text: str) -> None:
         """Note why the run cannot be played again."""
@@ -133,12 +113,12 @@ class WorkReader:
         except (KeyError, ConfigError, RecursionError) as error:
             raise self._broken() from error
 
-    def works(self, core: str) -> Iterator[FrameWork]:
+    def works(self, core: str) -> Iterator[PackedWork]:
         """Yield what a core did, frame by frame."""
         names = [each for each in self._zip.namelist() if each.startswith(f"{core}/")]
         for name in names:
             try:
-                work = _read(core, _decompressed(self._zip.read(name)))
+                work = frame_file.read(core, _decompressed(self._zip.read(name)))
                 check(work, len(self.recorded.buffers))
             except (*_DAMAGE, OSError) as error:
                 raise self._broken() from error
@@ -187,56 +167,3 @@ def _decompressed(content: bytes) -> bytes:
     if not 0 < zstandard.frame_content_size(content) <= LARGEST_FRAME_BYTES:
         raise ValueError("a frame must say how large it is, and not be larger than any")
     return zstandard.decompress(content)
-
-
-def _written(work: FrameWork) -> bytes:
-    columns: list[tuple[int, NDArray[Any]]] = []
-    for table in TABLES:
-        for number, column in enumerate(getattr(work, table).T):
-            steps = (
-                np.diff(column, prepend=column.dtype.type(0)) if number in IN_STEPS.get(table, ()) else column
-            )
-            steps = steps.view(SIGNED[table])
-            width = next(
-                each
-                for each in WIDTHS
-                if np.iinfo(each).min <= steps.min(initial=0) and steps.max(initial=0) <= np.iinfo(each).max
-            )
-            columns.append((WIDTHS.index(width), steps.astype(width)))
-    head = {
-        "calls": work.calls, "accounts": work.accounts, "widths": [width for width, _ in columns],
-        "rows": {table: len(getattr(work, table)) for table in TABLES},
-    }  # fmt: skip
-    return json.dumps(head, default=asdict).encode() + b"\n" + b"".join(each.tobytes() for _, each in columns)
-
-
-def _read(core: str, content: bytes) -> FrameWork:
-    line = content.index(b"\n") + 1
-    head = json.loads(content[:line])
-    tables: dict[str, Any] = {}
-    at, widths = line, iter(head["widths"])
-    for name, columns in TABLES.items():
-        rows = int(head["rows"][name])
-        signed = SIGNED[name]
-        table = np.empty((columns, rows), signed).T  # each column in one piece
-        tables[name] = table.view(np.uint32) if name == "accesses" else table
-        for number in range(columns):
-            width = WIDTHS[next(widths)]
-            written = np.frombuffer(content, width, rows, at)
-            if number in IN_STEPS.get(name, ()):
-                np.cumsum(written, dtype=signed, out=table[:, number])
-            else:
-                table[:, number] = written
-            at += rows * width.itemsize
-    return FrameWork(
-        core=core,
-        calls=tuple(
-            (name, tuple(_argument(each) for each in arguments)) for name, arguments in head["calls"]
-        ),
-        accounts=tuple(head["accounts"]),
-        **tables,
-    )
-
-
-def _argument(each: Any) -> Any:
-    return Place(**each) if isinstance(each, dict) and each.keys() == {"owner", "first", "nbytes"} else each

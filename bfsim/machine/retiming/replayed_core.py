@@ -20,6 +20,7 @@ from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.synchronisation.semaphore import Semaphore
 from bfsim.machine.core.synchronisation.spin_lock import SpinLock
 from bfsim.machine.memories import Row
+from bfsim.machine.retiming.packed_work import PackedWork
 from bfsim.machine.retiming.stretch_writer import IN_L1, StretchWriter
 from bfsim.machine.retiming.work import (
     DESTINATION,
@@ -28,7 +29,6 @@ from bfsim.machine.retiming.work import (
     SOURCE,
     SOURCE_BYTE,
     STREAM,
-    FrameWork,
     Place,
     Table,
 )
@@ -41,7 +41,7 @@ Wait = Generator[Any, Any, Any]
 class ReplayedCore(Core):
     """A core that plays `works`. `kernels`: those of its firmware, by symbol."""
 
-    def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork]) -> None:
+    def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[PackedWork]) -> None:
         super().__init__(parts)
         assert isinstance(parts.bus, WovenBus), "recorded work is played by the weave"
         self._bus = parts.bus
@@ -86,7 +86,7 @@ class ReplayedCore(Core):
                     f"the work of core {self.name} must be as it was recorded, but names what is not there: {shown(error)}"
                 ) from error
 
-    def _play_work(self, work: FrameWork) -> Wait:
+    def _play_work(self, work: PackedWork) -> Wait:
         self._account_names += work.accounts
         if len(work.copies):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])

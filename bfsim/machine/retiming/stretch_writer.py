@@ -13,31 +13,53 @@ from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
-from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, FrameWork, Table
+from bfsim.machine.retiming.packed_work import (
+    ACCESSES,
+    BEGIN,
+    COLUMN_WORDS,
+    EVENTS,
+    OPERATIONS,
+    PACKED_COLUMNS,
+    WIDTH,
+    WIDTHS,
+    PackedWork,
+    Views,
+    number_at,
+)
+from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, Table
+from bfsim.machine.retiming.work_check import is_access, is_number, is_operation
 from bfsim.machine_code.built_in import built_in
 
 IN_L1 = -1
 """Where an owner begins whose memory is in L1: what accesses it is not in the log."""
-NOT_THERE, NO_CODE, NO_ROOM = -1, -2, -3
-"""Returned in place of a number of operations: what one refers to is not there, or no code, or no room for the log."""
+NOT_THERE, NO_CODE, NO_ROOM, ODD = -1, -2, -3, -4
+"""Returned in place of a number of operations: what one refers to is not there, or no code, no room for the log, or a number is none."""
 PROBLEMS = {
     NOT_THERE: "a call, a copy, an account, a counter or memory that is not there",
     NO_CODE: "code is fetched from where none lies",
     NO_ROOM: "more accesses than a core has room for",
+    ODD: "a number that is out of its range",
 }
 
-# What is written: words of one array.
+# What is written: words of one array. Behind them are those of the columns (`packed_work`).
 (
     ROWS, NEXT,        # operations of the frame, and the next one to be written
-    ACCESSES, ACCESS,  # the same of accesses,
-    EVENTS, EVENT,     # and of rows of events,
+    ACCESS_ROWS, ACCESS, PLACE,    # the same of accesses, and the byte of the last one,
+    EVENT_ROWS, EVENT, COUNTER,    # and of rows of events, and the counter of the last one,
     PASSED,            # which are counted up to this call of firmware
-    COPIES, ACCOUNTS,  # how many there are of each so far
+    COPIES, ACCOUNTS, OWNERS,  # how many there are of each so far
     MMR_WRITE, MMR_READ,  # cycles of a core for a register
-) = range(11)  # fmt: skip
-FRAME_WORDS = 11
+) = range(14)  # fmt: skip
+FRAME_WORDS = 14
 
 Words = MutableSequence[int]
+
+
+@native
+def at_column(frame: Words, number: int) -> tuple[int, int]:
+    """Return where a column begins, and the number of its width."""
+    at = FRAME_WORDS + number * COLUMN_WORDS
+    return frame[at + BEGIN], frame[at + WIDTH]
 
 
 @native
@@ -52,86 +74,114 @@ def is_there(frame: Words, kind: int, one: int, three: int, four: int, calls: in
 
 @native
 def write_accesses(
-    state: w.State, core: int, frame: Words, accesses: Words, firsts: Words, count: int, logged: int
+    state: w.State, core: int, frame: Words, views: Views, firsts: Words, count: int, logged: int
 ) -> int:
     """Write the next `count` accesses of a frame behind those that are `logged`, without those to L1; return how many are logged then."""
     entries = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
-    rows, access = frame[ACCESSES], frame[ACCESS]
-    if access + count > rows:
+    (stamps, stamp_width), (kinds, kind_width) = (
+        at_column(frame, ACCESSES + STAMP), at_column(frame, ACCESSES + KIND),
+    )  # fmt: skip
+    (owners, owner_width), (steps, step_width) = (
+        at_column(frame, ACCESSES + OWNER), at_column(frame, ACCESSES + BYTE),
+    )  # fmt: skip
+    sites, site_width = at_column(frame, ACCESSES + SITE)
+    access, stamp, byte, known = frame[ACCESS], 0, frame[PLACE], frame[OWNERS]
+    if access + count > frame[ACCESS_ROWS]:
         return NOT_THERE
     if logged + count > w.LOG_ENTRIES:
         return NO_ROOM
-    frame[ACCESS] = access + count
     for number in range(access, access + count):
-        first = firsts[accesses[OWNER * rows + number]]
+        stamp += number_at(views, stamps, stamp_width, number)
+        byte += number_at(views, steps, step_width, number)
+        kind, owner = (
+            number_at(views, kinds, kind_width, number), number_at(views, owners, owner_width, number),
+        )  # fmt: skip
+        site = number_at(views, sites, site_width, number)
+        if not is_access(stamp, kind, byte, site) or not 0 <= owner < known:
+            return ODD
+        first = firsts[owner]
         if first != IN_L1:
-            stamp, kind = accesses[STAMP * rows + number], accesses[KIND * rows + number]
-            site = accesses[SITE * rows + number]
             if kind == log.FETCHES and state[site_at(core, site) + w.CODE_WORDS] == 0:
                 return NO_CODE
-            place = first + accesses[BYTE * rows + number]
-            if place > log.OFFSET_MASK:
+            if first + byte > log.OFFSET_MASK:
                 return NOT_THERE
-            state[entries + logged] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | place
+            state[entries + logged] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | first + byte
             state[entries + w.LOG_ENTRIES + logged] = site
             logged += 1
+    frame[ACCESS], frame[PLACE] = access + count, byte
     return logged
 
 
 @native
-def pass_call(frame: Words, events: Words, counters: Words, count: int) -> int:
-    """Count the events up to the next call of firmware, and go on behind it; return 0, or NOT_THERE for a counter not among `count`.
-
-    The arrays: the words above, columns of events one after the other, and the core's counters.
-    """
-    rows = frame[EVENTS]
-    while frame[EVENT] < rows and events[frame[EVENT]] == frame[PASSED]:
-        counter = events[rows + frame[EVENT]]
-        if counter >= count:
+def pass_call(frame: Words, views: Views, counters: Words, count: int) -> int:
+    """Count the events up to the next call of firmware, and go on behind it; return 0, or NOT_THERE for a counter not among `count`."""
+    (calls, call_width), (steps, step_width) = at_column(frame, EVENTS), at_column(frame, EVENTS + 1)
+    amounts, amount_width = at_column(frame, EVENTS + 2)
+    event, counter = frame[EVENT], frame[COUNTER]
+    while event < frame[EVENT_ROWS] and number_at(views, calls, call_width, event) == frame[PASSED]:
+        counter += number_at(views, steps, step_width, event)
+        amount = number_at(views, amounts, amount_width, event)
+        if not 0 <= counter < count:
             return NOT_THERE
-        counters[counter] += events[2 * rows + frame[EVENT]]
-        frame[EVENT] += 1
+        if not is_number(amount):
+            return ODD
+        counters[counter] += amount
+        event += 1
+    frame[EVENT], frame[COUNTER] = event, counter
     frame[PASSED] += 1
     frame[NEXT] += 1
     return 0
 
 
+@native
+def operation_at(frame: Words, views: Views, row: int) -> tuple[int, int, int, int, int]:
+    """Return the numbers of an operation."""
+    (at, width), (one_at, one_width) = at_column(frame, OPERATIONS), at_column(frame, OPERATIONS + 1)
+    (two_at, two_width), (three_at, three_width) = (
+        at_column(frame, OPERATIONS + 2), at_column(frame, OPERATIONS + 3),
+    )  # fmt: skip
+    four_at, four_width = at_column(frame, OPERATIONS + 4)
+    return (
+        number_at(views, at, width, row),
+        number_at(views, one_at, one_width, row),
+        number_at(views, two_at, two_width, row),
+        number_at(views, three_at, three_width, row),
+        number_at(views, four_at, four_width, row),
+    )
+
+
 @native_entry(
-    "int64", "int64*", "int64", "int64*", "int64*", "uint32*", "int64*", "int64*", "int64*",
+    "int64", "int64*", "int64", "int64*", "int8*", "int16*", "int32*", "int64*", "int64*", "int64*",
     "int64*", "int64", "int64*", "int64",
 )  # fmt: skip
 def write_stretch(
-    state_at: Any, core: int, frame_at: Any, operations_at: Any, accesses_at: Any, events_at: Any, firsts_at: Any, copies_at: Any,
-    kinds_at: Any, calls: int, counters_at: Any, counters: int,
+    state_at: Any, core: int, frame_at: Any, octets_at: Any, halves_at: Any, words_in_at: Any, longs_at: Any, firsts_at: Any,
+    copies_at: Any, kinds_at: Any, calls: int, counters_at: Any, counters: int,
 ) -> int:  # fmt: skip
     """Write the next operations of a frame up to a call of its firmware or its end, or as many as a stretch can have; return how many.
 
     Where they are fewer than that it goes on behind the call, up to which the core's kernels have counted their events.
 
-    The arrays: the words above; columns of operations, of accesses and of events one after the other; where the memory of each owner
-    begins or IN_L1; rows of what is behind COPY for each copy; what running each of so many `calls` is to the bus; and the core's counters.
+    The arrays: the words above; the octets of a `PackedWork` in each of its widths; where the memory of each owner begins or IN_L1; rows of
+    what is behind COPY for each copy; what running each of so many `calls` is to the bus; and the core's counters.
     """
-    state, frame, operations, accesses = (
-        words_at(state_at),
-        words_at(frame_at),
-        words_at(operations_at),
-        words_at(accesses_at),
-    )
-    firsts, copies, kinds = words_at(firsts_at), words_at(copies_at), words_at(kinds_at)
+    state, frame, firsts = words_at(state_at), words_at(frame_at), words_at(firsts_at)
+    views = words_at(octets_at), words_at(halves_at), words_at(words_in_at), words_at(longs_at)
+    copies, kinds = words_at(copies_at), words_at(kinds_at)
     at, rows = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS, frame[ROWS]
     written = logged = 0
     while frame[NEXT] < rows and written < w.MAX_OPERATIONS:
-        number = frame[NEXT]
-        kind, one, two = operations[number], operations[rows + number], operations[2 * rows + number]
-        three, four = operations[3 * rows + number], operations[4 * rows + number]
+        kind, one, two, three, four = operation_at(frame, views, frame[NEXT])
+        if not is_operation(kind, one, two, three, four):
+            return ODD
         if kind == CALL:
-            passed = pass_call(frame, words_at(events_at), words_at(counters_at), counters)
+            passed = pass_call(frame, views, words_at(counters_at), counters)
             return passed if passed < 0 else written
         if not is_there(frame, kind, one, three, four, calls):
             return NOT_THERE
         if kind == w.ACCESS:
             kind, begin = kinds[four], logged
-            logged = write_accesses(state, core, frame, accesses, firsts, three, logged)
+            logged = write_accesses(state, core, frame, views, firsts, three, logged)
             if logged < 0:
                 return logged
             three, four = begin, logged
@@ -143,7 +193,7 @@ def write_stretch(
         state[at], state[at + 1], state[at + 2], state[at + 3], state[at + 4] = kind, one, two, three, four
         at += w.OPERATION_WORDS
         written += 1
-        frame[NEXT] = number + 1
+        frame[NEXT] += 1
     return written
 
 
@@ -155,14 +205,17 @@ class StretchWriter:
     """
 
     def __init__(
-        self, state: Any, core: int, work: FrameWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
+        self, state: Any, core: int, work: PackedWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
     ) -> None:  # fmt: skip
-        words = np.zeros(FRAME_WORDS, np.int64)
-        words[[ROWS, ACCESSES, EVENTS]] = len(work.operations), len(work.accesses), len(work.events)
-        words[[COPIES, ACCOUNTS]] = len(copies), accounts
+        words = np.zeros(FRAME_WORDS + PACKED_COLUMNS * COLUMN_WORDS, np.int64)
+        words[[ROWS, ACCESS_ROWS, EVENT_ROWS]] = (
+            work.rows["operations"], work.rows["accesses"], work.rows["events"],
+        )  # fmt: skip
+        words[[COPIES, ACCOUNTS, OWNERS]] = len(copies), accounts, len(firsts)
         words[[MMR_WRITE, MMR_READ]] = events.mmr_write_cclk, events.mmr_read_cclk
-        tables = (np.ascontiguousarray(each.T) for each in (work.operations, work.accesses, work.events))
-        self._kept = words, *tables, firsts, copies
+        words[FRAME_WORDS:] = work.columns.reshape(-1)
+        octets = np.frombuffer(work.octets, np.int8)
+        self._kept: tuple[NDArray[Any], ...] = (words, *[octets] * len(WIDTHS), firsts, copies)
         self._write = built_in(
             write_stretch.address(), 4, np.asarray(state).ctypes.data, core, *(each.ctypes.data for each in self._kept)
         )  # fmt: skip

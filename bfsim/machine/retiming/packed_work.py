@@ -1,0 +1,64 @@
+"""`FrameWork` as a file has it, in columns of narrow numbers, and read from there, compiled: tables of it would take longer to make than to play."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.kernel.native.entries import native
+from bfsim.machine.retiming.work import ACCESS_COLUMNS, EVENT_COLUMNS, OPERATION_COLUMNS, Table
+
+WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
+ALIGNED_BYTES = 8
+"""A column begins at a multiple of so many bytes."""
+
+BEGIN, WIDTH = range(2)
+"""Words of a column: its first byte, and the number of its width."""
+COLUMN_WORDS = 2
+OPERATIONS, ACCESSES = 0, OPERATION_COLUMNS
+EVENTS = ACCESSES + ACCESS_COLUMNS
+"""The first column of each table."""
+PACKED_COLUMNS = EVENTS + EVENT_COLUMNS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PackedWork:
+    """What one core did, as `FrameWork`, with the numbers of three tables in `octets`, as they were written.
+
+    `columns`: words as above of each column of `operations`, `accesses` and `events`, of which `rows` says how many there are. Of accesses
+    each stamp is the difference to the one before it in its call, and each byte that to the one before it; so is each counter of events.
+    """
+
+    core: str
+    octets: bytes
+    columns: NDArray[np.int64]
+    rows: Mapping[str, int]
+    copies: Table
+    calls: tuple[tuple[str, tuple[Any, ...]], ...]
+    accounts: tuple[str, ...]
+
+    def column(self, number: int, rows: int) -> NDArray[Any]:
+        """Return the numbers of a column as they are written. Raises ValueError where they are not all there."""
+        begin, width = self.columns[number].tolist()
+        return np.frombuffer(self.octets, WIDTHS[width], rows, begin)
+
+
+Views = tuple[Sequence[int], Sequence[int], Sequence[int], Sequence[int]]
+"""The octets of a work, as numbers of each of the widths."""
+
+
+@native
+def number_at(views: Views, begin: int, width: int, row: int) -> int:
+    """Return a number of a column."""
+    octets, halves, words, longs = views
+    if width == 0:
+        return octets[begin + row]
+    if width == 1:
+        return halves[(begin >> 1) + row]
+    if width == 2:
+        return words[(begin >> 2) + row]
+    return longs[(begin >> 3) + row]
