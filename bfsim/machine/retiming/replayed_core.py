@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
+from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
@@ -53,6 +54,7 @@ class ReplayedCore(Core):
         self._know(np.zeros(0, np.int64))
         self._account_names: list[str] = []
         self._copies = np.zeros((0, 3), np.int64)
+        self._plans: dict[int, int] = {}  # their numbers, by the kinds of copies
         self._known_calls: dict[str, Callable[..., Wait | None]] = {
             "prepare": self._prepare,
             "stage": self._enter,
@@ -127,15 +129,22 @@ class ReplayedCore(Core):
 
         Those of a kind differ only in where they go.
         """
-        sources, destinations = (
-            self._firsts[copies[:, owner]] + copies[:, byte]
-            for owner, byte in ((SOURCE, SOURCE_BYTE), (DESTINATION, DESTINATION_BYTE))
-        )
-        within_word = (sources | destinations) % self._chip.dma.word_bytes
-        kinds = np.column_stack([copies[:, [STREAM, SOURCE, DESTINATION, NBYTES]], within_word])
-        _, examples, kind_of = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
-        plans = self._bus.stretches.keep_plans([self._plan(*copies[each].tolist()) for each in examples])
-        return np.column_stack([plans[kind_of.reshape(-1)], sources, destinations])
+        owners, word_bytes = copies[:, [SOURCE, DESTINATION]].T, self._chip.dma.word_bytes
+        sources, destinations = self._firsts[owners] + copies[:, [SOURCE_BYTE, DESTINATION_BYTE]].T
+        kinds = copies[:, STREAM]  # and all else that they have in common, in one number
+        for more, room in (
+            (owners[0], w.MAX_OWNERS),
+            (owners[1], w.MAX_OWNERS),
+            (copies[:, NBYTES], log.OFFSET_MASK + 1),
+        ):
+            kinds = kinds * room + more
+        kinds = kinds * word_bytes + (sources | destinations) % word_bytes
+        found, examples, kind_of = np.unique(kinds, return_index=True, return_inverse=True)
+        for kind, example in zip(found.tolist(), examples.tolist(), strict=True):
+            if kind not in self._plans:
+                (self._plans[kind],) = self._bus.stretches.keep_plans([self._plan(*copies[example].tolist())])
+        plans = np.array([self._plans[each] for each in found.tolist()])
+        return np.stack([plans[kind_of], sources, destinations], axis=1)
 
     def _plan(
         self, stream: int, source: int, from_byte: int, destination: int, to_byte: int, nbytes: int
