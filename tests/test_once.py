@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
-from bfsim.process.once import Known, once, remembering
+from bfsim.process.once import Known, once, remembering, remembering_here
 
 CALLED: list[object] = []
 
@@ -29,6 +29,16 @@ def test_without_a_block_all_is_called() -> None:
     """As often as it is asked for."""
     assert told(1) == told(1)
     assert CALLED == [1, 1]
+
+
+def test_a_block_within_another_one_remembers_what_that_does() -> None:
+    """And forgets at its end what it was the first to remember."""
+    with remembering_here():
+        first = told(1)
+        with remembering_here():
+            assert told(1) is first
+        assert told(1) is first
+    assert told(1) is not first
 
 
 def test_the_same_arguments_are_called_once_in_a_block() -> None:

@@ -9,15 +9,19 @@ from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from bfsim.kernel import Kernel
+from bfsim.process.once import once
 
 LIBRARIES = frozenset({*sys.stdlib_module_names, "bfsim", "numpy", "_pytest", "pytest"})
 """Packages whose code names no kernel of a firmware; to look there would take time only. Each `assert` in a file of tests names pytest's."""
 
+PLAIN = frozenset({str, int, float, bool, bytes, type(None)})
+"""Types of what holds nothing: half of all that firmware names."""
 WRAPPERS = (partial, cached_property, MethodType, staticmethod, classmethod, property)
 WRAPPED = ("__func__", "__self__", "fget", "fset", "func", "args", "keywords")
 """Where these keep what they are made of."""
 
 
+@once
 def kernels_named(main: object) -> tuple[Kernel, ...]:
     """Return the kernels that a function names, or that something named by it names, in the order of their names."""
     found: dict[Kernel, None] = {}
@@ -25,7 +29,7 @@ def kernels_named(main: object) -> tuple[Kernel, ...]:
     waiting: list[object] = [main]
     while waiting:
         each = waiting.pop()
-        if id(each) in seen:
+        if type(each) in PLAIN or id(each) in seen:
             continue
         seen[id(each)] = each
         if isinstance(each, Kernel):

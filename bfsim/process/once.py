@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from functools import wraps
 from pathlib import Path
@@ -26,6 +26,13 @@ def remembering(known: Known) -> Iterator[None]:
         yield
     finally:
         _KNOWN.reset(token)
+
+
+@contextmanager
+def remembering_here() -> Iterator[None]:
+    """In the `with` block, remember as above, unless that is done already."""
+    with nullcontext() if _KNOWN.get() is not None else remembering({}):
+        yield
 
 
 def once(function: Callable[Given, Returned]) -> Callable[Given, Returned]:

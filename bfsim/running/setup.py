@@ -16,6 +16,7 @@ from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.peripherals.device import Device
 from bfsim.machine.program import Calibration, Firmware
+from bfsim.process.once import remembering_here
 from bfsim.recording import RecordingReader
 from bfsim.running.building import build_for
 from bfsim.running.inputs import calibration_of
@@ -56,6 +57,7 @@ def fit(setup: RunSetup, reader: RecordingReader) -> FittedFirmware:
     """Return the firmware of a run as it is for a recording. Raises a BfsimError where it cannot be built, or has no room."""
     plain, calibration = setup.loaded.firmware, calibration_of(reader)
     size = FrameSize(reader.width, reader.height)
-    firmware, build = plain.calibrated(calibration), build_for(setup.loaded, setup.compiler.value)
-    link_map = place(plain, calibration, size, setup.placement, setup.board.value, build)
+    with remembering_here():  # which kernels there are is asked several times
+        firmware, build = plain.calibrated(calibration), build_for(setup.loaded, setup.compiler.value)
+        link_map = place(plain, calibration, size, setup.placement, setup.board.value, build)
     return FittedFirmware(firmware, calibration, size, build, link_map)
