@@ -170,8 +170,17 @@ def simulate(
         identity = identity_of(setup, fitted, source.name)
         if before:
             before(identity, source.total)
-        wants = {"has_pictures": bool(on_seen), "has_timeline": bool(on_spans)}
-        with retimed(machine, identity, source, loaded, record_work=record_work, work=work, **wants):
+        with retimed(
+            machine,
+            identity,
+            source,
+            loaded,
+            check,
+            record_work=record_work,
+            work=work,
+            has_pictures=bool(on_seen),
+            has_timeline=bool(on_spans),
+        ):
             told = _told_of_frames(progress, source.total, sanitizer)
             show = _shown_to(on_seen, source) if on_seen else None
             left = machine.run(check.watch(source), told, show, on_time, on_spans)

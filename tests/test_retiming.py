@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import sys
 from dataclasses import fields
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,11 @@ import pytest
 
 from bfsim.errors import ConfigError, WorkError
 from bfsim.kernel import Kernel
+from bfsim.recording import RecordingReader
+from bfsim.recording.writer import RecordingWriter
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
+from bfsim.shipped import RECORDING
 from tests.eyes import FIRMWARE, record
 from tests.tiers import exhaustive
 from tests.work_files import rewritten
@@ -78,6 +82,26 @@ def test_a_play_makes_no_kernel_ready_to_run(work: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(Kernel, "prepare", refused)
     assert simulate(frames=FRAMES, work=work).frames
+
+
+def test_a_play_does_not_look_at_pictures_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What it is warned of is what their cameras were doubted for in the run: here left is right."""
+    recording, path = folder / "exchanged.mcap", folder / "exchanged.work"
+    with (
+        RecordingReader(RECORDING) as reader,
+        RecordingWriter(recording, width=reader.width, height=reader.height) as writer,
+    ):
+        for frame in islice(reader.frames(), FRAMES):
+            writer.add(frame.right, frame.left, frame.left_ns, frame.right_ns)
+    plain = simulate(recording, record_work=path)
+    assert any("seem to be exchanged" in each.text for each in plain.assumptions)
+
+    def refused(*_: object) -> Any:
+        raise AssertionError("a play looks at pictures")
+
+    for name in ("exchanged_places", "row_offsets"):
+        monkeypatch.setattr(f"bfsim.recording.stereo.stereo_check.{name}", refused)
+    assert differing(plain, simulate(recording, work=path)) <= HOSTS_OWN
 
 
 @pytest.mark.parametrize("seed", [0, *exhaustive(1, 2, 3)])

@@ -155,6 +155,8 @@ def test_a_routine_that_is_none_is_refused(work: Path, folder: Path, routine: An
         ("end.json", "modules", [None]),
         ("end.json", "frame_digests", "none"),
         ("end.json", "obstacles", {}),
+        ("end.json", "doubts", [[16, 16]]),
+        ("end.json", "doubts", [[16, "all"], [0, 0], [0, 0]]),
     ],
 )
 def test_what_was_run_must_be_of_its_types(

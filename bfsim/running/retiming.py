@@ -20,6 +20,7 @@ from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.process.reading_ahead import read_ahead
+from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.running.identifying import DigestedFrames
 from bfsim.trace import Identity
 
@@ -45,6 +46,7 @@ def retimed(
     identity: Identity,
     frames: DigestedFrames,
     loaded: LoadedFirmware,
+    check: StereoCheck,
     *,
     record_work: Path | None,
     work: Path | None,
@@ -53,6 +55,7 @@ def retimed(
 ) -> Iterator[None]:
     """Record the run of `machine` in the `with` block to a file, or have it play one, or neither.
 
+    `check`: looks at the frames of a run; of one that is played it is told what was found then.
     `has_pictures`, `has_timeline`: whether anybody wants such of it.
     """
     with ExitStack() as stack:
@@ -64,13 +67,13 @@ def retimed(
                 "recorded is done ahead; make it in a run of its own"
             )
         if record_work:
-            stack.enter_context(recording_work(record_work, machine, identity, frames, loaded))
+            stack.enter_context(recording_work(record_work, machine, identity, frames, loaded, check))
         if work and (has_pictures or has_timeline):
             raise ConfigError(
                 "--work must go without pictures, timelines and HTML: a recorded run has neither pixels nor single calls, only cycles"
             )
         if work:
-            stack.enter_context(playing_work(work, machine, identity, frames, loaded))
+            stack.enter_context(playing_work(work, machine, identity, frames, loaded, check))
         yield
 
 
@@ -80,7 +83,12 @@ class _InterruptedError(Exception):
 
 @contextmanager
 def recording_work(
-    path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
+    path: Path,
+    machine: Board,
+    identity: Identity,
+    frames: DigestedFrames,
+    loaded: LoadedFirmware,
+    check: StereoCheck,
 ) -> Iterator[None]:
     """Record what the cores of `machine` do in the `with` block; the file is there at its end, unless the run is interrupted.
 
@@ -120,12 +128,18 @@ def recording_work(
             frame_digests=frames.digests,
             modules=sorted(loaded.own.modules),
             firmware_digest=loaded.digest,
+            doubts=check.counts,
         )
 
 
 @contextmanager
 def playing_work(
-    path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
+    path: Path,
+    machine: Board,
+    identity: Identity,
+    frames: DigestedFrames,
+    loaded: LoadedFirmware,
+    check: StereoCheck,
 ) -> Iterator[None]:
     """Have the cores of `machine` play what was recorded, in place of the firmware, in the `with` block.
 
@@ -139,6 +153,7 @@ def playing_work(
         _check(reader, machine, identity, frames.total)
         kernels = _kernels(reader, loaded)
         frames.expect(reader.recorded.frame_digests)
+        check.take_counts(reader.recorded.doubts)
         machine.firmware = replace(
             machine.firmware, mains=dict.fromkeys(machine.firmware.mains, played_again), view=None
         )

@@ -25,6 +25,7 @@ from bfsim.kernel import keys
 from bfsim.machine.retiming.packed_work import PackedWork
 from bfsim.machine.retiming.work import FrameWork
 from bfsim.machine.retiming.work_check import check
+from bfsim.recording.stereo.stereo_check import Counts
 from bfsim.running import frame_file
 
 FORMAT = 7
@@ -44,7 +45,7 @@ class Recorded:
 
     `is_bound`: whether what is accessed depends on where everything lies. `routines_outside`: core and name of each routine
     outside of L1. `frame_digests`: of the recording up to each frame.
-    `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
+    `modules`: of the firmware. `doubts`: what looking at the frames has found. `obstacles`: why it cannot be played, in words.
     """
 
     identity: Mapping[str, str]
@@ -54,6 +55,7 @@ class Recorded:
     frame_digests: tuple[str, ...]
     modules: tuple[str, ...]
     firmware_digest: str
+    doubts: Counts
     obstacles: tuple[str, ...]
 
 

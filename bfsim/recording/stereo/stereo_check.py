@@ -24,6 +24,10 @@ FEWEST_PLACES, DOUBTED_SHARE = 16, 0.75
 Nowhere are up to 25 % of a right pair's places, 54 of a plant's; 91 to 100 where a camera is turned by 30 degrees, 69 to 100 of other things."""
 
 
+Counts = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
+"""Of each doubt: at how many places it was looked into, and at how many of these something is wrong."""
+
+
 @dataclass(slots=True)
 class _Doubt:
     """What may be wrong at so many of the places that were compared; `text` tells the user."""
@@ -84,6 +88,18 @@ class StereoCheck:
             offsets = row_offsets(*lumas)
             self._other_rows.add(in_other_rows(offsets))
             self._nowhere.add(are_nowhere(offsets))
+
+    @property
+    def counts(self) -> Counts:
+        """What was found so far."""
+        exchanged, other_rows, nowhere = ((each.places, each.wrong) for each in self._doubts)
+        return exchanged, other_rows, nowhere
+
+    def take_counts(self, counts: Counts) -> None:
+        """Take what another check has found in the same frames: none is looked at any more."""
+        for doubt, (places, wrong) in zip(self._doubts, counts, strict=True):
+            doubt.places, doubt.wrong = places, wrong
+        self._frames = MOST_FRAMES
 
     @property
     def warnings(self) -> Iterator[str]:
