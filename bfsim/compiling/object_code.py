@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from bfsim.compiling.recipes import Recipe, code_at_hand, code_of, is_shipped
@@ -19,6 +19,9 @@ PROGRAMS = "programs"
 """What comes with bfsim under this name: the names under which its firmware is kept as C."""
 LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
 """What the compiler is told, for each profile that stands for it."""
+
+MOST_PROGRAMS = 8
+"""Firmware that a process remembers as C, kernels and all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,7 @@ def object_code(
 
     Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
-    level, (files, names) = level_of(profile), _in_c(kernels, entries)
+    level, (files, names) = level_of(profile), _in_c(frozenset(kernels), frozenset(entries))
     if not names:
         raise ConfigError("the run must call a kernel in Python for there to be real code, but calls none")
     recipe = recipe_of(files, level)
@@ -72,7 +75,7 @@ def object_code_at_hand(
     toolchain: Toolchain | None,
 ) -> ObjectCode | None:
     """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
-    files, names = _in_c(kernels, entries)
+    files, names = _in_c(frozenset(kernels), frozenset(entries))
     recipe = recipe_of(files, level_of(profile))
     found = code_at_hand(recipe, toolchain)
     return found and ObjectCode(*found, names, is_shipped(recipe))
@@ -115,13 +118,14 @@ def written(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> tuple[str, 
     return function_keys.program_key(functions.values(), called), _written(functions, called)
 
 
+@lru_cache(maxsize=MOST_PROGRAMS)
 def _in_c(
-    kernels: Iterable[Kernel], entries: Iterable[Kernel]
+    kernels: frozenset[Kernel], entries: frozenset[Kernel]
 ) -> tuple[Mapping[str, str], Mapping[Function, str]]:
     """Return kernels as files of C, and what each is called there.
 
     It is kept in the user's cache, and that of the built-in firmware comes with bfsim, for to write all kernels of firmware takes
-    longer than to run a frame.
+    longer than to run a frame. A process that runs the same firmware again does not look there again.
     """
     functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
     name = function_keys.program_key(functions.values(), called)
