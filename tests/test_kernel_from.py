@@ -14,7 +14,9 @@ from bfsim.blackfin.elf import lines
 from bfsim.errors import KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2
+from bfsim.kernel.costs.run_tables import tables_of
 from bfsim.kernel.objects import compiled
+from bfsim.kernel.objects.compiled import CompiledObject
 from bfsim.loading.kernel_named import load_kernel
 from tests.sums import DATA, ROW, SUMS, expected_sums, sums
 
@@ -160,9 +162,35 @@ def test_explain_shows_the_lines_of_c() -> None:
     assert {each.line for each in shown.lines if each.operations} >= {17, 18, 21}
 
 
+def forget() -> None:
+    """Forget what another process does not have."""
+    compiled._COUNTED.clear()
+    compiled._PROGRAMS.clear()
+
+
+def test_a_run_has_the_tables_of_the_costs_and_not_these(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found in the cache they are those of the program, which is read when somebody asks for it."""
+
+    def code() -> CompiledObject:
+        found = sums().object_code
+        assert found
+        return found.compiled(GCC_O2, traced=True)
+
+    code()
+    forget()
+    with monkeypatch.context() as without:
+        without.setattr(compiled, "kept_costs", None)
+        found = code()
+        assert found.tables.counters == len(found.new_totals())
+    made = tables_of(found.program)
+    assert found.tables == made
+    assert all(map(np.array_equal, found.tables.costs, made.costs))
+    assert found.tables.accesses == found.program.accesses
+
+
 def lines_of_costs(folder: Path) -> set[int]:
     """The lines that `sums` in a folder has cycles for, as a process finds that has just started."""
-    compiled._READ.clear()  # what another process does not have
+    forget()
     found = explain(sums(folder), GCC_O2)
     return {each.line for each in found.lines if each.operations}
 

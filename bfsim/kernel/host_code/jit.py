@@ -21,6 +21,7 @@ from bfsim.kernel.calls import crashes
 from bfsim.kernel.costs.call_paths import Program
 from bfsim.kernel.costs.costs import Costs
 from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.costs.run_tables import RunTables, tables_of
 from bfsim.kernel.estimate.estimated import costs_of
 from bfsim.kernel.host_code.entry import running_name
 from bfsim.kernel.language.function import Function
@@ -34,6 +35,8 @@ class CompiledKernel:
 
     entry: int
     program: Program
+    tables: RunTables
+    """What a run must know of the program."""
     failure: Callable[[], KernelError]
     """Returns what a guard has noted in the last call; see `guards`."""
     functions: tuple[Function, ...]
@@ -46,7 +49,7 @@ class CompiledKernel:
 
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter (one word at least, to have an address)."""
-        return np.zeros(max(1, len(self.counters)), np.int64)
+        return np.zeros(max(1, self.tables.counters), np.int64)
 
 
 @cache
@@ -88,6 +91,7 @@ def compile_kernel(
     return CompiledKernel(
         machine_code.address_of(entry),
         program,
+        tables_of(program),
         partial(_failure, function, profile, entry),
         (*function.callees(), function),
     )

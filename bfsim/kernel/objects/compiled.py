@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from functools import cache, cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,7 @@ from bfsim.kernel.calls.access_log import WRITE
 from bfsim.kernel.costs.call_paths import Program
 from bfsim.kernel.costs.costs import Costs, kept_costs
 from bfsim.kernel.costs.counters import Counter
+from bfsim.kernel.costs.run_tables import RunTables, tables_of
 from bfsim.kernel.ir.text import SourceLine
 from bfsim.kernel.language.function import Function
 from bfsim.kernel.objects.places import Places
@@ -26,16 +29,16 @@ NO_ARRAY = ""
 """In place of an array's name: memory that belongs to none, such as the stack."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Counted:
+class _Counted(NamedTuple):
     """How a kernel's object code is counted, of each counter its number in the code, and which functions the instructions are of."""
 
-    program: Program
+    tables: RunTables
     order: NDArray[np.int64]
     symbols: tuple[str, ...]
 
 
-_READ: dict[str, _Counted] = {}
+_COUNTED: dict[str, _Counted] = {}
+_PROGRAMS: dict[str, Program] = {}
 """What this process has read of the costs of object code, by the keys of what is kept."""
 
 
@@ -45,11 +48,17 @@ class CompiledObject:
 
     function: Function
     subroutine: Subroutine
-    program: Program
+    read_program: Callable[[], Program]
+    tables: RunTables
     functions: tuple[Function, ...]
     places: Places
     order: NDArray[np.int64]
     """Of each counter of the program, the number of the translated code's counter."""
+
+    @cached_property
+    def program(self) -> Program:
+        """How it is counted, and what it costs: most runs need only its `tables`."""
+        return self.read_program()
 
     @property
     def counters(self) -> tuple[Counter, ...]:
@@ -62,7 +71,7 @@ class CompiledObject:
 
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter."""
-        return np.zeros(max(1, len(self.counters)), np.int64)
+        return np.zeros(max(1, self.tables.counters), np.int64)
 
 
 def compiled_object(
@@ -94,22 +103,40 @@ def compiled_object(
         found = counters(counted.counters, places, timing, accessed, arrays)
         return Costs(tuple(found), calls(counted.code, places, subroutine.address, function.array_names))
 
-    key = keys.object_key(*about, f"costs of {function.symbol} {function.parameters} {places.sources_digest}")
-    if key not in _READ:  # each run binds the code to another board: what it costs is read once
-        _READ[key] = _counted(function, kept_costs(key, made))
-    counted = _READ[key]
+    of_what = f"of {function.symbol} {function.parameters} {places.sources_digest}"
+    key = keys.object_key(*about, f"costs {of_what}")
+
+    def program() -> Program:
+        if key not in _PROGRAMS:  # each run binds the code to another board: what it costs is read once
+            _PROGRAMS[key] = Program(
+                function.symbol, kept_costs(key, made), function.array_names, together=True
+            )
+        return _PROGRAMS[key]
+
+    if key not in _COUNTED:
+        _COUNTED[key] = _counted(keys.object_key(*about, f"tables {of_what}"), program)
+    tables, order, symbols = _COUNTED[key]
     if traced:
-        subroutine.processor.tracing = Tracing(_site_of(counted.program, places), WRITE)
-    functions = tuple(map(places.function_called, counted.symbols))
-    return CompiledObject(function, subroutine, counted.program, functions, places, counted.order)
+        subroutine.processor.tracing = Tracing(_site_of(program, places), WRITE)
+    functions = tuple(map(places.function_called, symbols))
+    return CompiledObject(function, subroutine, program, tables, functions, places, order)
 
 
-def _counted(function: Function, costs: Costs) -> _Counted:
-    program = Program(function.symbol, costs, function.array_names, together=True)
-    numbers = {id(each): number for number, each in enumerate(costs.counters)}
-    order = np.array([numbers[id(each)] for each in program.counters], np.int64)
-    lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
-    return _Counted(program, order, (*costs.calls, *sorted(lines)))
+def _counted(key: str, program: Callable[[], Program]) -> _Counted:
+    """Return what the cache on disk keeps under a key of a program, or what is made of it now."""
+
+    def made() -> tuple[Any, ...]:
+        costs, counters = program().costs, program().counters
+        numbers = {id(each): number for number, each in enumerate(costs.counters)}
+        lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
+        return (
+            asdict(tables_of(program())),
+            [numbers[id(each)] for each in counters],
+            [*costs.calls, *sorted(lines)],
+        )
+
+    tables, order, symbols = store.kept(key, made)
+    return _Counted(RunTables(**tables), np.array(order, np.int64), tuple(symbols))
 
 
 def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:
@@ -127,18 +154,22 @@ def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, in
     return found
 
 
-def _site_of(program: Program, places: Places) -> Callable[[int, int], int]:
+def _site_of(program: Callable[[], Program], places: Places) -> Callable[[int, int], int]:
     """Return what finds the first site of an instruction in a block: that of its line and the first array.
 
     Those of the other arrays are behind it.
     """
-    first: dict[tuple[str, SourceLine], int] = {}
-    for path in program.paths:
-        routine = path.routines[-1]
-        for number, site in enumerate(program.own_sites[routine], path.first.site):
-            first.setdefault((routine, site.line), number)
+
+    @cache
+    def first() -> dict[tuple[str, SourceLine], int]:
+        found: dict[tuple[str, SourceLine], int] = {}
+        for path in program().paths:
+            routine = path.routines[-1]
+            for number, site in enumerate(program().own_sites[routine], path.first.site):
+                found.setdefault((routine, site.line), number)
+        return found
 
     def site_of(block: int, address: int) -> int:
-        return first[places.function_at(block).symbol, places.line_of(address)]
+        return first()[places.function_at(block).symbol, places.line_of(address)]
 
     return site_of

@@ -299,9 +299,9 @@ class CallCache:
         key = (self.stage, kernel, owners)
         if key not in self._groups:
             code = self._build.compiled(kernel, traced=traced, files=self._files)
-            fetched = tuple(self._code.of(code.program.costs.counters))
+            fetched = tuple(self._code.of(code.tables.routines))
             totals, first_event, first_site = self._ledger.room(
-                len(code.new_totals()), len(code.program.sites) + len(fetched)
+                len(code.new_totals()), len(code.tables.site_routines) + len(fetched)
             )
             self._groups[key] = CallGroup(
                 stage=self.stage,

@@ -170,7 +170,7 @@ def _spread(group: CallGroup) -> NDArray[np.int64]:
             len(banks[each.array]) * each.among,
             group.first_site + each.site,
         )
-        for each in group.code.program.accesses
+        for each in group.code.tables.accesses
         for bank in banks[each.array]
     ]
     return np.array(rows, np.int64).reshape(-1, 5).T

@@ -8,6 +8,7 @@ used later. Code that is not cached is fetched 64 bits at a time, as often as it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
 from itertools import chain, repeat
 
 import numpy as np
@@ -18,7 +19,6 @@ from bfsim.kernel import Work
 from bfsim.kernel.calls.access_log import FUNCTION
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.calls.python_calls import log_of
-from bfsim.kernel.costs.counters import Counter
 from bfsim.kernel.native.entries import NativeEntry
 from bfsim.machine.calls import code_fetches as c
 from bfsim.machine.calls.groups import CallGroup, Fetches
@@ -49,15 +49,16 @@ class CodeOutside:
         self._cache = cache
         self._keep_routine = keep_routine
 
-    def of(self, counters: Iterable[Counter]) -> Iterable[str]:
-        """Return the routines of a kernel and its callees that lie outside L1."""
-        routines = dict.fromkeys(each.routine for each in counters)
+    def of(self, routines: Iterable[str]) -> Iterable[str]:
+        """Return those of the routines of a kernel and its callees that lie outside L1."""
         return [each for each in routines if each in self.places]
 
     def fetches_of(self, group: CallGroup, access_trace: AccessTrace) -> Fetches:
         """Return what calls of a group that have fetched routines tell an access trace of."""
         places = [self.places[each] for each in group.fetched]
-        sites = range(group.first_site + len(group.code.program.sites), group.first_site + group.site_count)
+        sites = range(
+            group.first_site + len(group.code.tables.site_routines), group.first_site + group.site_count
+        )
         if self._cache:
             return LineFills(self._cache, dict(zip(sites, places, strict=True)), access_trace)
         for site, following, (offset, nbytes) in zip(sites, (*sites[1:], sites[0]), places, strict=True):
@@ -96,13 +97,18 @@ class SingleFetches:
 
     def __init__(self, group: CallGroup, first_site: int, access_trace: AccessTrace) -> None:
         self._access_trace = access_trace
-        self._totals = group.totals
+        self._group = group
+        self._first_site = first_site
+
+    @cached_property
+    def _words(self) -> NDArray[np.int64]:
+        group = self._group
         outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
-        self._words = np.array([len(outside), 0, first_site, *outside], np.int64)
+        return np.array([len(outside), 0, self._first_site, *outside], np.int64)
 
     def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
         """Return a call that adds as many as code has been executed since the last time."""
-        return _followed(run, c.fetch_singly, self._access_trace, self._totals, self._words)
+        return _followed(run, c.fetch_singly, self._access_trace, self._group.totals, self._words)
 
 
 def _followed(

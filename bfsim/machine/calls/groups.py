@@ -69,7 +69,7 @@ class CallGroup:
     @property
     def site_count(self) -> int:
         """Number of its sites."""
-        return len(self.code.program.sites) + len(self.fetched)
+        return len(self.code.tables.site_routines) + len(self.fetched)
 
     def sites(self) -> Iterator[GroupSite]:
         """Yield the sites in order: those of its accesses, and one for the code of each routine that is fetched."""

@@ -165,10 +165,10 @@ class Ledger:
         def owner(symbol: str) -> int:
             return self._owners.setdefault(Owner(group.stage, names[symbol], symbol), len(self._owners))
 
-        symbols, counter, routine, costs = group.code.program.routine_costs
+        symbols, counter, routine, costs = group.code.tables.costs
         owners = np.array([owner(each) for each in symbols], np.int64)
         self._new_charges.append(np.vstack([group.first_event + counter, owners[routine], costs.T]))
-        self._site_owners.extend(owner(each.line.routine) for each in group.code.program.sites)
+        self._site_owners.extend(owner(each) for each in group.code.tables.site_routines)
         self._site_owners.extend(owner(each) for each in group.fetched)
 
     @property

@@ -144,7 +144,7 @@ class CoreRecords:
         total = 0
         for group, events in _counted(self._groups, self._counted):
             if not of_objects or _is_object(group):
-                _, counter, _, costs = group.code.program.routine_costs
+                _, counter, _, costs = group.code.tables.costs
                 _, issue_cclk, _ = costs.T
                 total += int(events[counter].dot(issue_cclk))
         return total
@@ -168,7 +168,7 @@ def _counted(groups: Iterable[CallGroup], counted: Counted) -> Iterator[tuple[Ca
     """Yield the groups with the events of their counters. Those that came behind the counted moment are left out."""
     for group in groups:
         if group.first_event < len(counted.events):
-            yield group, counted.events[group.first_event :][: len(group.code.counters)]
+            yield group, counted.events[group.first_event :][: group.code.tables.counters]
 
 
 class _Sums:
