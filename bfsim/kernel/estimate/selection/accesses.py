@@ -121,7 +121,7 @@ class Accesses:
         """Compute the counters that a pointer stands for; it has been stepped by then, so each iteration keeps what it was."""
         for each in self.context.counters.eliminated.values():
             variable = each.variable
-            if label == variable.loop.header and not each.is_stepped:
+            if label == variable.loop.header and not each.is_stepped and variable.steps_free:
                 self.emitter.code.add(
                     label,
                     MachineInstruction(Op.MOVE, variable.line, None, POINTER, ((variable.name, POINTER),)),
@@ -158,14 +158,7 @@ class Accesses:
                 uses = ((variable.name, POINTER),) + (
                     ((variable.stride, POINTER),) if variable.stride else ()
                 )
-                kept = any(
-                    each.variable is variable and not each.is_stepped
-                    for each in self.context.counters.eliminated.values()
-                )
-                self.emitter.code.add(
-                    variable.loop.header if kept else latch,
-                    MachineInstruction(Op.ALU, line, variable.name, POINTER, uses),
-                )
+                self.emitter.code.add(latch, MachineInstruction(Op.ALU, line, variable.name, POINTER, uses))
                 loose = (
                     variable.loop.header not in self.context.counters.counted
                     and len(self.flow.exits(variable.loop)) > 1
