@@ -70,9 +70,20 @@ def _is_hoistable(flow: ControlFlow, label: str, operation: _Operation) -> bool:
         ):
             return False
     loop = flow.innermost(label)
-    sides = [way for way in flow.blocks[label].successors if flow.predecessors[way] == [label]]
-    stays = [way for way in sides if loop is None or way in loop.blocks]
-    return any(way in operation.homes for way in stays) and label in _anticipating(flow, operation)
+    stays = [way for way in flow.blocks[label].successors if loop is None or way in loop.blocks]
+    return any(_is_done_on(flow, label, way, operation) for way in stays) and label in _anticipating(
+        flow, operation
+    )
+
+
+def _is_done_on(flow: ControlFlow, label: str, way: str, operation: _Operation) -> bool:
+    """Whether one side of a test does an operation at once, also where it leads to a block to which another way brings it done.
+
+    Then it is inserted on that side before [do_pre_regular_insertion].
+    """
+    others = [each for each in flow.predecessors[way] if each != label]
+    brought = any((operation.homes - {way}) & flow.dominators[each] for each in others)
+    return way in operation.homes and (brought or not others)
 
 
 def _anticipating(flow: ControlFlow, operation: _Operation) -> set[str]:
