@@ -24,6 +24,7 @@ from bfsim.kernel.estimate.choices.sides_apart import with_sides_apart
 from bfsim.kernel.estimate.choices.sides_of_tests import with_operations_on_sides
 from bfsim.kernel.estimate.choices.wide_extremes import widen_extremes
 from bfsim.kernel.estimate.conditions.narrow_tests import with_narrow_tests
+from bfsim.kernel.estimate.conditions.next_values import with_tests_of_next_values
 from bfsim.kernel.estimate.conditions.range_tests import with_range_tests
 from bfsim.kernel.estimate.conditions.short_circuits import split_tests
 from bfsim.kernel.estimate.jump_threading.known_answers import with_known_answers
@@ -55,6 +56,7 @@ from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_restored_values,
+    with_tests_of_next_values,
     with_operations_on_sides,
     with_shifted_products,
     with_sides_apart,
