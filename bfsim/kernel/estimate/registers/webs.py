@@ -161,38 +161,38 @@ class Webs:
         fixed: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         wants: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         friends: defaultdict[str, Tally[str]] = defaultdict(Tally)
-        of_data = self._made_in_data_registers()
         for label, block in self.code.of.items():
             weight = int(self.frequency[label] * 1000) + 1
             for instruction in block:
                 own = self.find(instruction.result) if instruction.result else None
-                from_data = self._subtracts(instruction) and any(
-                    self.find(name) in of_data for name, _ in instruction.uses
-                )
+                from_data = self._subtracts(instruction)
+                if from_data and own:
+                    wants[own][RegisterBank.DATA] += weight
                 if own and instruction.bank is not RegisterBank.ANY:
                     fixed[own][instruction.bank] += weight
                 for name, bank in instruction.uses:
                     other = self.find(name)
                     if bank is not RegisterBank.ANY and not name.startswith("#"):
                         wants[other][bank] += weight
-                    elif from_data and not name.startswith("#") and other not in of_data:
+                    elif from_data:
                         wants[other][RegisterBank.DATA] += weight
                     elif own and not name.startswith("#"):
                         friends[other][own] += weight
                         friends[own][other] += weight
         return fixed, wants, friends
 
-    def _made_in_data_registers(self) -> frozenset[str]:
-        """Webs of which a definition fixes that bank."""
-        instructions = (each for block in self.code.of.values() for each in block)
-        return frozenset(
-            self.find(each.result) for each in instructions if each.result and each.bank is RegisterBank.DATA
-        )
-
     def _subtracts(self, instruction: MachineInstruction) -> bool:
         """Whether it takes one value from another into a third, which is done in data registers alone [subsi3 in bfin.md]."""
         made_for = self.flow.instruction(instruction.result or "")
-        return made_for is not None and made_for.opcode == "sub" and instruction.bank is RegisterBank.ANY
+        names = [name for name, _ in instruction.uses]
+        return (
+            made_for is not None
+            and made_for.opcode == "sub"
+            and instruction.bank is RegisterBank.ANY
+            and len(names) == 2
+            and not any(each.startswith("#") for each in names)
+            and self.find(names[0]) != self.find(instruction.result or "")
+        )
 
 
 def _majority(votes: Tally[RegisterBank] | None) -> RegisterBank | None:
