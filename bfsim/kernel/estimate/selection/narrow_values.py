@@ -163,8 +163,8 @@ class NarrowValues:
         label = variable.accesses[0][0]
         rows = self.flow.blocks[label].instructions
         ends = {id(user) for user in self.folding.users(users[0].result or "")}
-        if load not in rows:
-            return False  # what is loaded comes from where several ways meet
+        if load not in rows or len(ends) > 1:
+            return False  # what is loaded comes from where several ways meet, or is extended at once [tree-ssa-ter.cc]
         between = rows[rows.index(load) + 1 :]
         first_use = next((number for number, each in enumerate(between) if id(each) in ends), len(between))
         return any(each is access for each in between[:first_use] for _, access, _ in variable.accesses)
@@ -172,7 +172,8 @@ class NarrowValues:
     def _is_stepped_between(self, load: Instruction, variable: InductionVariable | None) -> bool:
         """Whether a pointer that a counter is computed from is stepped between a load and the extension [modified_between_p in combine.cc]."""
         kept = any(
-            each.variable is variable and not each.is_stepped for each in self.counters.eliminated.values()
+            each.variable is variable and not each.is_stepped and each.variable.steps_free
+            for each in self.counters.eliminated.values()
         )
         wide = any(user.opcode in ("zext", "sext") for user in self.folding.users(load.result or ""))
         return (
