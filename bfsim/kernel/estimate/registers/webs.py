@@ -71,13 +71,27 @@ class Webs:
             apart[value].discard(phi)
         members = {name: {name} for name in apart}
         copies = self._copies()
-        for phi, value in sorted(copies, key=lambda copy: -copies[copy]):
+        merged = {copy for copy in copies if self._is_merged(*copy)}
+        for phi, value in sorted(copies, key=lambda copy: (copy not in merged, -copies[copy])):
             one, other = self.find(phi), self.find(value)
             mine, theirs = members.setdefault(one, {one}), members.setdefault(other, {other})
             if one == other or any(not apart[name].isdisjoint(theirs) for name in mine):
                 continue
             self.web[other] = one
             mine |= theirs
+
+    def _is_merged(self, phi: str, value: str) -> bool:
+        """Whether a value is chosen for a phi alone, in a block without code: GCC chooses for that phi at once [pass_merge_phi in tree-cfgcleanup.cc]."""
+        home, made = self.flow.defined.get(value, ("", None))
+        block = self.flow.blocks.get(home)
+        return (
+            made is not None
+            and block is not None
+            and made.opcode == "phi"
+            and self.flow.users[value] == [self.flow.defined[phi][1]]
+            and block.successors == (self.flow.defined[phi][0],)
+            and all(each.opcode == "phi" for each in block.instructions[:-1])
+        )
 
     def _copies(self) -> dict[tuple[str, str], float]:
         """What copying a value to a phi costs, of all ways together; twice where it needs a block [coalesce_cost_edge in tree-ssa-coalesce.cc].
