@@ -93,8 +93,6 @@ def _narrowing(
         value = known.number(variable, source, block.label) or variable
         if is_number(value):
             values[source] = str((int(value) + (1 << bits - 1)) % (1 << bits) - (1 << bits - 1))
-        elif (made := flow.instruction(value)) is not None and made.opcode == "phi":
-            return None  # what a loop carries, and is often known to be one of few numbers
         else:
             rows[source] = [replace(renamed(each, {wide: value}), result=f"{each.result}.{source}")]
     return _Redundancy(block.label, each, values, rows) if values else None
