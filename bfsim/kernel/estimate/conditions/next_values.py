@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, Routine, arms_of, is_number, predicate, written
+from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, is_number, predicate, written
 
 SHIFTS = {"lshr": "u", "ashr": "s"}
 """Shifts to the right, and of which comparisons they keep the order."""
@@ -18,52 +18,46 @@ SHIFTS = {"lshr": "u", "ashr": "s"}
 def with_tests_of_next_values(routine: Routine) -> Routine:
     """Return `routine` with such tests as they were written."""
     flow = ControlFlow(routine)
-    tests = {}
-    for loop in flow.loops:
-        ending = flow.blocks[loop.latch].terminator
-        test = flow.instruction(ending.operands[0]) if ending.opcode == "br" and ending.operands else None
-        if test is not None and flow.users[test.result or ""] == [ending]:
-            restored = _restored(flow, loop, test)
-            if restored is not None:
-                tests[test.result] = restored
     blocks = (
-        replace(block, instructions=tuple(tests.get(each.result, each) for each in block.instructions))
+        replace(block, instructions=tuple(_restored(flow, block, each) for each in block.instructions))
         for block in routine.blocks
     )
-    return replace(routine, blocks=tuple(blocks)) if tests else routine
+    return replace(routine, blocks=tuple(blocks))
 
 
-def _restored(flow: ControlFlow, loop: Loop, test: Instruction) -> Instruction | None:
-    """Return a test of what a variable of a loop was as one of what it is next; None if it is no such test."""
-    home, variable = flow.defined.get(test.operands[0], ("", None))
-    if test.opcode != "icmp" or variable is None or variable.opcode != "phi" or home != loop.header:
-        return None
-    following = flow.instruction(arms_of(variable).get(loop.latch, ""))
-    if following is None or len(following.operands) != 2 or following.operands[0] != variable.result:
-        return None
-    is_made = _is_before(flow, following, test) and (following.opcode != "add" or " nsw " in following.text)
-    if not is_made or not all(map(is_number, (test.operands[1], following.operands[1]))):
-        return None
-    number = _number(predicate(test), int(test.operands[1]), following.opcode, int(following.operands[1]))
-    if number is None:
-        return None
-    name, relation = following.result or "", predicate(test)
-    text = f"icmp {relation} i32 {name}, {number}"
-    return written(test.result or "", text, (name, str(number)), test)
+def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instruction:
+    """Return a test of what a variable was as one of what it is next, where that is known by then; anything else as it is."""
+    variable = flow.instruction(test.operands[0]) if test.opcode == "icmp" else None
+    if variable is None or variable.opcode != "phi" or not is_number(test.operands[1]):
+        return test
+    for each in map(flow.instruction, variable.operands):
+        if each is None or each.operands[:1] != (variable.result,) or not _is_before(flow, each, block, test):
+            continue
+        number = _number(predicate(test), int(test.operands[1]), each)
+        if number is not None:
+            name = each.result or ""
+            text = f"icmp {predicate(test)} i32 {name}, {number}"
+            return written(test.result or "", text, (name, str(number)), test)
+    return test
 
 
-def _is_before(flow: ControlFlow, one: Instruction, other: Instruction) -> bool:
-    """Whether one of two instructions of a loop, which every iteration computes, comes first."""
+def _is_before(flow: ControlFlow, one: Instruction, block: BasicBlock, other: Instruction) -> bool:
+    """Whether an instruction has been run whenever another one of `block` is."""
     home, _ = flow.defined[one.result or ""]
-    rows = flow.blocks[home].instructions
-    return other not in rows or rows.index(one) < rows.index(other)
+    if home != block.label:
+        return home in flow.dominators[block.label]
+    return block.instructions.index(one) < block.instructions.index(other)
 
 
-def _number(relation: str, number: int, opcode: str, operand: int) -> int | None:
+def _number(relation: str, number: int, step: Instruction) -> int | None:
     """Return the number that what is next is compared with in place of `number`; None if there is none."""
-    if opcode == "add" and relation in ("sgt", "slt", "sge", "sle"):
-        return number + operand
-    if SHIFTS.get(opcode) != relation[0] or relation[1:] not in ("gt", "lt"):
+    if len(step.operands) != 2 or not is_number(step.operands[1]) or " i32 " not in step.text:
+        return None
+    operand = int(step.operands[1])
+    if step.opcode == "add":
+        is_equal = relation in ("eq", "ne")
+        return number + operand if is_equal or (relation[0] == "s" and " nsw " in step.text) else None
+    if SHIFTS.get(step.opcode) != relation[0] or relation[1:] not in ("gt", "lt"):
         return None
     first = number + 1 if relation[1:] == "gt" else number
     shifted, rest = divmod(first, 1 << operand)

@@ -38,7 +38,7 @@ class Decisions:
             if self.emitter.label == joined.first:
                 self._in_range(each, joined)
             return
-        left, right = self.context.folding.compared(each)
+        left, right = each.operands[:2]
         if is_number(right) and _is_near(predicate(each), int(right)):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif is_number(right) and self.context.profile.applies(Rule.COMPARED):

@@ -147,11 +147,11 @@ class DemandedValues:
                 variable.loop is loop and not variable.stride for variable in self.induction_variables.all
             )
         ):
-            return self.folding.compared(each)
+            return each.operands[0], each.operands[1]
         gains = {operand: self.evolution.increment(operand, loop) for operand in each.operands[:2]}
         moving = [gain for gain in gains.values() if gain is None or gain.moves]
         if len(moving) != 1 or moving[0] is None or moving[0].symbolic:
-            return self.folding.compared(each)
+            return each.operands[0], each.operands[1]
         return self._limits(each, loop)
 
     def _limits(self, test: Instruction, loop: Loop) -> tuple[str, ...]:

@@ -184,19 +184,6 @@ class Folding:
         ]
         return {id(self._masked(value)) for each in phis for value in each.operands}
 
-    def compared(self, compare: Instruction) -> tuple[str, str]:
-        """What a comparison compares: with `x + k` at hand and `x` stepped by it, LLVM's `x > 0` is C's `x + k > k`."""
-        left, right = compare.operands[:2]
-        carried = self.flow.instruction(left)
-        if carried is None or carried.opcode != "phi" or not is_number(right):
-            return left, right
-        here = self.flow.blocks[self.flow.defined[compare.result or ""][0]].instructions
-        for each in here[: here.index(compare)]:
-            steps = each.opcode == "add" and each.operands[0] == left and each.result in carried.operands
-            if steps and is_number(each.operands[1]):
-                return each.result or "", str(int(right) + int(each.operands[1]))
-        return left, right
-
     def remainder(self, each: Instruction) -> Instruction | None:
         """The division whose remainder a difference is: where that is a call, it is another one."""
         return quotient_of_rest(self.flow, each) if self.profile.applies(Rule.REMAINDERS) else None
