@@ -8,6 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from bfsim.errors import LinkError, cut
+from bfsim.linker.kept_scripts import kept_script
 from bfsim.linker.predefined import ARCHITECTURE, chip_named
 from bfsim.linker.preprocessor import preprocess
 from bfsim.linker.script import LinkerScript
@@ -33,8 +34,12 @@ def parse_ldf(
 
 @lru_cache(maxsize=8)
 def _script(source: Source) -> LinkerScript:
-    """Read a preprocessed LDF; many runs of a process have the same one."""
-    from lark.exceptions import VisitError  # lark costs 50 ms, which --help and the like need not pay
+    """Read a preprocessed LDF; many runs of a process have the same one, and many starts."""
+    return kept_script(source, lambda: _made(source))
+
+
+def _made(source: Source) -> LinkerScript:
+    from lark.exceptions import VisitError  # most starts find all LDFs
 
     from bfsim.linker.builder import ScriptBuilder
     from bfsim.linker.expressions import ExpressionError
