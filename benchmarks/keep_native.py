@@ -23,7 +23,7 @@ from bfsim.machine.calls.code_fetches import fetch_lines, fetch_singly
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
-from bfsim.machine.retiming.stretch_writer import write_stretch
+from bfsim.machine.retiming.written_stretch import write_stretch
 
 FOLDER = Path(native.__file__).parent / KEPT
 ENTRIES = (

@@ -22,7 +22,7 @@ from bfsim.machine.core.synchronisation.semaphore import Semaphore
 from bfsim.machine.core.synchronisation.spin_lock import SpinLock
 from bfsim.machine.memories import Row
 from bfsim.machine.retiming.packed_work import PackedWork
-from bfsim.machine.retiming.stretch_writer import IN_L1, StretchWriter
+from bfsim.machine.retiming.stretch_writer import StretchWriter
 from bfsim.machine.retiming.work import (
     DESTINATION,
     DESTINATION_BYTE,
@@ -33,6 +33,7 @@ from bfsim.machine.retiming.work import (
     Place,
     Table,
 )
+from bfsim.machine.retiming.written_stretch import IN_L1
 
 NOT_THE_SAME = "what the cores do depends on the hardware, so the recorded run cannot be played on this one; run the firmware itself"
 
