@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from bfsim.report.sweep.figures import SEEN
-from bfsim.sweeping.running import Figures, Outcome, Work, code_digest
+from bfsim.sweeping.running import MOST_WAITS, TRIED_FRAMES, Figures, Outcome, Work, code_digest
 
 if TYPE_CHECKING:
     from bfsim.sweeping.planned import Planned
@@ -25,17 +25,15 @@ WORKS = "works"
 LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 27 ms to run, 37 ms to record and 8 ms to play (20 and 200
-frames, whole commands, means of three): n points that are left gain from n = (37 - 8) / (27 - 8), 1.5, on.
+With all that kernels work on in L1 a frame more takes 23 ms to run, 35 ms to record and 8 ms to play (20 and 200
+frames, whole commands, the least of three): n points that are left gain from n = (35 - 8) / (23 - 8), 1.8, on.
 """
 
-MOST_WAITS = 0.02
-"""Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
+MANY_LEFT = 6
+"""So many points are worth a trial of the first one: it tells whether that had better be recorded at once."""
 
-At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames, when runs were slower)
-a frame more took 1.6 times as long to record, and 0.6 times as long to play, as to run: that gains little, if anything.
-What lies between is not measured [assumed]: where it is wrong a sweep takes longer. Its figures are the same.
-"""
+LEAST_FRAMES = 10 * TRIED_FRAMES
+"""Of a point, for a trial of it to take little beside it."""
 
 
 @dataclass(slots=True)
@@ -43,6 +41,7 @@ class _Group:
     """Points with the same work: those that have not begun, and those that are not done."""
 
     path: Path
+    frames: int
     waiting: set[str] = field(default_factory=set)
     left: set[str] = field(default_factory=set)
     pays: bool | None = None
@@ -70,7 +69,9 @@ class Works(AbstractContextManager["Works"]):
         for each in points:
             if each.point.configuration.fidelity == "fast":
                 name = work_of(each)
-                group = groups.setdefault(name, _Group(store.folder / WORKS / self._own / f"{name}.work"))
+                group = groups.setdefault(
+                    name, _Group(store.folder / WORKS / self._own / f"{name}.work", each.frames)
+                )
                 group.waiting.add(each.key)
                 group.left.add(each.key)
                 self._groups[each.key] = group
@@ -96,10 +97,13 @@ class Works(AbstractContextManager["Works"]):
         group.waiting.discard(key)
         if group.is_recorded:
             return Work(group.path, group.seen)
-        if group.pays and not group.recorder and not is_again and len(group.waiting) >= LEAST_LEFT - 1:
+        is_first = len(group.waiting) == len(group.left) - 1
+        tries = is_first and len(group.left) >= MANY_LEFT and group.frames >= LEAST_FRAMES
+        pays = group.pays and len(group.waiting) >= LEAST_LEFT - 1
+        if (pays or tries) and not group.recorder and not is_again:
             group.recorder = key
             group.path.parent.mkdir(parents=True, exist_ok=True)
-            return Work(group.path)
+            return Work(group.path, is_tried=not pays)
         return None
 
     def is_expected(self, key: str) -> bool:

@@ -13,9 +13,10 @@ from typing import Any
 
 import pytest
 
-from bfsim.sweeping.running import Outcome, Work, code_digest, run_point
+from bfsim.sweeping import running
+from bfsim.sweeping.running import MOST_WAITS, Outcome, Work, code_digest, run_point
 from bfsim.sweeping.sweep import Sweep
-from bfsim.sweeping.works import LEAST_LEFT, MOST_WAITS, WORKS, Works
+from bfsim.sweeping.works import LEAST_FRAMES, LEAST_LEFT, MANY_LEFT, WORKS, Works
 from tests.sweeping.rig import BASE, home_in, planned
 from tests.sweeping.test_store import CLAIM
 
@@ -64,6 +65,37 @@ def test_points_wait_for_what_they_can_be_played_from(sweep: Sweep) -> None:
         order.path.write_text("whole")
         works.done(second, RUN)
         assert not works.is_expected(third)
+
+
+def test_of_many_long_points_the_first_one_records_if_a_trial_says_that_it_pays(sweep: Sweep) -> None:
+    """The others run until it is done, and are played then; few or short points are worth no trial."""
+    points = [replace(each, frames=LEAST_FRAMES) for each in sweep.todo]
+    first, second, third, *_ = (each.key for each in points)
+    with Works(sweep.store, points) as works:
+        order = works.order(first)
+        assert order is not None
+        assert order == Work(order.path, is_tried=True)
+        assert works.order(second) is None
+        assert works.is_expected(third)
+        order.path.write_text("whole")
+        works.done(first, RUN)
+        assert works.order(third) == Work(order.path, {"objects.ball.total": 3})
+    for few_or_short in (points[: MANY_LEFT - 1], sweep.todo):
+        with Works(sweep.store, few_or_short) as works:
+            assert works.order(first) is None
+
+
+@pytest.mark.parametrize(("waits", "is_recorded"), [(MOST_WAITS, True), (MOST_WAITS + 0.01, False)])
+def test_a_point_is_recorded_if_its_trial_waits_little(
+    sweep: Sweep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, waits: float, is_recorded: bool
+) -> None:
+    """Else it is run."""
+    monkeypatch.setattr(running, "_waits", lambda _: waits)
+    (point, *_), path = sweep.points, tmp_path / "run.work"
+    outcome = run_point(point.configuration, tmp_path, code_digest(), Work(path, is_tried=True))
+    assert not outcome.error
+    assert outcome.frames == 2
+    assert path.exists() == is_recorded
 
 
 @pytest.mark.parametrize(("left", "waits"), [(LEAST_LEFT + 1, MOST_WAITS + 0.01), (LEAST_LEFT, 0)])
