@@ -21,7 +21,7 @@ from bfsim.loading.firmware import load_firmware
 from bfsim.loading.given import given_firmware
 from bfsim.loading.hardware import find_board, find_profile
 from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.calls.call_cache import BeforeCall, Sanitizer
+from bfsim.machine.calls.watched_call import BeforeCall, sanitize_call
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Firmware
@@ -162,26 +162,16 @@ def simulate(
         fidelity=fidelity,
     )
     with loaded.own.named(), opened(recording or shipped.RECORDING) as reader:
-        fitted, sanitizer = fit(setup, reader), Sanitizer(goes_on=sanitize)
-        sanitizers = (sanitizer,) if sanitize or not fitted.build.is_tried else ()
-        machine = _machine(setup, fitted, (*sanitizers, *((on_call,) if on_call else ())))
+        fitted = fit(setup, reader)
+        machine = _machine(setup, fitted, sanitize=sanitize, on_call=on_call)
         source = DigestedFrames(reader, _frames_to_run(reader, frames))
         check = StereoCheck(reader.rectification)
         identity = identity_of(setup, fitted, source.name)
         if before:
             before(identity, source.total)
-        with retimed(
-            machine,
-            identity,
-            source,
-            loaded,
-            check,
-            record_work=record_work,
-            work=work,
-            has_pictures=bool(on_seen),
-            has_timeline=bool(on_spans),
-        ):
-            told = _told_of_frames(progress, source.total, sanitizer)
+        wants = {"has_pictures": bool(on_seen), "has_timeline": bool(on_spans)}
+        with retimed(machine, identity, source, loaded, check, record_work=record_work, work=work, **wants):
+            told = _told_of_frames(progress, source.total) if progress else None
             show = _shown_to(on_seen, source) if on_seen else None
             left = machine.run(check.watch(source), told, show, on_time, on_spans)
     identity = replace(
@@ -193,34 +183,26 @@ def simulate(
     return _record(left, identity, setup, fitted, doubted_cameras(check.warnings))
 
 
-def _machine(setup: RunSetup, fitted: FittedFirmware, before_call: tuple[BeforeCall, ...]) -> Board:
-    """Return the board with the firmware in it. `before_call`: who is called with each kernel before it runs."""
+def _machine(setup: RunSetup, fitted: FittedFirmware, *, sanitize: bool, on_call: BeforeCall | None) -> Board:
+    """Return the board with the firmware in it. Code that nobody has tried is sanitized for a frame, all of it if asked; then `on_call` is called."""
     return Board(
         setup.board.value,
         fitted.firmware,
         fitted.size,
         fitted.link_map,
         feed=setup.feed,
-        before_call=before_call,
+        before_call=(*((sanitize_call,) if sanitize else ()), *((on_call,) if on_call else ())),
+        in_first_frame=() if sanitize or fitted.build.is_tried else (sanitize_call,),
         build=fitted.build,
         devices=setup.devices,
         fidelity=setup.fidelity,
     )
 
 
-def _told_of_frames(
-    progress: Callable[[int, int], None] | None, total: int, sanitizer: Sanitizer
-) -> Callable[[object], None]:
-    """Return who is told of each frame that is done: the sanitizer, which may have seen enough, and who watches the progress."""
+def _told_of_frames(progress: Callable[[int, int], None], total: int) -> Callable[[object], None]:
+    """Return who is told of each frame that is done, and tells `progress` how many of `total` are."""
     done = count(1)
-
-    def frame_done(_frame: object) -> None:
-        sanitizer.is_past_first = True
-        number = next(done)
-        if progress:
-            progress(number, total)
-
-    return frame_done
+    return lambda _frame: progress(next(done), total)
 
 
 def _frames_to_run(reader: RecordingReader, most: int | None) -> int:

@@ -18,11 +18,12 @@ from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
-from bfsim.machine.calls.call_cache import BeforeCall, CallCache
+from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
 from bfsim.machine.calls.ledger import Ledger
 from bfsim.machine.calls.records import object_share
+from bfsim.machine.calls.watched_call import BeforeCall
 from bfsim.machine.cameras.capture import Capture, Feed, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi, require_pace
 from bfsim.machine.code import code_outside_l1, code_records
@@ -66,6 +67,7 @@ class Fidelity(StrEnum):
 class Board:
     """A board with firmware in it, ready to run once. `devices`: at the other ends of peripherals, by the names of these.
 
+    `before_call` is told of each call of a kernel before it runs, `in_first_frame` of those of the first frame.
     `ahead`: the progress of its cores, which run ahead unless they must not, or this is None. `core`: makes what firmware gets of a
     core's parts.
     """
@@ -77,6 +79,7 @@ class Board:
     feed: Feed = Feed.DEMAND
     build: Build = ESTIMATED
     before_call: tuple[BeforeCall, ...] = ()
+    in_first_frame: tuple[BeforeCall, ...] = ()
     devices: Mapping[str, Device] = field(default_factory=dict)
     fidelity: Fidelity = Fidelity.FAST
     ahead: type[Ahead] | None = Ahead
@@ -225,6 +228,7 @@ class Board:
             own=self._buffers.only_of(name),
             handed_over=self._buffers.handed_over,
             before_call=self.before_call,
+            in_first_frame=self.in_first_frame,
         )
 
     def _code_outside_l1(self, core: str) -> dict[str, tuple[int, int]]:

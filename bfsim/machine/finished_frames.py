@@ -35,6 +35,7 @@ class FinishedFrames:
         parts = [each.pop(0) for each in finished]
         for calls, part in zip(self._calls.values(), parts, strict=True):
             calls.report(part.counts)
+            calls.end_first_frame()
         record = FrameRecord(
             index=parts[0].index,
             last_line_cclk=parts[0].full_at_cclk,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -21,34 +22,15 @@ from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import FrameCounts, Ledger
 from bfsim.machine.calls.ready_calls import ReadyCalls
 from bfsim.machine.calls.records import CoreRecords
+from bfsim.machine.calls.watched_call import BeforeCall, WatchedCall
 from bfsim.machine.memories import Row
 from bfsim.machine.owner_costs import Owner
 from bfsim.machine_code.calling import words_at
 from bfsim.trace import REST
 
-BeforeCall = Callable[[Kernel, tuple[Row | int, ...]], None]
-"""Is told of a kernel and its arguments before each call, and changes neither."""
-
 
 def _nobody(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
     """Care for no call."""
-
-
-@dataclass(slots=True)
-class Sanitizer:
-    """Runs each kernel as it is written before it is called, on copies: in the first frame, or if it `goes_on`, in all.
-
-    A call raises KernelError for a wrong index or divisor.
-    """
-
-    goes_on: bool
-    is_past_first: bool = False
-    """Whether the first frame is done."""
-
-    def __call__(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
-        """Run `kernel`."""
-        if self.goes_on or not self.is_past_first:
-            kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,21 +73,6 @@ KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, Know
 """What picks the rows out of the arguments of a kernel, and its calls by them."""
 
 
-@dataclass(frozen=True, slots=True)
-class WatchedCall:
-    """A call that others are told of before it runs."""
-
-    run: Callable[..., Work]
-    kernel: Kernel
-    before: tuple[BeforeCall, ...]
-
-    def __call__(self, *arguments: Row | int) -> Work:
-        """Tell of the call, run the kernel, and say what it cost."""
-        for tell in self.before:
-            tell(self.kernel, arguments)
-        return self.run(*arguments)
-
-
 class DeferredWork(Work):
     """A call that is still to be made, with `run`."""
 
@@ -139,10 +106,11 @@ class CallCache:
         own: Collection[str],
         handed_over: Collection[str],
         before_call: tuple[BeforeCall, ...],
+        in_first_frame: tuple[BeforeCall, ...],
     ) -> None:
         """`memory`: where all rows lie. `stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on.
 
-        `handed_over`: those of which that holds at a time.
+        `handed_over`: those of which that holds at a time. `before_call` is told of each call, `in_first_frame` of those of the first frame.
         """
         self._core = core
         self._build = build
@@ -153,6 +121,7 @@ class CallCache:
         self._own = own
         self._handed_over = handed_over
         self._before_call = before_call
+        self._in_first_frame = in_first_frame
         self._owners = owners
         self._ledger = ledger
         self._memory = memory
@@ -214,6 +183,17 @@ class CallCache:
         """The address of these, to be added to, and how many there are."""
         return self._ledger.events_at, self._ledger.event_count
 
+    def end_first_frame(self) -> None:
+        """Tell nobody any more but who is told of each call."""
+        if not self._in_first_frame:
+            return
+        self._in_first_frame = ()
+        for _, calls in chain.from_iterable(each.values() for each in self._calls.values()):
+            for rows, call in calls.items():
+                assert isinstance(call.run, WatchedCall), "somebody was told"
+                run = self._watched(call.run.kernel, call.run.run)
+                calls[rows] = self.made[call.number] = replace(call, run=run, words=words_at(run))
+
     def close(self) -> tuple[Sequence[Owner], NDArray[np.int64], FrameCounts]:
         """Return all kernels, in each stage, what they cost in the frame that ends now, and what they have counted in it."""
         return self._ledger.close()
@@ -268,8 +248,7 @@ class CallCache:
         ).run
         if group.fetches:
             run = group.fetches.behind(run)
-        if self._before_call:
-            run = WatchedCall(run, kernel, self._before_call)
+        run = self._watched(kernel, run)
         return KnownCall(
             kernel.name,
             len(self.made),
@@ -281,6 +260,11 @@ class CallCache:
                 dict.fromkeys(each.buffer for each in call.rows if each.buffer in self._handed_over)
             ),
         )
+
+    def _watched(self, kernel: Kernel, run: Callable[..., Work]) -> Callable[..., Work]:
+        """Return a call with those before it who are told of it, if anybody is: then machine code cannot make it."""
+        before = *self._in_first_frame, *self._before_call
+        return WatchedCall(run, kernel, before) if before else run
 
     def _is_traced(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""

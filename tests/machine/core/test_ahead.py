@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 import pytest
@@ -123,6 +124,29 @@ def test_python_makes_each_call_once_and_machine_code_those_that_come_again(
     asked.clear()
     assert outcome(deeds, ahead=False) == whole
     assert min(asked.count(name) for name in made) >= 2 * 20
+
+
+@pytest.mark.parametrize("goes_on", [False, True])
+def test_machine_code_makes_calls_once_the_frame_is_over_in_which_others_are_told_of_them(
+    monkeypatch: pytest.MonkeyPatch, goes_on: bool
+) -> None:
+    """Python made them until the end, which took twice the time; the records are the same, and who is told of all calls is."""
+    asked, told, told_of_all = Counter[str](), Counter[str](), Counter[str]()
+    run = Tasks._run
+
+    def seen(tasks: Tasks, kernel: Kernel, *arguments: Row | int) -> Work:
+        asked[kernel.name] += 1
+        return run(tasks, kernel, *arguments)
+
+    deeds: tuple[Deeds, Deeds] = (5 * [("rings", 5), ("own", 1)], [("rings", 1)])
+    plain = replace(load(*map(doing, deeds)).run(noise(9)), events=0)
+    monkeypatch.setattr(Tasks, "_run", seen)
+    board = load(*map(doing, deeds))
+    board.in_first_frame = (lambda kernel, _: told.update([kernel.name]),)
+    board.before_call = (lambda kernel, _: told_of_all.update([kernel.name]),) if goes_on else ()
+    assert replace(board.run(noise(9)), events=0) == plain
+    assert told_of_all == ({name: 9 * count for name, count in told.items()} if goes_on else {})
+    assert asked.total() == told_of_all.total() if goes_on else asked.total() < 2 * told.total()
 
 
 def test_calls_that_meet_nobody_end_a_stretch_before_its_room_does(monkeypatch: pytest.MonkeyPatch) -> None:
