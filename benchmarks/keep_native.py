@@ -17,7 +17,7 @@ from bfsim.files.store import KEPT
 from bfsim.kernel import native
 from bfsim.kernel.calls.traced_access import trace_access
 from bfsim.machine.bus.tape import note, note_access, note_run
-from bfsim.machine.bus.tape_lines import note_copy, note_fetch, note_program, note_send, note_wait
+from bfsim.machine.bus.tape_lines import note_copy, note_fetch, note_program, note_row, note_send, note_wait
 from bfsim.machine.bus.weave import advance
 from bfsim.machine.calls.code_fetches import fetch_lines, fetch_singly
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
@@ -36,6 +36,7 @@ ENTRIES = (
     note_copy,
     note_wait,
     note_fetch,
+    note_row,
     note_send,
     find_call,
     fetch_lines,

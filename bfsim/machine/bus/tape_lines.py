@@ -1,10 +1,12 @@
 """The lines of a ring on the tape of a core that runs ahead, compiled: their copies are done, and noted with all that belongs to them.
 
-Of a ring there are words: HEAD of them, and behind these COPY_WORDS of each line.
+Of its lines there are words, the same whenever it comes again: HEAD of them, and behind these COPY_WORDS of each line. Of itself it has
+DONE, DEPTH and, from LATEST on, copies.
 """
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,15 @@ HEAD = 6
 (PLAN, FROM, TO, NUMBER, NBYTES) = range(5)
 """Of a copy: its plan, NONE if it has none yet, where it begins to read and to write, what is noted behind that, and how long it is."""
 COPY_WORDS = 5
+(DONE, DEPTH, LATEST) = range(3)
+"""Of a ring: how many lines were taken or sent, how many rows it has, and copies: of one of input that of the next line, NONE if that is not
+on its way; of one of output those of the lines that its rows had last."""
+
+
+@native
+def runs_ahead(state: State, core: int) -> bool:
+    """Whether a core notes what it does."""
+    return state[w.TAPES_AT + core * w.TAPE_WORDS + w.TAKES_CALLS] != 0
 
 
 @native
@@ -76,35 +87,59 @@ def note_wait(state_at: Any, _memory_at: Any, core: int, lines_at: Any, copied: 
     return wait(words_at(state_at), core, words_at(lines_at), copied)
 
 
-@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64", "int64")
-def note_fetch(state_at: Any, memory_at: Any, core: int, lines_at: Any, number: int, coming: int) -> int:
-    """Do all that takes a line: meet the others, program the stream, have the next line copied, and wait for this one.
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64*")
+def note_fetch(state_at: Any, memory_at: Any, core: int, lines_at: Any, ring_at: Any) -> int:
+    """Do all that takes the next line: meet the others, program the stream, have the line behind it copied, and wait for this one.
 
-    `coming`: its copy, NONE if it is not on its way. Returns that of the next line, of the last one its own; NONE if one has no plan
-    yet, and nothing is done.
+    Returns its row; NONE if the core does not run ahead, or a line has no plan yet, and nothing is done.
     """
     state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
-    following = number + 1
-    if following > lines[COUNT] or not has_plan(lines, number):
+    ring: State = words_at(ring_at)
+    number, following = ring[DONE], ring[DONE] + 1
+    if not runs_ahead(state, core) or following > lines[COUNT] or not has_plan(lines, number):
         return w.NONE
     if following < lines[COUNT] and not has_plan(lines, following):
         return w.NONE
     write(state, core, w.CATCH_UP, 0, 0, 0, 0)
     program(state, core, lines)
-    copied = copy(state, memory, core, lines, number) if coming == w.NONE else coming
-    next_one = copy(state, memory, core, lines, following) if following < lines[COUNT] else copied
+    copied = copy(state, memory, core, lines, number) if ring[LATEST] == w.NONE else ring[LATEST]
+    ring[LATEST] = copy(state, memory, core, lines, following) if following < lines[COUNT] else w.NONE
     wait(state, core, lines, copied)
-    return next_one
+    ring[DONE] = following
+    return number % ring[DEPTH]
 
 
-@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
-def note_send(state_at: Any, memory_at: Any, core: int, lines_at: Any, number: int) -> int:
-    """Program the stream, and have a line copied; return its copy, or NONE if it has no plan yet, and nothing is done."""
-    state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
-    if number >= lines[COUNT] or not has_plan(lines, number):
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64*")
+def note_row(state_at: Any, _memory_at: Any, core: int, lines_at: Any, ring_at: Any) -> int:
+    """Wait until the row for the next line is free, and return it; NONE if the core does not run ahead."""
+    state: State = words_at(state_at)
+    ring: State = words_at(ring_at)
+    row = ring[DONE] % ring[DEPTH]
+    if not runs_ahead(state, core):
         return w.NONE
+    if ring[DONE] >= ring[DEPTH]:
+        wait(state, core, words_at(lines_at), ring[LATEST + row])
+    return row
+
+
+@native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64*")
+def note_send(state_at: Any, memory_at: Any, core: int, lines_at: Any, ring_at: Any) -> int:
+    """Program the stream, and have the next line copied; return its row, or NONE as above, and nothing is done."""
+    state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
+    ring: State = words_at(ring_at)
+    number = ring[DONE]
+    if not runs_ahead(state, core) or number >= lines[COUNT] or not has_plan(lines, number):
+        return w.NONE
+    row = number % ring[DEPTH]
     program(state, core, lines)
-    return copy(state, memory, core, lines, number)
+    ring[LATEST + row] = copy(state, memory, core, lines, number)
+    ring[DONE] = number + 1
+    return row
+
+
+def ring_words(depth: int, copies: int) -> ctypes.Array[ctypes.c_int64]:
+    """Return the words of a ring of `depth` rows, none of whose lines was taken or sent, with room for so many copies."""
+    return (ctypes.c_int64 * (LATEST + copies))(0, depth, *(copies * [w.NONE]))
 
 
 class NotedLines:
@@ -115,5 +150,6 @@ class NotedLines:
         self.program = built_in(note_program.address(), 0, *at)
         self.copy = built_in(note_copy.address(), 1, *at)
         self.wait = built_in(note_wait.address(), 1, *at)
-        self.fetch = built_in(note_fetch.address(), 2, *at)
+        self.fetch = built_in(note_fetch.address(), 1, *at)
+        self.row = built_in(note_row.address(), 1, *at)
         self.send = built_in(note_send.address(), 1, *at)

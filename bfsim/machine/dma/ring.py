@@ -6,9 +6,11 @@ A ring of n rows holds n - 1 lines that the core may use and one that the DMA is
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
+from ctypes import addressof
 from typing import Any
 
 from bfsim.errors import FirmwareError
+from bfsim.machine.bus.tape_lines import DONE, LATEST, ring_words
 from bfsim.machine.core.progress.line_copies import NO_COPY, Copy, Lines
 from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.waits import awaited
@@ -34,6 +36,11 @@ def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
         )
 
 
+def _in_step(_ring: int) -> int:
+    """Note nothing: the core never runs ahead."""
+    return NO_COPY
+
+
 class InputRing:
     """Lines of a picture, first to last, one line ahead of the core."""
 
@@ -50,40 +57,49 @@ class InputRing:
         self._height, self._depth = len(image), len(rows)
         used = tuple(rows[: self._height])
         self._lines = progress.copies(Lines(stream, tuple(image), used, self._owner, EMPTY))
-        self._ahead = self._lines.ahead
-        self._taken = 0
-        self._coming: Copy = NO_COPY  # the next line
+        self._words = ring_words(self._depth, 1)
+        self._at = addressof(self._words)
+        self._fetch = self._lines.ahead.fetch if self._lines.ahead else _in_step
+        self._coming: Copy = NO_COPY  # the next line, where that is not among the words
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        number = self._taken
-        if (ahead := self._ahead) and self._progress.runs_ahead:
-            coming = ahead.fetch(number, self._coming)
-            if coming == NO_COPY:
-                self._lines.plan(number, number + 1)
-                coming = ahead.fetch(number, self._coming)
-            if coming != NO_COPY:
-                self._taken, self._coming = number + 1, coming
-                return self._rows[number % self._depth]
+        row = self._fetch(self._at)
+        if row >= 0:
+            return self._rows[row]
+        return (yield from self._planned())
+
+    def _planned(self) -> Generator[Any, Any, Row]:
+        """Do that for the first time, or step by step."""
+        number = self._words[DONE]
+        if self._progress.runs_ahead:
+            self._lines.plan(number, number + 1)
+            row = self._fetch(self._at)
+            if row >= 0:
+                return self._rows[row]
         return (yield from self._waited_for(number))
 
     def _waited_for(self, number: int) -> Generator[Any, Any, Row]:
         """Do that step by step."""
-        progress, lines = self._progress, self._lines
+        progress, lines, words = self._progress, self._lines, self._words
         if late := progress.catch_up():
             yield late
         if number == self._height:
             raise FirmwareError(
                 f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
-        self._taken = number + 1
+        words[DONE] = number + 1
         timeline = progress.clock.timeline
         if timeline:
             self._on_line(number, self._height)
         lines.program()
-        copy = lines.copy(number) if self._coming == NO_COPY else self._coming
+        coming = self._coming if words[LATEST] == NO_COPY else words[LATEST]
+        copy = lines.copy(number) if coming == NO_COPY else coming
         # one line ahead: its row is the one that the core gave up with this call
-        self._coming = lines.copy(number + 1) if number + 1 < self._height else NO_COPY
+        self._coming, words[LATEST] = (
+            lines.copy(number + 1) if number + 1 < self._height else NO_COPY,
+            NO_COPY,
+        )
         progress.settle()
         is_there = lines.goes_on(copy)
         if timeline:
@@ -94,10 +110,11 @@ class InputRing:
 
     def __getitem__(self, number: int) -> Row:
         """Return the row of line `number`, which must still be in the ring."""
-        if not self._taken - self._depth < number < self._taken or number < 0:
+        taken = self._words[DONE]
+        if not taken - self._depth < number < taken or number < 0:
             raise FirmwareError(
                 f"line {number} is not in ring {self._rows[0].buffer}, which has {self._depth} rows "
-                f"and is at line {self._taken - 1}"
+                f"and is at line {taken - 1}"
             )
         return self._rows[number % self._depth]
 
@@ -116,51 +133,58 @@ class OutputRing:
         self._height, self._depth = len(image), len(rows)
         used = tuple(rows[: self._height])
         self._lines = progress.copies(Lines(stream, used, tuple(image), self._owner, FULL))
-        self._ahead = self._lines.ahead
-        self._copies: list[Copy] = []
+        self._words = ring_words(self._depth, self._depth)
+        self._at = addressof(self._words)
+        self._free = self._lines.ahead.row if self._lines.ahead else _in_step
+        self._sent = self._lines.ahead.send if self._lines.ahead else _in_step
+        self._copies: dict[int, Copy] = {}  # of lines that rows had last, where that is not among the words
         self._waits = progress.waits
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
-        number, depth = len(self._copies), self._depth
-        if number >= depth:
-            copy = self._copies[number - depth]
-            if (ahead := self._ahead) and self._progress.runs_ahead:
-                ahead.wait(copy)
-            elif self._must_wait(copy):
-                yield from self._progress.wait_transfer(copy, FULL, self._owner)
-        return self._rows[number % depth]
+        row = self._free(self._at)
+        if row >= 0:
+            return self._rows[row]
+        number = self._words[DONE]
+        if number >= self._depth and self._must_wait(copy := self._copy(number)):
+            yield from self._progress.wait_transfer(copy, FULL, self._owner)
+        return self._rows[number % self._depth]
+
+    def _copy(self, number: int) -> Copy:
+        """Return the copy of the line that the row of line `number` had last."""
+        row = number % self._depth
+        return self._copies.get(row, self._words[LATEST + row])
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
-        progress, number = self._progress, len(self._copies)
-        if (ahead := self._ahead) and progress.runs_ahead:
-            copy = ahead.send(number)
-            if copy == NO_COPY:
-                self._lines.plan(number)
-                copy = ahead.send(number)
-            if copy != NO_COPY:
-                self._copies.append(copy)
+        if self._sent(self._at) >= 0:
+            return
+        progress, number = self._progress, self._words[DONE]
+        if progress.runs_ahead:
+            self._lines.plan(number)
+            if self._sent(self._at) >= 0:
                 return
         if number == self._height:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
         self._lines.program()
-        self._copies.append(self._lines.copy(number))
+        self._copies[number % self._depth] = self._lines.copy(number)
+        self._words[DONE] = number + 1
         if progress.clock.timeline:
             self._tell_fill()
 
     def _tell_fill(self) -> None:
         """Tell how many rows wait for their DMA."""
-        on_their_way = [each for each in self._copies[-self._depth :] if not self._progress.has(each)]
+        on_their_way = [each for each in self._copies.values() if not self._progress.has(each)]
         self._progress.clock.tell_level(self._owner, len(on_their_way))
 
     @awaited
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
-        if self._copies and self._must_wait(self._copies[-1]):
-            yield from self._progress.wait_transfer(self._copies[-1], FULL, self._owner)
+        sent = self._words[DONE]
+        if sent and self._must_wait(last := self._copy(sent - 1)):
+            yield from self._progress.wait_transfer(last, FULL, self._owner)
 
     def _must_wait(self, copy: Copy) -> bool:
         """Whether a core that needs a copy done must wait for it, or may be interrupted there."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from ctypes import addressof
+
 import numpy as np
 import pytest
 
 from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.tape import MOST_OPERATIONS, Tape
-from bfsim.machine.bus.tape_lines import COPY_WORDS, NotedLines
+from bfsim.machine.bus.tape_lines import COPY_WORDS, DONE, NotedLines, ring_words
 from tests.machine.bench import Bench
 
 CORE, CALL = 1, 11
@@ -27,7 +29,14 @@ def bench() -> Bench:
 @pytest.fixture
 def tape(bench: Bench) -> Tape:
     """Return the tape of a core on it."""
-    return bench.bus.tape(CORE)
+    return taking(bench, CORE)
+
+
+def taking(bench: Bench, core: int) -> Tape:
+    """Return the tape of a core that runs ahead."""
+    tape = bench.bus.tape(core)
+    tape.takes_calls = True
+    return tape
 
 
 def noted(tape: Tape) -> list[tuple[int, ...]]:
@@ -110,13 +119,13 @@ def test_a_wait_counts_back_from_the_last_copy(tape: Tape) -> None:
 
 def test_a_line_is_taken_and_sent_as_step_by_step(bench: Bench) -> None:
     """The next one is on its way then, and the last has none behind it."""
-    at_once, by_steps = bench.bus.tape(0), bench.bus.tape(CORE)
+    at_once, by_steps = taking(bench, 0), taking(bench, CORE)
     copies = [(plan, 100 * plan, 2048 + 100 * plan, 0, 64) for plan in range(3)]
     one, other = ring(at_once, *copies), ring(by_steps, *copies)
-    coming = w.NONE
-    for number in range(3):
-        coming = one.fetch(number, coming)
-    one.send(2)
+    taken, sent = ring_words(2, 1), ring_words(2, 2)
+    sent[DONE] = 2
+    assert [one.fetch(addressof(taken)) for _ in copies] == [0, 1, 0]
+    assert one.send(addressof(sent)) == 0
     by_steps.note(*MEET)
     other.program()
     came = other.copy(0)
@@ -135,10 +144,38 @@ def test_a_line_is_taken_and_sent_as_step_by_step(bench: Bench) -> None:
 
 def test_a_line_without_a_plan_is_neither_taken_nor_sent(tape: Tape) -> None:
     """Nor one behind the last; nothing is noted."""
-    lines = ring(tape, (9, 0, 64, 0, 4), NO_PLAN)
-    assert [lines.fetch(0, w.NONE), lines.fetch(1, 0), lines.fetch(2, 0)] == 3 * [w.NONE]
-    assert [lines.send(1), lines.send(2)] == 2 * [w.NONE]
+    lines, words = ring(tape, (9, 0, 64, 0, 4), NO_PLAN), ring_words(3, 3)
+    for words[DONE], takes in (
+        (0, (lines.fetch,)),
+        (1, (lines.fetch, lines.send)),
+        (2, (lines.fetch, lines.send)),
+    ):
+        before = bytes(words)
+        assert {take(addressof(words)) for take in takes} == {w.NONE}
+        assert bytes(words) == before
     assert not tape.noted
+
+
+def test_a_core_in_step_notes_no_line(tape: Tape) -> None:
+    """Its rings do it step by step."""
+    lines, words = ring(tape, (9, 0, 64, 0, 4)), ring_words(2, 2)
+    tape.takes_calls = False
+    before = bytes(words)
+    assert {take(addressof(words)) for take in (lines.fetch, lines.row, lines.send)} == {w.NONE}
+    assert not tape.noted
+    assert bytes(words) == before
+
+
+def test_a_row_is_waited_for_once_its_line_was_sent(tape: Tape) -> None:
+    """By the latest of the lines that it had: of two rows that of the second line before."""
+    lines, words = ring(tape, *(5 * [(9, 0, 64, 0, 4)])), ring_words(2, 2)
+    at, rows = addressof(words), []
+    for _ in range(5):
+        rows.append(lines.row(at))
+        assert lines.send(at) == rows[-1]
+    assert rows == [0, 1, 0, 1, 0]
+    waits = [each for each in noted(tape) if each[0] == w.AWAIT]
+    assert waits == 3 * [(w.AWAIT, 2, w.RING_FULL, 5, 0)]
 
 
 def test_cores_have_tapes_of_their_own(bench: Bench, tape: Tape) -> None:
