@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cache
 from itertools import groupby
 from typing import NamedTuple, overload
 
@@ -27,21 +26,16 @@ class Owner(NamedTuple):
     symbol: str = ""
 
 
-@cache
-def _shared(owners: tuple[Owner, ...]) -> tuple[Owner, ...]:
-    """Return the first tuple that was equal: most frames have the same owners."""
-    return owners
-
-
 class OwnerCosts(Sequence[OwnerCost]):
     """The costs of owners, made from a table with a row of COLUMNS for each; rows of zeros are left out."""
 
     __slots__ = ("_amounts", "_owners", "_places")
 
-    def __init__(self, owners: Sequence[Owner], table: NDArray[np.int64]) -> None:
+    def __init__(self, owners: tuple[Owner, ...], table: NDArray[np.int64]) -> None:
+        """`owners`: best the same tuple for as many frames as have the same."""
         numbers = table.reshape(-1)
         places = np.flatnonzero(numbers)
-        self._owners = _shared(tuple(owners))
+        self._owners = owners
         self._places, self._amounts = places.astype(np.uint32).tobytes(), numbers[places].tobytes()
 
     def __len__(self) -> int:

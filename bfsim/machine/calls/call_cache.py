@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Generator, Sequence
+from collections.abc import Callable, Collection, Generator
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import NamedTuple
@@ -194,7 +194,7 @@ class CallCache:
                 run = self._watched(call.run.kernel, call.run.run)
                 calls[rows] = self.made[call.number] = replace(call, run=run, words=words_at(run))
 
-    def close(self) -> tuple[Sequence[Owner], NDArray[np.int64], FrameCounts]:
+    def close(self) -> tuple[tuple[Owner, ...], NDArray[np.int64], FrameCounts]:
         """Return all kernels, in each stage, what they cost in the frame that ends now, and what they have counted in it."""
         return self._ledger.close()
 

@@ -176,23 +176,24 @@ class Ledger:
         """The events that each counter has counted."""
         return self._events[: self.event_count]
 
-    def close(self) -> tuple[Sequence[Owner], Rows, FrameCounts]:
+    def close(self) -> tuple[tuple[Owner, ...], Rows, FrameCounts]:
         """Return the kernels in each stage, what they cost since the last time, rows of an `OwnerCosts` table, and all counts of that."""
         if self._new_charges:
             self._know(np.concatenate([self._charges, *self._new_charges], axis=1))
             self._new_charges = []
-        costs = np.zeros((len(self._owners), COLUMNS), np.int64)
+        costs = np.zeros((len(self._kernels), COLUMNS), np.int64)
         costs_at = costs.ctypes.data
         events, before = self.events, self._events_before[: self.event_count]
         self._charge_events(*self._charges_at, costs_at)
         found = self._charge_sites(*self._owners_at, costs_at)
         counts = FrameCounts(events - before, self._places[:found].copy(), self._amounts[:found].copy())
         before[:] = events
-        return tuple(self._owners), costs, counts
+        return self._kernels, costs, counts
 
     def _know(self, charges: Rows) -> None:
         """Keep who is charged for what, and where that is for compiled code, as all sites are known by now."""
         self._charges = np.ascontiguousarray(charges)  # behind a single column numpy lays others by rows
+        self._kernels = tuple(self._owners)
         self._owners_of_sites = np.array(self._site_owners, np.int64)
         self._charges_at = self._charges.ctypes.data, self._charges.shape[1]
         self._owners_at = self._owners_of_sites.ctypes.data, len(self._owners_of_sites)

@@ -35,7 +35,11 @@ class Core:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self._waits = parts.progress.waits
-        self._tasks, self._pictures = parts.tasks, parts.pictures  # firmware asks for these most
+        self._tasks, self._pictures, self._layouts = (
+            parts.tasks,
+            parts.pictures,
+            parts.layouts,
+        )  # firmware asks for these most
         if not parts.clock.timeline:
             self.at = idle()  # type: ignore[method-assign]  # nobody looks, and firmware says it all the time
         self.name = parts.name
@@ -72,33 +76,33 @@ class Core:
 
     def rows(self, name: str) -> tuple[Row, ...]:
         """Return the rows of the buffer called `name`."""
-        return self._parts.layouts.rows(name)
+        return self._layouts.rows(name)
 
     def array(self, name: str) -> Row:
         """Return the only row of the buffer called `name`."""
-        rows = self.rows(name)
+        rows = self._layouts.rows(name)
         if len(rows) != 1:
             raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
         return rows[0]
 
     def has_buffer(self, name: str) -> bool:
         """Whether there is a buffer called `name`: some come only with the tables of a recording."""
-        return self._parts.layouts.has_buffer(name)
+        return self._layouts.has_buffer(name)
 
     def overlay(self, buffer: str | Sequence[Row], element: Number, columns: int) -> tuple[Row, ...]:
         """Return the memory of the buffer of that name, or of the rows of a picture, all as one, as rows of another kind: a union in C."""
-        return self._parts.layouts.overlay(buffer, element, columns)
+        return self._layouts.overlay(buffer, element, columns)
 
     def part(self, rows: Sequence[Row], first: int, count: int) -> tuple[Row, ...]:
         """Return `count` elements of each row from element `first` on, such as the columns of an area: no bytes move."""
-        return self._parts.layouts.part(rows, first, count)
+        return self._layouts.part(rows, first, count)
 
     def use_size(self, size: FrameSize) -> None:
         """Have the buffers from now on as firmware declares them for pictures of `size`, in the memory of the full ones.
 
         Their contents are not moved. Raises FirmwareError for a size that the memory has no room for.
         """
-        self._parts.layouts.use(size)
+        self._layouts.use(size)
 
     # ---- lines of pictures, and other copies
 

@@ -33,7 +33,8 @@ class Layouts:
         self._layouts = {size: placed}
         # the same rows every time, so that calls and copies with them are prepared once
         self._overlays: dict[tuple[Row, Row, Number, int], Rows] = {}
-        self._parts: dict[tuple[Row, int, int], Row] = {}
+        self._parts: dict[tuple[Rows, int, int], Rows] = {}
+        self._cut_rows: dict[tuple[Row, int, int], Row] = {}
         self.use(size)
 
     def use(self, size: FrameSize) -> None:
@@ -79,19 +80,25 @@ class Layouts:
 
     def part(self, rows: Sequence[Row], first: int, count: int) -> Rows:
         """Return `count` elements of each row, from element `first` on."""
+        kind = (tuple(rows), first, count)
+        if kind not in self._parts:
+            self._parts[kind] = self._cut(*kind)
+        return self._parts[kind]
+
+    def _cut(self, rows: Rows, first: int, count: int) -> Rows:
         if not rows or not 0 <= first < first + count <= len(rows[0].array):
             length = len(rows[0].array) if rows else 0
             raise FirmwareError(
                 f"a part of rows of {length} elements must lie in them, not at {first} to {first + count - 1}"
             )
         if count == len(rows[0].array) and all(each.nbytes == rows[0].nbytes for each in rows):
-            return tuple(rows)  # nothing is cut off
-        known = self._parts
-        return tuple(known.get((row, first, count)) or self._new_part(row, first, count) for row in rows)
+            return rows  # nothing is cut off
+        known = self._cut_rows
+        return tuple(known.get((row, first, count)) or self._cut_row(row, first, count) for row in rows)
 
-    def _new_part(self, row: Row, first: int, count: int) -> Row:
+    def _cut_row(self, row: Row, first: int, count: int) -> Row:
         skipped = first * row.array.itemsize
-        part = self._parts[row, first, count] = Row(
+        part = self._cut_rows[row, first, count] = Row(
             row.buffer,
             row.memory,
             row.address + skipped,

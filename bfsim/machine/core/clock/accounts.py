@@ -6,7 +6,7 @@ is, by name: a ring, a semaphore, an interrupt, the cameras.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,6 +77,10 @@ class FrameAccounts:
         self._core = core
         self._stages = stages
         self._begin_cclk = 0
+        self._kernels: tuple[Owner, ...] = ()
+        self._owners: dict[
+            tuple[Owner, ...], tuple[Owner, ...]
+        ] = {}  # these kernels and others, by the others
         self._open()
 
     def _open(self) -> None:
@@ -87,10 +91,10 @@ class FrameAccounts:
         """Let cycles go to `stage`, or to the rest."""
         self.now = self._accounts.setdefault(stage, StageAccount())
 
-    def close(self, end_cclk: int, kernels: Sequence[Owner], costs: NDArray[np.int64]) -> CoreFrame:
+    def close(self, end_cclk: int, kernels: tuple[Owner, ...], costs: NDArray[np.int64]) -> CoreFrame:
         """End the frame at `end_cclk`, begin the next one, and return the record: stages in the budget's order.
 
-        `kernels` are those that ran, in each stage, with their `costs` as rows of an `OwnerCosts` table.
+        `kernels` are those that ran, in each stage, the same tuple for as long as none comes, with their `costs` as rows of an `OwnerCosts` table.
         """
         order = [each for each in (*self._stages, REST) if each in self._accounts]
         others = [
@@ -104,8 +108,18 @@ class FrameAccounts:
             begin_cclk=self._begin_cclk,
             end_cclk=end_cclk,
             stages=tuple(self._accounts[each].cost(each) for each in order),
-            owners=OwnerCosts((*kernels, *(owner for owner, _ in others)), np.concatenate([costs, table])),
+            owners=OwnerCosts(
+                self._with(kernels, tuple(owner for owner, _ in others)), np.concatenate([costs, table])
+            ),
         )
         self._begin_cclk = end_cclk
         self._open()
         return frame
+
+    def _with(self, kernels: tuple[Owner, ...], others: tuple[Owner, ...]) -> tuple[Owner, ...]:
+        """Return all owners of a frame: most frames have the same ones, and then the same tuple."""
+        if kernels is not self._kernels:
+            self._kernels, self._owners = kernels, {}
+        if others not in self._owners:
+            self._owners[others] = (*kernels, *others)
+        return self._owners[others]
