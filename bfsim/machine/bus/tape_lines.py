@@ -9,9 +9,6 @@ from __future__ import annotations
 import ctypes
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
@@ -143,13 +140,12 @@ def ring_words(depth: int, copies: int) -> ctypes.Array[ctypes.c_int64]:
 
 
 class NotedLines:
-    """The lines of a ring on a tape: each function as above, a built-in one, told what is left to be told."""
+    """What notes lines of rings on a tape: each function as above, a built-in one, told where the words of the lines are and what is left then."""
 
-    def __init__(self, tape: Tape, words: NDArray[np.int64]) -> None:
-        at = *tape.at, words.ctypes.data
-        self.program = built_in(note_program.address(), 0, *at)
-        self.copy = built_in(note_copy.address(), 1, *at)
-        self.wait = built_in(note_wait.address(), 1, *at)
-        self.fetch = built_in(note_fetch.address(), 1, *at)
-        self.row = built_in(note_row.address(), 1, *at)
-        self.send = built_in(note_send.address(), 1, *at)
+    def __init__(self, tape: Tape) -> None:
+        self.program = built_in(note_program.address(), 1, *tape.at)
+        self.copy = built_in(note_copy.address(), 2, *tape.at)
+        self.wait = built_in(note_wait.address(), 2, *tape.at)
+        self.fetch = built_in(note_fetch.address(), 2, *tape.at)
+        self.row = built_in(note_row.address(), 2, *tape.at)
+        self.send = built_in(note_send.address(), 2, *tape.at)

@@ -36,7 +36,7 @@ def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
         )
 
 
-def _in_step(_ring: int) -> int:
+def _in_step(_lines: int, _ring: int) -> int:
     """Note nothing: the core never runs ahead."""
     return NO_COPY
 
@@ -64,7 +64,7 @@ class InputRing:
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        row = self._fetch(self._at)
+        row = self._fetch(self._lines.at, self._at)
         if row >= 0:
             return self._rows[row]
         return (yield from self._planned())
@@ -74,7 +74,7 @@ class InputRing:
         number = self._words[DONE]
         if self._progress.runs_ahead:
             self._lines.plan(number, number + 1)
-            row = self._fetch(self._at)
+            row = self._fetch(self._lines.at, self._at)
             if row >= 0:
                 return self._rows[row]
         return (yield from self._waited_for(number))
@@ -142,7 +142,7 @@ class OutputRing:
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
-        row = self._free(self._at)
+        row = self._free(self._lines.at, self._at)
         if row >= 0:
             return self._rows[row]
         number = self._words[DONE]
@@ -157,12 +157,12 @@ class OutputRing:
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
-        if self._sent(self._at) >= 0:
+        if self._sent(self._lines.at, self._at) >= 0:
             return
         progress, number = self._progress, self._words[DONE]
         if progress.runs_ahead:
             self._lines.plan(number)
-            if self._sent(self._at) >= 0:
+            if self._sent(self._lines.at, self._at) >= 0:
                 return
         if number == self._height:
             raise FirmwareError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import RING_STREAMS
+from bfsim.machine.bus.tape_lines import COPY_WORDS, NUMBER
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.progress.ahead import Ahead
 from bfsim.machine.core.waits import Wait
@@ -56,11 +58,12 @@ class RecordedAhead(Ahead):
             self.notes.add_accesses(trace.entries(count), trace.sites(count))
             self.notes.add(w.ACCESS, work.issue_cclk, work.stall_cclk, count, call.number)
 
-    def planned(self, stream: MdmaStream, source: Row, destination: Row) -> tuple[int, ...]:
-        """Return it with its number in the notes."""
-        plan, offset, to, _, nbytes = super().planned(stream, source, destination)
-        number = RING_STREAMS[self._number].index(stream.master)
-        return plan, offset, to, self.notes.copy(number, source, destination), nbytes
+    def planned(self, stream: MdmaStream, copies: Iterable[tuple[Row, Row]]) -> list[int]:
+        """Return them with their numbers in the notes."""
+        copies = list(copies)
+        words, number = super().planned(stream, copies), RING_STREAMS[self._number].index(stream.master)
+        words[NUMBER::COPY_WORDS] = [self.notes.copy(number, *each) for each in copies]
+        return words
 
     def _play(self, noted: int) -> Wait:
         if not self.is_paused:

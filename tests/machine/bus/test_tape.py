@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from ctypes import addressof
+from functools import partial
 
 import numpy as np
 import pytest
@@ -44,9 +46,20 @@ def noted(tape: Tape) -> list[tuple[int, ...]]:
     return [tuple(each[: w.OF_CALL]) for each in tape.operations(0, tape.noted).tolist()]
 
 
-def ring(tape: Tape, *copies: tuple[int, ...]) -> NotedLines:
+class Ring:
+    """The lines of a ring, as its core notes them: each function of `NotedLines`, told where their words are."""
+
+    def __init__(self, tape: Tape, copies: tuple[tuple[int, ...], ...]) -> None:
+        self._words = np.array([len(copies), *RING, *(word for each in copies for word in each)])
+        self._notes = NotedLines(tape)
+
+    def __getattr__(self, name: str) -> Callable[..., int]:
+        return partial(getattr(self._notes, name), self._words.ctypes.data)
+
+
+def ring(tape: Tape, *copies: tuple[int, ...]) -> Ring:
     """Return a ring with so many lines."""
-    return NotedLines(tape, np.array([len(copies), *RING, *(word for each in copies for word in each)]))
+    return Ring(tape, copies)
 
 
 def run(tape: Tape, issue_cclk: int, stall_cclk: int = 0) -> int:

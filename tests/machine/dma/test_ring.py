@@ -332,3 +332,19 @@ def test_every_row_of_a_ring_must_be_as_long_as_its_line(ahead: bool) -> None:
         match=r"a row of camera must be as long as the one of in_ring that it is copied to \(32 bytes\), not 4 bytes",
     ):
         run(every_frame(work))
+
+
+def test_a_row_that_is_too_short_is_told_when_it_is_copied() -> None:
+    """One line ahead: the lines before that are there, for the copies of a ring are planned together."""
+    lines = []
+
+    def work(core: Core, frame: Frame) -> Play:
+        short = core.part(frame.rows, 0, 4)
+        ring = core.window_ring((*frame.rows[:4], short[4]), core.rows("in_ring"))
+        for number in range(5):
+            lines.append((yield from ring.line()))
+            assert ring[number] is lines[-1]
+
+    with pytest.raises(FirmwareError, match=r"\(32 bytes\), not 4 bytes(.|\n)*test_ring.py"):
+        run(every_frame(work))
+    assert len(lines) == 3

@@ -7,7 +7,7 @@ Before the core waits for a picture, for the other core or for a device, the bus
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from functools import partial
 from typing import Any
@@ -47,18 +47,18 @@ class CopiesAhead:
         self._core = core
         self._lines = lines
         self._in_step = in_step
-        words = np.full(HEAD + len(lines) * COPY_WORDS, w.NONE, np.int64)
+        self._words = np.full(HEAD + len(lines) * COPY_WORDS, w.NONE, np.int64)
         cclk = core.programming_cclk(COPY_WRITES, COPY_READS)
         why = core.account_of(lines.owner), COUNTER_OF[lines.reason]
-        words[:HEAD] = len(lines), *why, cclk, COPY_WRITES, COPY_READS
-        self._table = words[HEAD:].reshape(-1, COPY_WORDS)
-        self.ahead = NotedLines(core.tape, words)
+        self._words[:HEAD] = len(lines), *why, cclk, COPY_WRITES, COPY_READS
+        self.at: int = self._words.ctypes.data
+        self.ahead = core.lines
 
     def program(self) -> None:
         """Note it, or let its time pass."""
         core = self._core
         if core.runs_ahead or core.tape.noted:
-            self.ahead.program()
+            self.ahead.program(self.at)
         else:
             self._in_step.program()
 
@@ -68,19 +68,23 @@ class CopiesAhead:
         if not (core.runs_ahead or core.tape.noted):
             return self._in_step.copy(number)
         self.plan(number)
-        return self.ahead.copy(number)
+        return self.ahead.copy(self.at, number)
 
     def plan(self, *numbers: int) -> None:
-        """Plan the copies of lines that have none yet; there may be no such line."""
+        """Plan the copies of lines that have no plan yet, and of those behind them; there may be no such line."""
+        lines = self._lines
         for number in numbers:
-            if number < len(self._table) and self._table[number, PLAN] == w.NONE:
-                self._table[number] = self._core.planned(self._lines.stream, *self._lines.rows(number))
+            if number < len(lines) and self._words[HEAD + number * COPY_WORDS + PLAN] == w.NONE:
+                lines.rows(number)  # raises here what is wrong with it
+                words = self._core.planned(lines.stream, lines.rows_from(number))
+                first = HEAD + number * COPY_WORDS
+                self._words[first : first + len(words)] = words
 
     def goes_on(self, copy: Copy) -> bool:
         """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""
         if not self._core.runs_ahead:
             return self._core.has(copy)
-        self.ahead.wait(copy)
+        self.ahead.wait(self.at, copy)
         return True
 
 
@@ -103,6 +107,8 @@ class Ahead:
         self._write_cclk, self._read_cclk = events.mmr_write_cclk, events.mmr_read_cclk
         self.tape = bus.tape(number)
         self.tape.takes_calls = True
+        self.lines = NotedLines(self.tape)
+        """Notes lines of rings on the tape."""
         self._owners: dict[str, int] = {}  # of accounts
         self._copies: dict[tuple[object, ...], CopiesAhead] = {}
         self._plans: dict[tuple[object, ...], int] = {}
@@ -186,13 +192,17 @@ class Ahead:
             self._copies[key] = CopiesAhead(self, lines, self._in_step.copies(lines))
         return self._copies[key]
 
-    def planned(self, stream: MdmaStream, source: Row, destination: Row) -> tuple[int, ...]:
-        """Return a copy as the tape has it in a table: by the number of its plan, which those of its kind share."""
-        kind = stream, *stream.kind_of(source, destination)
-        if kind not in self._plans:
-            plans = self._bus.stretches.keep_plans([stream.plan(source, destination).words])
-            self._plans[kind] = int(plans[0])
-        return self._plans[kind], source.offset, destination.offset, 0, source.nbytes
+    def planned(self, stream: MdmaStream, copies: Iterable[tuple[Row, Row]]) -> list[int]:
+        """Return copies as the tape has them in a table: each by the number of its plan, which those of its kind share."""
+        words: list[int] = []
+        plans = self._plans
+        for source, destination in copies:
+            kind = stream, *stream.kind_of(source, destination)
+            if kind not in plans:
+                plan = stream.plan(source, destination)
+                plans[kind] = int(self._bus.stretches.keep_plans([plan.words])[0])
+            words += plans[kind], source.offset, destination.offset, 0, source.nbytes
+        return words
 
     def settle(self) -> None:
         """Settle the bus, unless something is done ahead, which does not depend on it."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import cycle, islice, takewhile
 from typing import Protocol
 
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
@@ -49,6 +51,11 @@ class Lines:
             )
         return source, destination
 
+    def rows_from(self, first: int) -> Iterator[tuple[Row, Row]]:
+        """Yield what the copies from line `first` on read and write, up to the first one whose rows are not equally long."""
+        rows = zip(cycle(self.sources), cycle(self.destinations), strict=False)
+        return takewhile(lambda both: both[0].nbytes == both[1].nbytes, islice(rows, first, len(self)))
+
 
 class LineCopies(Protocol):
     """The copies of lines, as a core has them done."""
@@ -56,6 +63,10 @@ class LineCopies(Protocol):
     @property
     def ahead(self) -> NotedLines | None:
         """What does all that belongs to a line at once, while the core runs ahead. Its copies must have been planned."""
+
+    @property
+    def at(self) -> int:
+        """Where that finds the words of these lines."""
 
     def plan(self, *numbers: int) -> None:
         """Plan the copies of lines, of those that there are."""
@@ -73,7 +84,7 @@ class LineCopies(Protocol):
 class CopiesInStep:
     """`LineCopies` of a core in step with the simulated time, by its clock."""
 
-    ahead = None
+    ahead, at = None, 0
 
     def __init__(self, lines: Lines, clock: CoreClock) -> None:
         self._lines = lines
