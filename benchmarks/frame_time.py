@@ -11,9 +11,9 @@ from __future__ import annotations
 import argparse
 import signal
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from functools import cache
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import cache, partial
 from itertools import cycle, islice
 from pathlib import Path
 from time import process_time
@@ -83,10 +83,14 @@ def board_of(build: Build) -> Board:
         return Board(CM_BF561, firmware, size, link_map, build=build)
 
 
-def run(frames: Sequence[StereoFrame], build: Build = ESTIMATED) -> float:
-    """Run the built-in firmware on the simulated board; return the processor time, in seconds."""
+def run(
+    frames: Sequence[StereoFrame],
+    build: Build = ESTIMATED,
+    watched: Callable[[], AbstractContextManager[None]] = nullcontext,
+) -> float:
+    """Run the built-in firmware on a board that was made before, in a context that watches; return the processor time, in seconds."""
     board = board_of(build)
-    with loaded().own.named():
+    with loaded().own.named(), watched():
         begin = process_time()
         board.run(iter(frames))
         return process_time() - begin
@@ -118,8 +122,7 @@ def measure(number: int, build: Build) -> dict[str, float]:
     with native_time(kernels, Stopwatch()):
         run(frames, build)
     samples = Counter[str]()
-    with sampled(samples):
-        whole = run(frames, build)
+    whole = run(frames, build, partial(sampled, samples))
     native = {MAIN_LOOPS: kernels.seconds}  # of the buses Python has less than a sample's error
     parts = {
         part: whole * count / samples.total() - native.get(part, 0) for part, count in samples.most_common()
