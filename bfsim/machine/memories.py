@@ -27,7 +27,7 @@ class Row:
     `array`, `row.array[0] = 3`, which takes no cycles.
     """
 
-    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "octets", "offset")
+    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "offset")
 
     def __init__(self, buffer: str, memory: str, address: int, offset: int, array: NDArray[Any]) -> None:
         self.buffer = buffer
@@ -35,8 +35,12 @@ class Row:
         self.address = address
         self.offset = offset
         self.array = array
-        self.octets = array.view(np.uint8).data  # copies in a third of numpy's time
         self.nbytes: int = array.nbytes
+
+    @property
+    def octets(self) -> memoryview:
+        """Its bytes, to be read and written."""
+        return self.array.view(np.uint8).data
 
     @property
     def is_in_l1(self) -> bool:

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, u8, u16
+from bfsim.machine.core.buffers import layouts
+from bfsim.machine.core.buffers.layouts import Layouts
 from tests.machine.kernels import first
 from tests.machine.made_boards import play
 from tests.machine.rig import SIZE, Play, every_frame
@@ -68,6 +70,25 @@ def test_a_part_of_rows_is_the_same_memory() -> None:
         assert part[1].array.tolist() == [7, 8, 9]
         assert core.part(rows, 2, 3) == part
         assert core.part(rows, 0, SIZE.width_px) == rows
+
+    in_frame(body)
+
+
+def test_rows_of_a_part_are_the_same_however_many_others_there_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few parts are remembered, for what moves has others in each frame; calls and copies with their rows are prepared once."""
+    monkeypatch.setattr(layouts, "MOST_PARTS", 4)
+    known: list[Layouts] = []
+    part = Layouts.part
+    monkeypatch.setattr(Layouts, "part", lambda self, *what: known.append(self) or part(self, *what))
+
+    def body(core: Core, frame: Frame) -> None:
+        rows = core.rows("wide_image")
+        before = core.part(rows[1:3], 2, 3)
+        for number in range(9):
+            core.part(rows[number % 4 :], 1, 1 + number % 2)
+            assert len(known[0]._parts) <= 4
+        after = core.part(rows[1:3], 2, 3)
+        assert all(one is other for one, other in zip(before, after, strict=True))
 
     in_frame(body)
 

@@ -10,6 +10,8 @@ from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.memories import Memories, Row
 
 Rows = tuple[Row, ...]
+MOST_PARTS = 1 << 10
+"""Parts of pictures that are remembered: one round what moves is another one in each frame."""
 
 
 class Layouts:
@@ -82,6 +84,8 @@ class Layouts:
         """Return `count` elements of each row, from element `first` on."""
         kind = (tuple(rows), first, count)
         if kind not in self._parts:
+            if len(self._parts) == MOST_PARTS:
+                self._parts.clear()  # their rows are still the same
             self._parts[kind] = self._cut(*kind)
         return self._parts[kind]
 
