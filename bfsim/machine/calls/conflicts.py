@@ -7,6 +7,7 @@ have them by their part in those accesses.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import MutableSequence
 from typing import Any, NamedTuple
 
@@ -29,12 +30,12 @@ Numbers = MutableSequence[int]
 class Accesses(NamedTuple):
     """Accesses of L1 by calls: what each event of theirs accesses, columns as above one after the other, and how many there were of it.
 
-    `addresses`: of both arrays, for numpy takes longer to find one than compiled code needs for both.
+    `spread_at`: the address of the first, for numpy takes longer to find one than compiled code needs for both.
     """
 
     spread: NDArray[np.int64]
-    events: NDArray[np.int64]
-    addresses: tuple[int, int]
+    events: ctypes.Array[ctypes.c_int64]
+    spread_at: int
 
 
 @native
@@ -106,6 +107,7 @@ class StageGroups:
         self._spread = np.zeros((5, 0), np.int64)
         self._before = np.zeros(0, np.int64)
         self._addresses = 0, 0  # of these
+        self._events: type[ctypes.Array[ctypes.c_int64]] = ctypes.c_int64 * 0
         self._count = built_in(count_events.address(), 5)
 
     def add(self, group: CallGroup) -> None:
@@ -119,11 +121,12 @@ class StageGroups:
             self._spread = np.ascontiguousarray(joined)  # behind a single column numpy lays others by rows
             self._before = np.pad(self._before, (0, self._spread.shape[1] - len(self._before)))
             self._addresses = self._spread.ctypes.data, self._before.ctypes.data
+            self._events = ctypes.c_int64 * len(self._before)
             self._new = []
-        events = np.empty_like(self._before)
-        (spread_at, before_at), events_at = self._addresses, events.ctypes.data
-        self._count(spread_at, len(events), counters_at, before_at, events_at)
-        return Accesses(self._spread, events, (spread_at, events_at))
+        events = self._events()
+        spread_at, before_at = self._addresses
+        self._count(spread_at, len(events), counters_at, before_at, ctypes.addressof(events))
+        return Accesses(self._spread, events, spread_at)
 
 
 class SubBanks:
@@ -155,8 +158,10 @@ class SubBanks:
 
         They are added to what conflicts cost at each site, at an address.
         """
-        count = len(accessed.events)
-        return self._charge(*accessed.addresses, count, elapsed_cclk, self._conflict_cclk, at_sites_at)
+        _, events, spread_at = accessed
+        return self._charge(
+            spread_at, ctypes.addressof(events), len(events), elapsed_cclk, self._conflict_cclk, at_sites_at
+        )
 
 
 def _spread(group: CallGroup) -> NDArray[np.int64]:
