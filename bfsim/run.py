@@ -21,7 +21,7 @@ from bfsim.loading.firmware import load_firmware
 from bfsim.loading.given import given_firmware
 from bfsim.loading.hardware import find_board, find_profile
 from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.calls.watched_call import BeforeCall, sanitize_call
+from bfsim.machine.calls.watched_call import BeforeCall, Sanitizer
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Firmware
@@ -185,14 +185,15 @@ def simulate(
 
 def _machine(setup: RunSetup, fitted: FittedFirmware, *, sanitize: bool, on_call: BeforeCall | None) -> Board:
     """Return the board with the firmware in it. Code that nobody has tried is sanitized for a frame, all of it if asked; then `on_call` is called."""
+    sanitizer = (Sanitizer(),)
     return Board(
         setup.board.value,
         fitted.firmware,
         fitted.size,
         fitted.link_map,
         feed=setup.feed,
-        before_call=(*((sanitize_call,) if sanitize else ()), *((on_call,) if on_call else ())),
-        in_first_frame=() if sanitize or fitted.build.is_tried else (sanitize_call,),
+        before_call=(*(sanitizer if sanitize else ()), *((on_call,) if on_call else ())),
+        in_first_frame=() if sanitize or fitted.build.is_tried else sanitizer,
         build=fitted.build,
         devices=setup.devices,
         fidelity=setup.fidelity,

@@ -216,21 +216,31 @@ class Kernel:
         return itemgetter(*self.array_positions) if self.array_positions else lambda _arguments: ()
 
     def sanitize(self, arguments: Sequence[Any]) -> None:
-        """Run the kernel as it is written, unoptimised, with every index and divisor checked, and undo what it stored.
+        """Run the kernel as it is written, and undo what it stored (`sanitizer`)."""
+        self.sanitizer([arguments[each] for each in self.array_positions])(arguments)
 
-        Raises KernelError at the first that is wrong, even where the compiler would leave it out. Of object code nothing is checked.
+    def sanitizer(self, arrays: Sequence[NDArray[Any]]) -> Callable[[Sequence[Any]], None]:
+        """Return what runs the kernel on arrays as it is written, unoptimised, with every index and divisor checked, and undoes what it stored.
+
+        It is given the arguments of a call, of which it reads the numbers, and raises KernelError at the first index or divisor that is wrong,
+        even where the compiler would leave it out. Of object code nothing is checked.
         """
         if self.object_code:
-            return
-        arrays = [arguments[each] for each in self.array_positions]
-        before = [each.copy() for each in arrays]
+            return lambda _arguments: None
         code = compile_kernel(self.function, AS_WRITTEN, counted=False, effort=Effort.REGISTERS)
-        try:
-            self.prepare(code, arrays, code.new_totals()).run(*arguments)
-        finally:
-            for array, contents in zip(arrays, before, strict=True):
-                if array.flags.writeable:
+        run = self.prepare(code, arrays, code.new_totals()).run
+        named = zip(self.function.array_names, arrays, strict=True)
+        stored = [array for name, array in named if name in self.function.written and array.flags.writeable]
+
+        def sanitize(arguments: Sequence[Any]) -> None:
+            before = [each.copy() for each in stored]
+            try:
+                run(*arguments)
+            finally:
+                for array, contents in zip(stored, before, strict=True):
                     array[:] = contents
+
+        return sanitize
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Run on numpy arrays and ints, as the firmware would, but without a machine around it.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from bfsim.kernel import Kernel, Work
 from bfsim.machine.memories import Row
@@ -12,9 +13,22 @@ BeforeCall = Callable[[Kernel, tuple[Row | int, ...]], None]
 """Is told of a kernel and its arguments before each call, and changes neither."""
 
 
-def sanitize_call(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
-    """Run `kernel` as it is written, on copies. Raises KernelError for a wrong index or divisor."""
-    kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+class Sanitizer:
+    """Runs each kernel as it is written before it is called, and undoes what that stored. Raises KernelError for a wrong index or divisor.
+
+    A kernel is prepared once for the same rows.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[Kernel, object], Callable[[Sequence[Any]], None]] = {}
+
+    def __call__(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
+        """Run `kernel`."""
+        kind = kernel, kernel.arrays_of(arguments)
+        if kind not in self._known:
+            rows = [arguments[each] for each in kernel.array_positions]
+            self._known[kind] = kernel.sanitizer([each.array for each in rows if isinstance(each, Row)])
+        self._known[kind](arguments)
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,6 +75,22 @@ def test_a_checked_run_leaves_the_arrays_untouched(n: int) -> None:
     assert not other.any()
 
 
+def test_a_kernel_that_is_bound_once_is_checked_again_and_again() -> None:
+    """On what its arrays have by then, with other numbers, and after a mistake; each time they stay as they are."""
+    row, other = row_of(), np.zeros(5, np.uint32)
+    check = call.sanitizer((row, other))
+    for n in (2, 8, 0, 3, 6):
+        row += 1
+        other += 1
+        before = row.tolist(), other.tolist()
+        if n > len(other):
+            with pytest.raises(KernelError, match="index 5 is outside of other"):
+                check((row, other, n))
+        else:
+            check((row, other, n))
+        assert (row.tolist(), other.tolist()) == before
+
+
 def test_arrays_that_overlap_are_checked_as_they_are() -> None:
     """A kernel that is given one row twice is checked on that one row: what it stores, it loads."""
     row = np.full(9, 200, np.uint8)
