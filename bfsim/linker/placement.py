@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS, Region
 from bfsim.errors import LinkError, cut
-from bfsim.linker.checks import check_chip, check_memories, check_resolves, check_symbols
+from bfsim.linker.checks import check_chip, check_resolves, check_symbols
 from bfsim.linker.filling import Filling, align_up
 from bfsim.linker.link_map import LinkMap, Placement, SegmentUsage, Symbol
+from bfsim.linker.memory_checks import check_memories
 from bfsim.linker.reserves import Reserved, expanded
 from bfsim.linker.script import (
     COMMAND_LINE_OBJECTS,

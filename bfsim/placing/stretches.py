@@ -8,8 +8,8 @@ from enum import StrEnum
 
 from bfsim.chip.memory_map import Region
 from bfsim.linker import LinkerScript
-from bfsim.linker.checks import region_under
 from bfsim.linker.filling import Filling, align_up
+from bfsim.linker.memory_checks import region_under
 from bfsim.linker.script import Reserve, Segment
 
 

@@ -137,6 +137,26 @@ def test_the_board_says_how_much_sdram_there_is(parse: Parse) -> None:
         link(script, [])
 
 
+def test_a_segment_without_memory_is_advised_what_is_then_taken(parse: Parse) -> None:
+    """As much SDRAM as the highest segment needs, where the model has it: four banks of 64 MB were advised a size that no board may have."""
+
+    def told(*segments: str) -> str:
+        memory = " ".join(f"M{number} {{ {each} }}" for number, each in enumerate(segments))
+        sections = " ".join(f"s{number} {{ }} > M{number}" for number in range(len(segments)))
+        with pytest.raises(LinkError) as refusal:
+            link(parse(f"MEMORY {{ {memory} }} PROCESSOR p0 {{ SECTIONS {{ {sections} }} }}"), [])
+        return str(refusal.value)
+
+    two = told("START(0x01000000) LENGTH(0x1800000)", "START(0x03000000) END(0x03FFFFFF)")
+    assert "'M1'" in two and two.endswith("which must have 67,108,864 bytes together")
+    four = told("START(0x04000000) END(0x07FFFFFF)", "START(0x0C000000) END(0x0FFFFFFF)")
+    assert "'M1'" in four and "--set" not in four
+    assert four.endswith(
+        "more than 134,217,728 bytes of SDRAM here: end the segment below 0x08000000, or let no section go there"
+    )
+    assert "SDRAM has" not in told("START(0xFEB40000) LENGTH(4)")
+
+
 def test_fixed_reserves_lie_in_segments_and_apart(parse: Parse) -> None:
     """A RESERVE at an address where there is no segment, or over another RESERVE, is an error."""
     text = one_section("").replace(
