@@ -11,7 +11,8 @@ from typing import Any
 
 from bfsim import shipped
 from bfsim.errors import ConfigError
-from bfsim.files.save import require_apart, require_no_source, require_place, write_text
+from bfsim.files.outputs import PAGE, require_own
+from bfsim.files.save import require_apart, require_place, write_text
 from bfsim.loading.firmware import load_firmware
 from bfsim.machine.program import Firmware
 from bfsim.mapping import map_memory
@@ -35,7 +36,7 @@ def require_page(path: Path, others: Iterable[Path | None]) -> None:
     """Raise ConfigError unless a page can be written to `path`, which must be none of the `others`, and its packages are there."""
     require_place(path)
     require_apart(path, others)
-    require_no_source(path)
+    require_own(path, PAGE)
     missing = [each for each in _PACKAGES if find_spec(each) is None]
     if missing:
         raise ConfigError(

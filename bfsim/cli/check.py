@@ -84,7 +84,7 @@ def check(
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
     from bfsim.checking import arguments_of, require_comparable, require_held
-    from bfsim.files.save import require_no_source
+    from bfsim.files.outputs import BENCHMARK, JUNIT, MARKDOWN, require_own
     from bfsim.report.check.as_json import check_json
     from bfsim.report.check.history import read_history, trend_table
     from bfsim.running.inputs import files_of_run
@@ -95,8 +95,9 @@ def check(
     if update:
         _require_places([path], read)
     _require_places([history, *outputs.values()], [path, *read])
-    for output in filter(None, outputs.values()):
-        require_no_source(output)
+    for each, output in zip(OUTPUTS, (JUNIT, MARKDOWN, BENCHMARK), strict=True):
+        if file := outputs[each]:
+            require_own(file, output)
     require_json_place(json_path, (path, history, *outputs.values(), *read))
     if history:
         read_history(history)

@@ -18,8 +18,6 @@ if sys.platform != "win32":
 
 _STDOUT = Path("-")
 """As many other programs have it."""
-SOURCES = (".bag", ".c", ".db3", ".ldf", ".mcap", ".py", ".s", ".toml")
-"""Files that people record or write."""
 
 
 def require_place(path: Path) -> None:
@@ -46,15 +44,6 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
     if _resolved(path) in {_resolved(each) for each in others if each}:
         raise ConfigError(
             f"{path} must be a file of its own to be written, not one that is read or written, too"
-        )
-
-
-def require_no_source(path: Path) -> None:
-    """Raise ConfigError if there is a recording, firmware or the like at `path`: whoever forgets a FILE behind an option names these."""
-    if path.suffix.lower() in SOURCES and path.exists():
-        raise ConfigError(
-            f"{path} must not be there yet: a *{path.suffix} is what people record or write, and is not replaced; "
-            "is a FILE missing behind the option?"
         )
 
 

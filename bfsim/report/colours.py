@@ -22,6 +22,7 @@ LEAST_SHARE = 0.005
 """Colours with less of the picture are not in the legend."""
 
 SWATCH = 16
+SCHEMA = "bfsim.colours/1"
 
 
 def colours_report(found: PictureColours, patch_notes: Sequence[str]) -> RenderableType:
@@ -44,7 +45,9 @@ def colours_json(found: PictureColours, patch_notes: Sequence[str]) -> str:
         {"name": each.name, "hue_deg": each.hue_deg, "colour": each.colour, "share": found.share(number)}
         for number, each in enumerate(found.named)
     ]
-    return json_text({"colours": colours, "notes": found.notes, "patch_notes": list(patch_notes)})
+    return json_text(
+        {"schema": SCHEMA, "colours": colours, "notes": found.notes, "patch_notes": list(patch_notes)}
+    )
 
 
 def colours_picture(uyvy: NDArray[np.uint8], found: PictureColours) -> bytes:

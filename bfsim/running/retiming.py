@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bfsim.errors import ConfigError, WorkError, shown
-from bfsim.files.save import growing_file, require_no_source
+from bfsim.files.outputs import WORK, require_own
+from bfsim.files.save import growing_file
 from bfsim.kernel import Kernel
 from bfsim.loading.firmware import LoadedFirmware
 from bfsim.loading.kernels import kernels_of
@@ -102,7 +103,7 @@ def recording_work(
         raise ConfigError(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
         )
-    require_no_source(path)
+    require_own(path, WORK)
     with suppress(_InterruptedError), growing_file(path) as stream, WorkWriter(stream, path) as writer:
         cores: list[RecordingCore] = []
 

@@ -34,7 +34,7 @@ mine = replace(CM_BF561, name="mine", sdram=replace(CM_BF561.sdram, nRP=3))
         (["--json", "no/o.json"], "the folder no must exist"),
         (["--history", __file__], "test_check_mistakes.py:1 must be a line that `bfsim check --history` wrote"),
         (["--junit", "fw_eyes.py"], "fw_eyes.py must be a file of its own to be written"),
-        (["--markdown", __file__], "test_check_mistakes.py must not be there yet: a *.py is what people record or write"),
+        (["--markdown", __file__], "test_check_mistakes.py must not be there yet: it holds something else than what is written there"),
         (["--benchmark", "drive.mcap"], "drive.mcap must be a file of its own to be written"),
     ],
 )  # fmt: skip

@@ -67,7 +67,7 @@ def test_a_place_that_cannot_be_is_told_before_the_run(option: str, command: str
     assert "must be a file of its own" in result.stderr
     result = call(command, option, str(recording))  # the FILE is missing, and so another recording would run
     assert result.exit_code == 2
-    assert "what people record or write" in result.stderr
+    assert "holds something else than what is written there" in result.stderr
     assert recording.read_bytes() == b"precious"
     assert names_in(tmp_path) == ["drive.mcap"]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.errors import ConfigError
-from bfsim.files.save import require_apart, require_no_source, require_place, write_text
+from bfsim.files.save import require_apart, require_place, write_text
 from bfsim.report.overlay.files import OverlayWriter
 
 
@@ -60,18 +60,6 @@ def test_standard_output_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     for refused in (require_place, OverlayWriter):
         with pytest.raises(ConfigError, match="- must be a name: what is written is there as a whole"):
             refused(Path("-"))
-
-
-def test_what_people_record_or_write_is_not_replaced(tmp_path: Path) -> None:
-    """`bfsim run --trace drive.mcap` lacks a FILE, and would write the timeline of another recording over the drive."""
-    drive, firmware = tmp_path / "drive.mcap", tmp_path / "mine.PY"
-    require_no_source(drive)
-    for path in (drive, firmware):
-        path.touch()
-        with pytest.raises(
-            ConfigError, match=r"must not be there yet: a \*\.\w+ is what people record or write"
-        ):
-            require_no_source(path)
 
 
 def test_links_in_a_circle(tmp_path: Path) -> None:

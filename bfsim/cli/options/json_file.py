@@ -75,11 +75,13 @@ def json_option(what: str) -> Callable[[Any], Any]:
 
 def require_json_place(path: Path | None, others: Iterable[Path | None] = ()) -> None:
     """Raise ConfigError unless the JSON can be written at `path`, if there is one, and it is none of the `others`."""
+    from bfsim.files.outputs import JSON, require_own
     from bfsim.files.save import require_apart, require_place
 
     if path and path != STDOUT:
         require_place(path)
         require_apart(path, others)
+        require_own(path, JSON)
 
 
 def tell(

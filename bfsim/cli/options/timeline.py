@@ -46,13 +46,14 @@ def timelines(
 
     Raises ConfigError for a place that cannot be written, one of the `others` included.
     """
-    from bfsim.files.save import require_apart, require_no_source, require_place
+    from bfsim.files.outputs import FLAME, TRACE, require_own
+    from bfsim.files.save import require_apart, require_place
 
-    for path, beside in ((trace, flame), (flame, trace)):
+    for path, beside, output in ((trace, flame, TRACE), (flame, trace, FLAME)):
         if path:
             require_place(path)
             require_apart(path, (beside, *others))
-            require_no_source(path)
+            require_own(path, output)
     if flame:
         watchers.done.append(partial(_write_flame, flame))
     with _tracing(watchers, trace) if trace else nullcontext():

@@ -13,6 +13,8 @@ from bfsim.cli.record.recorded import info_table
 from bfsim.errors import ConfigError
 from bfsim.process.terminal import print_report, progress_bar
 
+SCHEMA = "bfsim.recording/1"
+
 
 @click.command(name="info", short_help="Say what is in a recording.")
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
@@ -46,6 +48,6 @@ def info_command(path: Path, json_path: Path | None, plot: Path | None) -> None:
             write_bytes(plot, [reader.residual_plot()])
     tell(
         json_path,
-        lambda: [json.dumps(asdict(info), default=str, indent=2), "\n"],
+        lambda: [json.dumps({"schema": SCHEMA, **asdict(info)}, default=str, indent=2), "\n"],
         lambda: print_report(info_table(info)),
     )
