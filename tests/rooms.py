@@ -27,7 +27,7 @@ MAY_IMPORT = _sets(
         "linker": "errors files chip",
         "machine": "errors process clocks trace seen spans chip machine_code kernel linker",
         "api": "errors trace seen chip kernel compiling machine",
-        "recording": "errors files seen",
+        "recording": "errors process files seen",
         "report": "errors files trace seen spans chip linker",  # the last two hold data: memories, a link
         "loading": "errors process files shipped fields chip kernel machine recording",
         "running": (
@@ -43,7 +43,7 @@ MAY_IMPORT = _sets(
         "verifying": "trace kernel compiling machine",
         "placing": "errors trace shipped chip linker machine recording report loading running",
         "run": (
-            "errors trace seen spans shipped chip kernel linker machine recording loading running result"
+            "errors process trace seen spans shipped chip kernel linker machine recording loading running result"
         ),
         "planning": "trace running run",
         "checking": "errors shipped report loading running run planning",

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from bfsim.process.signals import cancellable
 from tests.eyes import FIRMWARE, record
 from tests.tiers import exhaustive
 
@@ -153,3 +154,41 @@ def test_ctrl_c_ends_a_kernel_that_does_not_end_in_a_script(tmp_path: Path, code
     told = {"call": "", "run": "True , "}[what]
     place = {"call": "", "run": f" ({tmp_path}/endless.py:{line})"}[what]
     assert out == f"{told}in a kernel that does not end{place}\n0\n"
+
+
+NATIVE = """
+import os, signal, sys, time
+from threading import Event
+from bfsim.process.signals import cancellable, hear_signals
+
+def render():
+    open("begun", "w").close()
+    assert cancelled.wait(30)
+    return "half a picture"
+
+cancelled = Event()
+hear_signals()
+try:
+    print(cancellable(render, cancelled.set))
+except KeyboardInterrupt:
+    print("cancelled", cancelled.is_set())
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_native_code_that_takes_long_is_cancelled(tmp_path: Path, number: signal.Signals) -> None:
+    """The renderer of scenes took the signal for itself, and half a picture went to the recording."""
+    command = [sys.executable, "-c", NATIVE]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as process:
+        while process.poll() is None and not (tmp_path / "begun").exists():
+            time.sleep(0.05)
+        process.send_signal(number)
+        out, _ = process.communicate()
+    assert out == "cancelled True\n"
+
+
+def test_native_code_that_nobody_cancels_returns() -> None:
+    """And what it raises is raised."""
+    assert cancellable(lambda: 5, lambda: None) == 5
+    with pytest.raises(ZeroDivisionError):
+        cancellable(lambda: 1 // 0, lambda: None)

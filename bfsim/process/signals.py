@@ -8,18 +8,22 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Event, Lock, Thread, current_thread, main_thread
 from time import sleep
 from types import FrameType
+from typing import TypeVar
 
 BY_SIGNAL = 128
 """Exit codes from here on say which signal ended a command, as in a shell."""
 
 AGAIN_S = 0.01
 """A callback is over by then."""
+POLL_S = 0.01
+"""So long after its end native code may still be waited for."""
 
+_T = TypeVar("_T")
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
@@ -90,3 +94,33 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(number, handler)
     if waiting:
         handlers[waiting[0]](waiting[0], None)
+
+
+@contextmanager
+def held_back() -> Iterator[list[int]]:
+    """Keep signals from all handlers in the `with` block, those of native code and of its new threads included; yield which ones.
+
+    One that came is handled at the end.
+    """
+    numbers = [number for number in _SIGNALS if callable(signal.getsignal(number))]
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
+    try:
+        yield numbers
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def cancellable(work: Callable[[], _T], cancel: Callable[[], object]) -> _T:
+    """Return what native code returns that takes long and has a handler of its own; a signal has it cancelled, and is then handled."""
+    from concurrent.futures import ThreadPoolExecutor  # every start would import it
+
+    if current_thread() is not main_thread():  # signals are handled in the main thread alone
+        return work()
+    with held_back() as numbers, ThreadPoolExecutor(1) as thread:
+        done, heard = thread.submit(work), None
+        while not done.done():
+            if heard := signal.sigtimedwait(numbers, POLL_S) or heard:
+                cancel()
+    if heard:
+        signal.raise_signal(heard.si_signo)
+    return done.result()

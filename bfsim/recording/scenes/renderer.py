@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
+from bfsim.process.signals import cancellable, held_back
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
 from bfsim.recording.scenes.shapes import Shape
 
@@ -38,7 +39,10 @@ class Renderer:
 
     def look(self, camera: Pinhole, *, samples: int, seed: int) -> NDArray[np.float32]:
         """Return the radiance (height, width, 3) of red, green and blue that reaches each pixel."""
-        picture = self._mitsuba.render(self._scene, sensor=self._sensor(camera), spp=samples, seed=seed)
+        picture = cancellable(
+            lambda: self._mitsuba.render(self._scene, sensor=self._sensor(camera), spp=samples, seed=seed),
+            self._scene.integrator().cancel,
+        )
         return np.asarray(picture, dtype=np.float32)
 
     def sees(self, camera: Pinhole, point_mm: Vector) -> bool:
@@ -99,12 +103,13 @@ class Renderer:
 
 
 def _load_mitsuba() -> Any:
-    try:
-        mitsuba = importlib.import_module("mitsuba")
-    except ImportError as error:
-        raise RecordingError(
-            'the renderer mitsuba must be installed to render a scene: pip install "bfsim[scenes]"'
-        ) from error
-    # The scalar variant needs no LLVM of the system and gives the same picture on every machine.
-    mitsuba.set_variant("scalar_rgb")
+    with held_back():  # it starts the threads that render
+        try:
+            mitsuba = importlib.import_module("mitsuba")
+        except ImportError as error:
+            raise RecordingError(
+                'the renderer mitsuba must be installed to render a scene: pip install "bfsim[scenes]"'
+            ) from error
+        # The scalar variant needs no LLVM of the system and gives the same picture on every machine.
+        mitsuba.set_variant("scalar_rgb")
     return mitsuba
