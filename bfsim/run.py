@@ -26,6 +26,7 @@ from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import require_cores
+from bfsim.process.streams import streams_kept
 from bfsim.recording import RecordingReader
 from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.result import Run
@@ -64,7 +65,7 @@ def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
         bound = signature(simulate).bind(*arguments, **options)
         bound.apply_defaults()
         require_kinds(bound.arguments)
-        with _ONE_AT_A_TIME:
+        with _ONE_AT_A_TIME, streams_kept():
             done = simulate(*arguments, **options)
         what = {
             name: dict(value) if isinstance(value, Mapping) else value

@@ -48,6 +48,27 @@ def main(core):
 firmware = replace(tinyphoon, mains={"A": main, "B": main})
 """
 
+TIDY = """
+import contextlib, io, sys
+from dataclasses import replace
+from tinyphoon import tinyphoon
+
+def closes(core):
+    while (frame := (yield from core.next_frame())) is not None:
+        sys.stdout.close(), sys.stderr.close()
+
+def clears(core):
+    while (frame := (yield from core.next_frame())) is not None:
+        sys.stdout = None
+
+def redirects(core):
+    with contextlib.redirect_stdout(io.StringIO()):
+        while (frame := (yield from core.next_frame())) is not None:
+            print(core.name)
+
+closing, clearing, redirecting = (replace(tinyphoon, mains={"A": each, "B": each}) for each in (closes, clears, redirects))
+"""
+
 
 def bfsim(command: str, *, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run a line of shell in which "$BFSIM" is the command."""
@@ -70,6 +91,15 @@ def test_a_closed_pipe_is_no_mistake_of_firmware_that_prints(tmp_path: Path) -> 
     command = "run --firmware talking.py:firmware --frames 1"
     done = bfsim(f"$BFSIM {command} | true; exit ${{PIPESTATUS[0]}}", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize("firmware", ["closing", "clearing", "redirecting"])
+def test_firmware_takes_no_output_from_the_report(firmware: str, tmp_path: Path) -> None:
+    """A closed one was a fault of bfsim, and where both cores redirected it the report was lost without a word."""
+    (tmp_path / "tidy.py").write_text(TIDY)
+    done = bfsim(f"$BFSIM run --firmware tidy.py:{firmware} --frames 1", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "frames/s" in done.stdout
 
 
 @pytest.mark.parametrize("command", ["--help", "boards --help", "--version", "boards"])

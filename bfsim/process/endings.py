@@ -137,6 +137,10 @@ class _Output:
         with self._telling():
             self._stream.flush()
 
+    def close(self) -> None:
+        """Do what was to be done before: firmware that closes it has nothing more to say, but the report comes yet."""
+        self.flush()
+
     @contextmanager
     def _telling(self) -> Iterator[None]:
         try:
