@@ -14,6 +14,7 @@ from typing import Any
 import click
 
 from bfsim.errors import BfsimError, BfsimWarning
+from bfsim.process import look_alikes
 from bfsim.process.signals import BY_SIGNAL, interrupted_code
 
 LIMIT_BROKEN, MISTAKE = 1, 2
@@ -118,13 +119,13 @@ class _OutputError(BaseException):
 
 
 class _Output:
-    """A stream that says so if it takes no more, and writes a question mark for what its encoding cannot say."""
+    """A stream that says so if it takes no more, and writes what looks alike for what its encoding cannot say."""
 
     def __init__(self, stream: Any, name: str) -> None:
         self._stream = stream
         self._name = name
         if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="replace")
+            stream.reconfigure(errors=look_alikes.NAME)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)

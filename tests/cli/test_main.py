@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from bfsim import __version__
 from bfsim.cli.main import main
 from bfsim.cli.record.import_pictures import SOURCE_FORMATS
+from bfsim.process import look_alikes
 from bfsim.recording.importing import sources
 from tests.tiers import exhaustive
 
@@ -162,7 +163,7 @@ def test_ctrl_c_while_the_command_line_is_imported(tmp_path: Path) -> None:
 
 
 def test_a_terminal_with_no_room_and_few_letters() -> None:
-    """Tables need some columns, and letters that the encoding lacks become question marks."""
+    """Tables need some columns, and letters that the encoding lacks become others."""
     surroundings = {**os.environ, "COLUMNS": "1", "PYTHONIOENCODING": "ascii"}
     done = subprocess.run(
         [sys.executable, "-m", "bfsim", "boards", "cm-bf561"],
@@ -173,6 +174,18 @@ def test_a_terminal_with_no_room_and_few_letters() -> None:
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.isascii()
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin1", "cp437"])
+def test_bars_are_bars_in_every_encoding(encoding: str) -> None:
+    """Work, stalls and idling were question marks, one as the other; what looks like nothing in ASCII still is one."""
+    signs = "█▓░▏·"
+    assert len(set(signs.encode(encoding, look_alikes.NAME))) == len(signs), "they stay apart"
+    told = "█▓░ ▏ a… 10° 3 → 4 \u4e16"
+    written = told.encode(encoding, look_alikes.NAME).decode(encoding)
+    assert len(written) == len(told), "tables stay tables"
+    assert written.endswith("?")
+    assert encoding != "ascii" or written == "#=: | a~ 10o 3 > 4 ?"
 
 
 @pytest.mark.parametrize("command", ["run", "profile"])
