@@ -216,10 +216,14 @@ def _expanded(file: File, defined: Mapping[str, str], include_dirs: Sequence[Pat
 
 
 def _read(path: Path) -> str:
-    """Return the text of a file, in UTF-16 where it begins with that mark, as editors of Windows write it."""
+    """Return the text of a file, in UTF-16 where it begins with that mark, as editors of Windows write it.
+
+    A carriage return that stands alone ends a line, too, as once on the Macintosh and where a line feed was lost.
+    """
     content = read_bounded(path)
     is_utf_16 = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
-    return content.decode("utf-16" if is_utf_16 else "utf-8-sig", errors="replace")
+    text = content.decode("utf-16" if is_utf_16 else "utf-8-sig", errors="replace")
+    return re.sub(r"\r(?!\n)", "\n", text)
 
 
 def _require_end(file: File, token: re.Match[str]) -> None:

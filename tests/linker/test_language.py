@@ -347,6 +347,18 @@ def test_an_ldf_that_windows_saved_is_read(encoding: str, tmp_path: Path) -> Non
     assert [each.name for each in parse_ldf(path).segments] == ["MEM_DATA"]
 
 
+def test_lines_that_end_in_a_bare_carriage_return_are_lines(tmp_path: Path) -> None:
+    """All of such a file was one line, and its first `//` comment took the rest."""
+    path = tmp_path / "test.ldf"
+    path.write_bytes(
+        b"// first\r#define SIZE \\\r 4\r" + L1_ONLY.format(input="x.doj(a)").replace("\n", "\r").encode()
+    )
+    assert [each.name for each in parse_ldf(path).segments] == ["MEM_DATA"]
+    path.write_bytes(b"// first\r\r\nno;\r")
+    with pytest.raises(LinkError, match=r"test\.ldf:3:1: .*\nno;\n\^"):
+        parse_ldf(path)
+
+
 def test_a_file_of_anything_is_an_error_and_no_crash(tmp_path: Path) -> None:
     """Bytes that are no text end in a LinkError with a short excerpt."""
     path = tmp_path / "binary.ldf"
