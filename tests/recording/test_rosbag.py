@@ -37,6 +37,8 @@ def bytes_of(picture: NDArray[np.uint8], encoding: str) -> NDArray[np.uint8]:
         "bgr8": picture[..., ::-1],
         "rgba8": np.concatenate([picture, full], axis=2),
         "bgra8": np.concatenate([picture[..., ::-1], full], axis=2),
+        "8UC3": picture[..., ::-1],
+        "8UC4": np.concatenate([picture[..., ::-1], full], axis=2),
         "uyvy": uyvy,
         "yuv422": uyvy,
         "yuyv": uyvy.reshape(height, width, 2)[..., ::-1],
@@ -52,7 +54,7 @@ def one_pair(ros: Ros, message: object, kind: str = IMAGE) -> list[Message]:
 
 @each_kind
 @pytest.mark.parametrize(
-    "encoding", ["rgb8", "bgr8", "rgba8", "bgra8", "uyvy", "yuv422", "yuyv", "yuv422_yuy2"]
+    "encoding", ["rgb8", "bgr8", "rgba8", "bgra8", "8UC3", "8UC4", "uyvy", "yuv422", "yuyv", "yuv422_yuy2"]
 )
 def test_colours_are_those_of_the_picture(kind: str, encoding: str, tmp_path: Path) -> None:
     """Whatever the order of their bytes, and with rows that are padded."""
@@ -62,6 +64,14 @@ def test_colours_are_those_of_the_picture(kind: str, encoding: str, tmp_path: Pa
     (frame,) = imported(ros.write(tmp_path, one_pair(ros, ros.image(EPOCH_NS, encoding, rows, 10))))
     assert np.array_equal(frame.left, YuvPlanes.from_image(Image.fromarray(picture)).to_uyvy())
     assert np.array_equal(frame.right, frame.left)
+
+
+def test_colours_without_an_order_are_told_of(tmp_path: Path) -> None:
+    """As OpenCV has them, blue first, which nobody can know: a yellow ball would be cyan."""
+    ros = Ros("ros2")
+    path = ros.write(tmp_path, one_pair(ros, ros.image(EPOCH_NS, "8UC3", np.zeros((6, 30), np.uint8), 10)))
+    summary = import_recording([path], tmp_path / "out.mcap")
+    assert "8UC3 says no order of colours: BGR is taken, as OpenCV has it." in summary.notes
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,9 @@ from bfsim.recording.planes import YuvPlanes
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 IMAGE_TYPES = (IMAGE, COMPRESSED)
 
-_COLOURS = {"rgb8": "RGB", "bgr8": "BGR", "rgba8": "RGBA", "bgra8": "BGRA"}
+_UNORDERED = {"8UC3": "BGR", "8UC4": "BGRA"}
+"""OpenCV's names for bytes of which none says its colour: the order that OpenCV itself, and rviz, take them in."""
+_COLOURS = {"rgb8": "RGB", "bgr8": "BGR", "rgba8": "RGBA", "bgra8": "BGRA", **_UNORDERED}
 """Order of the bytes of a pixel."""
 _YUV = {"yuv422": "UYVY", "uyvy": "UYVY", "yuv422_yuy2": "YUYV", "yuyv": "YUYV"}
 """Order of the bytes of two pixels: sensor_msgs/image_encodings."""
@@ -63,6 +65,12 @@ def planes_of(message: Any, kind: str, bits: int | None = None) -> YuvPlanes:
     if width % 2:
         raise RecordingError(f"{encoding} must have an even width, not {width}")
     return YuvPlanes.from_yuyv(pixels) if _YUV[encoding] == "YUYV" else YuvPlanes.from_uyvy(pixels)
+
+
+def order_note(encoding: str) -> str:
+    """Return what is to be said of an encoding that says no order of colours, or nothing."""
+    order = _UNORDERED.get(encoding)
+    return f"{encoding} says no order of colours: {order} is taken, as OpenCV has it." if order else ""
 
 
 def _pixels(message: Any, pixel_bytes: int) -> NDArray[np.uint8]:

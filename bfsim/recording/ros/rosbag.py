@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,7 @@ from bfsim.recording.importing.time_pairs import Times, nearest_pairs, period_ns
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.ros.bag_file import BagFile, Topic
 from bfsim.recording.ros.bag_topics import pair_of_topics, single_topic
-from bfsim.recording.ros.ros_images import IMAGE_TYPES, planes_of
+from bfsim.recording.ros.ros_images import IMAGE, IMAGE_TYPES, order_note, planes_of
 
 DEFAULT_PERIOD_NS = 1e9 / 30
 """Of bags with a single picture: the rate of the sensors that bfsim knows."""
@@ -82,7 +84,8 @@ def open_bag(
         )
     )
     infos = [_camera_info(bag, topic, found) for topic in chosen]
-    notes = (clock, *(note for _, note in infos))
+    orders = (order_note(each) for topic in chosen for each in _encodings(bag, topic))
+    notes = (clock, *orders, *(note for _, note in infos))
     return BagPictures(sources, tuple(info for info, _ in infos), tuple(dict.fromkeys(filter(None, notes))))
 
 
@@ -174,6 +177,13 @@ def _source(
         skipped=skipped,
         times_ns=times_ns,
     )
+
+
+def _encodings(bag: BagFile, topic: Topic) -> Iterator[str]:
+    """Yield the encoding of the first picture of a topic whose pictures have one, if it is one."""
+    if topic.kind == IMAGE:
+        with suppress(RecordingError):
+            yield from (bag.decode(raw, IMAGE).encoding for _, raw in islice(bag.messages(topic.name), 1))
 
 
 def _info_of(base: list[str]) -> str:
