@@ -30,7 +30,8 @@ PLOTTERS = ("altair", "vl_convert")
 NOTE_S = 60.0
 """Where standard error is no terminal, a line says so often how far it is."""
 TRIED_FRAMES = 3
-"""So many frames are run to know how long points will take."""
+TRIED_POINTS = 4
+"""So many frames are run, of points of so many kinds, to know how long points will take."""
 
 
 def _axes(_ctx: click.Context, _param: click.Parameter, given: str | None) -> Axes | None:
@@ -188,8 +189,8 @@ def _list(sweep: Sweep, workers: Workers, checked_s: float) -> None:
 
     todo, pace = sweep.todo, _pace(sweep)
     print_report(point_list([(each.point.name, each.frames, state(each)) for each in sweep.planned]))
-    if todo and pace.seconds_left(todo, 1) is None:
-        pace.add(todo[0], sweep.try_out(todo[0], TRIED_FRAMES, workers))
+    for each in pace.unknown(todo)[:TRIED_POINTS]:
+        pace.add(each, sweep.try_out(each, TRIED_FRAMES, workers))
     seconds = pace.seconds_left(todo, workers.room())
     time_left = in_words(seconds and seconds + checked_s)
     frames = sum(each.frames for each in todo)

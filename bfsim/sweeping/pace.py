@@ -9,23 +9,33 @@ from bfsim.sweeping.running import Outcome
 
 
 class Pace:
-    """The seconds that one worker needs for a pixel."""
+    """The seconds that one worker needs for a pixel: of each kind of points, and of all of them for those of which nobody knows."""
 
     def __init__(self) -> None:
-        self._seconds = 0.0
-        self._work = 0.0
+        self._known: dict[tuple[str, ...], tuple[float, float]] = {}  # seconds, and pixels
 
     def add(self, planned: Planned, outcome: Outcome) -> None:
         """Learn from a point that is done, or of which some frames are."""
         if outcome.frames:
-            self._seconds += outcome.seconds
-            self._work += planned.work * outcome.frames / planned.frames
+            seconds, work = self._known.get(planned.kind, (0.0, 0.0))
+            work += planned.work * outcome.frames / planned.frames
+            self._known[planned.kind] = seconds + outcome.seconds, work
+
+    def unknown(self, todo: Sequence[Planned]) -> list[Planned]:
+        """Return a point of each kind of which none is known."""
+        firsts: dict[tuple[str, ...], Planned] = {}
+        for each in todo:
+            firsts.setdefault(each.kind, each)
+        return [each for kind, each in firsts.items() if kind not in self._known]
 
     def seconds_left(self, todo: Sequence[Planned], workers: int) -> float | None:
         """Return how long points take that so many workers share; None where nobody knows."""
-        if not todo or not self._work:
+        if not todo or not self._known:
             return None if todo else 0
-        return sum(each.work for each in todo) * self._seconds / self._work / min(workers, len(todo))
+        of_all = tuple(map(sum, zip(*self._known.values(), strict=True)))
+        paces = (self._known.get(each.kind, of_all) for each in todo)
+        seconds = sum(each.work * of / work for each, (of, work) in zip(todo, paces, strict=True))
+        return seconds / min(workers, len(todo))
 
 
 def in_words(seconds: float | None) -> str:

@@ -26,6 +26,12 @@ class Planned:
         """How much there is to simulate: pixels."""
         return self.frames * self.identity.width_px * self.identity.height_px if self.identity else 0
 
+    @property
+    def kind(self) -> tuple[str, ...]:
+        """What decides how long a pixel takes: firmware, LDF and compiler."""
+        it = self.identity
+        return (it.firmware_digest, it.ldf_digest, it.compiler_digest) if it else ()
+
 
 def planned_point(
     point: Point, known: tuple[Identity, int] | str, digests: dict[tuple[Path, int], str], recording: Path
