@@ -21,9 +21,14 @@ def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
     ends = [frame.end_cclk for frame in frames]
     if len(frames) == 1:
         return cclk_hz / (ends[0] - frames[0].begin_cclk)
-    if all(_idles(core) for frame in frames[1:] for core in frame.cores):
+    if waits_for_pictures(frames):
         ends = [frame.last_line_cclk for frame in frames]
     return (len(frames) - 1) * cclk_hz / (ends[-1] - ends[0])
+
+
+def waits_for_pictures(frames: Sequence[FrameRecord]) -> bool:
+    """Say whether all cores wait for each picture but the first one, which has to come."""
+    return len(frames) > 1 and all(_idles(core) for frame in frames[1:] for core in frame.cores)
 
 
 def _idles(frame: CoreFrame) -> bool:

@@ -10,7 +10,7 @@ from bfsim.report.budget.bound import Bound, Cause, bound_of
 from bfsim.report.budget.budget import Budget, CoreBudget, StageRow, budget_of
 from bfsim.report.budget.start_up import of_one_frame, without_start_up
 from bfsim.report.budget.target import Target
-from bfsim.report.budget.times import milliseconds
+from bfsim.report.budget.times import milliseconds, waits_for_pictures
 from bfsim.report.run.budget_tables import named
 from bfsim.report.run.notes import notes
 from bfsim.report.tables.bars import IDLE, STALL, WORK, bar_of
@@ -37,9 +37,13 @@ def verdict(run: RunRecord) -> Text:
     budget = budget_of(without_start_up(run))
     bound = bound_of(budget)
     core = bound.core
-    share = f"{100 * bound.cclk / core.frame.elapsed_cclk.total:.0f}"
+    share, idle = (
+        f"{100 * cclk / core.frame.elapsed_cclk.total:.0f}" for cclk in (bound.cclk, core.frame.idle_cclk)
+    )
+    is_paced = idle != "0" and waits_for_pictures(run.frames)
+    waits = f", and it waits for each picture ({idle} %)" if is_paced else ""
     by = {
-        Cause.STAGE: f"core {core.core}'s {_stage(bound.row)} ({share} %)",
+        Cause.STAGE: f"core {core.core}'s {_stage(bound.row)} ({share} %){waits}",
         Cause.PICTURES: f"the pictures, core {core.core} waits for them ({share} %)",
         Cause.OTHER_CORE: f"the cores' turns, core {core.core} waits for its own ({share} %)",
     }[bound.cause]

@@ -75,6 +75,14 @@ def test_pictures_bound_a_firmware_that_waits_for_them() -> None:
     assert "bound by the pictures, core A waits for them (50 %)" in words_of(waiting_run(10_001))
 
 
+def test_firmware_that_works_longer_than_it_waits_is_told_that_it_waits() -> None:
+    """Else who makes that stage faster wonders why the frame rate stays; of firmware that never waits nothing is said."""
+    told = "bound by core A's Edge detection (67 %), and it waits for each picture (33 %)."
+    assert told in words_of(waiting_run(5_000))
+    assert "(100 %)." in words_of(waiting_run(0))
+    assert "waits for each" not in words_of(waiting_run(5_000, frames=1))
+
+
 def test_cores_that_take_turns_bound_each_other() -> None:
     """Each waits for the other longer than it works."""
     turns = {StallReason.SEMAPHORE: 60}
