@@ -37,7 +37,7 @@ def end_of_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> tuple[tre
     Of `if a[m] > x: high = m`, `else: low = m + 1`, a side that only says what variables are next leads back at once. The loop within begins
     with the test of both, so neither is rotated. Behind the test of `loop` itself, that side leads out of it.
     """
-    *before, last = loop.body
+    before, last = loop.body[:-1], loop.body[-1] if loop.body else None
     if not isinstance(last, tree.If) or any(map(_continues, loop.body)) or tree.alike(last.test, loop.test):
         return None
     changed = {name for each in before for name in _changed(each)}

@@ -36,6 +36,16 @@ def test_random_programs_compute_what_plain_python_computes(
 
 
 @pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
+@pytest.mark.parametrize(
+    "loop", ["while v > 3: pass", "for i in range(v): pass", "for i in range(v):\n        while i > 3: pass"]
+)
+def test_a_loop_without_statements_is_one(loop: str, profile: CompilerProfile, tmp_path: Path) -> None:
+    """A `while` with nothing but `pass` in it ended in a traceback."""
+    waiting = kernel_of(f"def f(v: i32) -> i32:\n    {loop}\n    return v\n", tmp_path)
+    assert run(waiting, 3, profile=profile).value == 3
+
+
+@pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=str)
 def test_a_range_whose_end_wraps_has_no_iteration(profile: CompilerProfile, tmp_path: Path) -> None:
     """`range(v, v + 3)` ends behind its start only where that sum does not wrap, though C knows nothing of that."""
     text = "def f(v: i32) -> i32:\n    s = 0\n    for i in range(v, v + 3):\n        s += 1\n    return s\n"
