@@ -210,7 +210,10 @@ def test_the_line_of_an_access_that_is_not_aligned_is_told() -> None:
     [
         ("trap", r"at 0xFFA00000 \(traps.s:6\) there is an exception \(EXCPT\), which nothing handles"),
         ("idle", r"at 0xFFA00004 \(traps.s:13\) there is an instruction for the system, such as IDLE"),
-        ("nothing", r"at 0xFFA00008( \(traps.s:[0-9]+\))? there is no instruction of the Blackfin"),
+        (
+            "nothing",
+            r"at 0xFFA00008( \(traps.s:[0-9]+\))? there is no instruction of the Blackfin, as behind a function that does not end with RTS",
+        ),
         (
             "halt",
             r"at 0xFFA0000C \(traps.s:25\) there is an instruction for simulators \(OUTC, HLT or ABORT\)",

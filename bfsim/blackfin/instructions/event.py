@@ -33,7 +33,7 @@ class Event(IntEnum):
 
 
 ENDS = {
-    Event.ILLEGAL: (0, "no instruction of the Blackfin"),
+    Event.ILLEGAL: (0, "no instruction of the Blackfin, as behind a function that does not end with RTS"),
     Event.EXCEPTION: (
         2,
         "an exception (EXCPT), which nothing handles; GCC has one where C does not say what happens, as where it sees a division by 0",
