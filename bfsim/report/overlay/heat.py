@@ -51,7 +51,7 @@ def heat_legend(heats: Sequence[SeenHeat], width: int, hottest_us: float, longes
     stages = list(heats[0].stages_us)
     font = style.font(style.FONT)
     # as high as that of all stages with any numbers: the legend is so for each frame of a run
-    height = LINE * (1 + max(line for _, line in _lines(stages, width)) + 1)
+    height = LINE * (1 + max(line for _, line in _lines(stages, width)) + 1) + style.MARGIN // 2
     strip = Image.new("RGB", (width, height), style.PAPER)
     pen = ImageDraw.Draw(strip)
     _draw_scale(strip, pen, hottest_us, longest_us)

@@ -283,6 +283,7 @@ def test_bars_say_what_each_row_cost_by_stage() -> None:
     assert [(bar == colour).all(axis=1).sum() for colour in STAGES[:2]] == [BARS * 4 // 5, BARS // 5]
     assert (sheet[style.HEAD + 10 * SCALE, left : left + BARS] == style.GRID).all()
     assert sheet.shape[0] >= style.HEAD + 60 * SCALE + style.FOOT + 2 * LINE
+    assert (sheet[-style.MARGIN // 2 :] == style.PAPER).all(), "the last words stood at the edge"
 
 
 def test_colours_of_heat_become_lighter_evenly() -> None:
