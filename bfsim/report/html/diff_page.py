@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from bfsim.report.budget.times import milliseconds
-from bfsim.report.diff.cells import cells, labelled, listed
+from bfsim.report.diff.cells import cells, in_short, labelled, listed
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.scope import frames_compared, scope, seen_lines
 from bfsim.report.diff.sentences import verdict, why
@@ -46,9 +46,10 @@ class DiffPage:
             {
                 "difference": difference,
                 "sides": {"before": self.before, "after": self.after},
-                "verdict": verdict(difference),
+                "verdict": verdict(difference).replace(" %", "\N{NO-BREAK SPACE}%"),
                 "why": list(why(difference)),
                 "scope": list(scope(difference)),
+                "configuration": list(in_short(difference.configuration)),
                 "compared": frames_compared(difference),
                 "labelled": labelled,
                 "listed": listed,

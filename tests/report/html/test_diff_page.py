@@ -86,6 +86,16 @@ def test_the_whole_tree_is_there() -> None:
     assert text.count("width:25.00%") == 2
 
 
+def test_many_buffers_that_moved_alike_are_one_row_and_all_are_there_to_open() -> None:
+    """With another LDF fifty rows stood before the causes; the screen has a few."""
+    moved = tuple(Change(what=f"buffer b{each}", before="L2", after="SDRAM") for each in range(9))
+    found = page(replace(DIFFERENCE, configuration=(*DIFFERENCE.configuration, *moved)))
+    assert "buffer b0 and 8 others" in found.words
+    assert "All 10, one by one" in found.words
+    assert "buffer b8" in found.words
+    assert "one by one" not in page(DIFFERENCE).words
+
+
 def test_the_frames_that_changed_most_have_the_pictures_that_there_are(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
