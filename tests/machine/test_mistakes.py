@@ -62,6 +62,11 @@ def one_argument_too_few(core: Core, frame: Frame) -> Play:
     yield core.run(copy, frame.rows[0])
 
 
+def an_argument_by_name(core: Core, frame: Frame) -> Play:
+    """Call a kernel as a function of Python."""
+    yield core.run(copy, frame.rows[0], out=core.rows("image")[0])  # type: ignore[call-arg]
+
+
 def wrong_elements(core: Core, frame: Frame) -> Play:
     """Give bytes to a kernel that wants 32-bit integers."""
     yield core.run(total, frame.rows[0])
@@ -172,6 +177,12 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         (a_list_of_rows, KernelError, r"source must be a row of a placed buffer, not \[<row of camera", 2),
         (a_number, FirmwareError, "or `yield from` a wait, not 42", 2),
         (one_argument_too_few, KernelError, r"copy must get source, out, not 1 argument \(", 2),
+        (
+            an_argument_by_name,
+            FirmwareError,
+            "TypeError: core.run.kernel, .... takes the kernel and its arguments in their order, without names",
+            2,
+        ),
         (wrong_elements, KernelError, "source must be one contiguous row of int32, not uint8", 2),
         (unknown_buffer, FirmwareError, "core A has no buffer 'camara'; it has camera, image, in_l2", 2),
         (array_of_many_rows, FirmwareError, r"buffer image has 8 rows; use core\.rows\('image'\)", 2),

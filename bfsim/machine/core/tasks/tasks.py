@@ -22,6 +22,10 @@ from bfsim.machine.memories import Row
 from bfsim.machine_code.asking import OVER
 from bfsim.trace import REST, StallReason
 
+NO_KEYWORDS = "machine code() takes no keyword arguments"
+IN_ORDER = "core.run(kernel, ...) takes the kernel and its arguments in their order, without names"
+"""What Python says of `core.run(kernel, n=3)`, for it is machine code that runs kernels, and what is said instead."""
+
 
 class Run(Protocol):
     """What runs kernels for firmware."""
@@ -160,7 +164,8 @@ class Tasks:
             return self._in_call(error, line)
         if isinstance(error, BfsimError):
             return type(error)(f"{error}{line}")
-        what = f"{type(error).__name__}: {error}{self._advice(error)}"
+        said = IN_ORDER if str(error).endswith(NO_KEYWORDS) else error
+        what = f"{type(error).__name__}: {said}{self._advice(error)}"
         if forgotten := self._progress.waits.forgotten():
             return FirmwareError(f"{forgotten} ({what}){line}")
         if self._asked.unclaimed:
