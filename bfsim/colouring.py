@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import BfsimError, ConfigError, FirmwareError, with_article
+from bfsim.errors import BfsimError, ConfigError, FirmwareError, is_failure, with_article
 from bfsim.loading.firmware import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.peripherals.device import Script
@@ -108,7 +108,9 @@ def _named(
         raise ConfigError(f"{script}: {error}") from error
     except BfsimError:
         raise
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
+        if not is_failure(error):
+            raise
         what = f"{type(error).__name__}: {error}{line_of(error)}"
         raise FirmwareError(f"colours of {loaded.name} failed with {what}") from error
     if not isinstance(found, PictureColours):

@@ -87,5 +87,14 @@ class WorkError(BfsimError, ValueError):
     """Raised when a recorded run cannot be read, or cannot be played on the hardware that was asked for."""
 
 
+class EndError(BaseException):
+    """Raised where bfsim ends at once, whatever code of the user is at work: it is no failure of that."""
+
+
+def is_failure(error: BaseException) -> bool:
+    """Return whether code of the user that raised this has failed; Ctrl-C, and what ends bfsim itself, goes through it."""
+    return not isinstance(error, (KeyboardInterrupt, EndError))
+
+
 class BfsimWarning(UserWarning):
     """Given where a run goes on, but not as its user will have thought."""

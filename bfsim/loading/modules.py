@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 
 from bfsim import shipped
-from bfsim.errors import BfsimError, FirmwareError, cut, shown
+from bfsim.errors import BfsimError, FirmwareError, cut, is_failure, shown
 from bfsim.loading.importing import OwnModules, Root
 from bfsim.loading.kernels import add_files_of_code, kernels_of
 from bfsim.loading.libraries import add_libraries
@@ -42,7 +42,9 @@ def import_more(module: str, own: OwnModules) -> ModuleType:
         if place.strip(" ()").rpartition(":")[0] in str(error):  # which it names itself
             raise
         raise type(error)(f"{error}{place}") from error
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
+        if not is_failure(error):
+            raise
         if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
             raise FirmwareError(
                 f"the module {shown(module)} must be in {own.roots[0].folder}, but there is none"

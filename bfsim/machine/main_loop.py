@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, is_failure
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.waits import Wait
@@ -27,7 +27,9 @@ class MainLoop:
         tasks = self._parts.tasks
         try:
             task = self.main(self._core)
-        except (Exception, SystemExit) as error:
+        except BaseException as error:
+            if not is_failure(error):
+                raise
             raise tasks.told(error) from error
         if not isinstance(task, Generator):
             raise FirmwareError(

@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from bfsim.errors import BfsimError, BfsimWarning
+from bfsim.errors import BfsimError, BfsimWarning, EndError
 from bfsim.process import look_alikes
 from bfsim.process.signals import BY_SIGNAL, interrupted_code
 
@@ -97,7 +97,7 @@ def _shortened(message: str) -> str:
     return f"{message[:half]}[{hidden} more characters]{message[-half:]}" if hidden > 0 else message
 
 
-class _OutputError(BaseException):
+class _OutputError(EndError):
     """Raised when standard output or standard error takes no more.
 
     No OSError, which click and rich end with code 1, and no Exception, which would be a mistake of the firmware that prints.

@@ -99,6 +99,12 @@ def no_method(core: Core, frame: Frame) -> Play:
     yield core.run(first, core.arrray("in_ring"))  # type: ignore[attr-defined]
 
 
+def what_is_no_exception(core: Core, frame: Frame) -> Play:
+    """Raise what Python's own `except Exception` lets through, as outcomes of pytest and cancelled tasks are."""
+    yield core.run(spin, 1)
+    raise GeneratorExit("done")
+
+
 def float_result(core: Core, frame: Frame) -> Play:
     """Publish what is no integer."""
     core.publish(share=0.5)
@@ -196,6 +202,7 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
             2,
         ),
         (end_of_all, FirmwareError, "core A: firmware failed with SystemExit: 0", 3),
+        (what_is_no_exception, FirmwareError, "core A: firmware failed with GeneratorExit: done", 3),
         (float_result, FirmwareError, "core A: the result share must be an integer, not 0.5; ", 2),
     ],
 )

@@ -40,7 +40,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from bfsim.errors import BfsimError, FirmwareError, shown
+from bfsim.errors import BfsimError, FirmwareError, is_failure, shown
 from bfsim.machine.firmware_lines import line_of
 
 LARGEST_MESSAGE_BYTES = 4096
@@ -114,7 +114,9 @@ def device_at_work(peripheral: str) -> Iterator[None]:
         yield
     except BfsimError:
         raise
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
+        if not is_failure(error):
+            raise
         what = f"{type(error).__name__}: {error}{line_of(error)}"
         raise FirmwareError(f"the device on the {peripheral} failed with {what}") from error
 

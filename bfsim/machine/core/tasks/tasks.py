@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import simpy
 
 from bfsim.chip.block_spec import EventSpec
-from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
+from bfsim.errors import BfsimError, FirmwareError, KernelError, is_failure, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.calls.work import UNYIELDED
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
@@ -84,7 +84,9 @@ class Tasks:
         while True:
             try:
                 item = asked.go_on(task, value)
-            except (Exception, SystemExit) as error:
+            except BaseException as error:
+                if not is_failure(error):
+                    raise
                 raise self.told(error) from error
             if item is OVER:
                 break
@@ -155,7 +157,7 @@ class Tasks:
 
     # ---- what is wrong with the firmware
 
-    def told(self, error: Exception | SystemExit) -> BfsimError:
+    def told(self, error: BaseException) -> BfsimError:
         """Return what went wrong in the firmware, with its line there; what the system refused to bfsim was no line's fault."""
         if isinstance(error, BfsimError) and isinstance(error.__cause__, OSError):
             return error
@@ -172,7 +174,7 @@ class Tasks:
             return FirmwareError(f"core {self._name}: {UNYIELDED} ({what}){line}")
         return FirmwareError(f"core {self._name}: firmware failed with {what}{line}")
 
-    def _advice(self, error: Exception | SystemExit) -> str:
+    def _advice(self, error: BaseException) -> str:
         """Return what the author of the firmware may have overlooked."""
         if self.is_over:
             return "; core.next_frame() had given None, for the recording is over, and then the main loop must end"
