@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from bfsim.trace import CoreFrame, FrameRecord
 
@@ -13,7 +14,7 @@ def milliseconds(cclk: float, cclk_hz: float) -> float:
 
 
 def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
-    """Frames per second from frame end to frame end; of a single frame, one over its duration.
+    """Frames per second from frame end to frame end, at most as many as pictures can come; of a single frame, one over its duration.
 
     Firmware that waits for every picture is as fast as these come, from picture to picture: in a few frames, a first one that took
     long would make it faster than its cameras.
@@ -23,7 +24,8 @@ def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
         return cclk_hz / (ends[0] - frames[0].begin_cclk)
     if waits_for_pictures(frames):
         ends = [frame.last_line_cclk for frame in frames]
-    return (len(frames) - 1) * cclk_hz / (ends[-1] - ends[0])
+    nearest_cclk = min(later.last_line_cclk - each.last_line_cclk for each, later in pairwise(frames))
+    return cclk_hz / max((ends[-1] - ends[0]) / (len(frames) - 1), nearest_cclk)
 
 
 def waits_for_pictures(frames: Sequence[FrameRecord]) -> bool:

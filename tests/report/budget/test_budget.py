@@ -83,8 +83,20 @@ def test_firmware_that_waits_for_every_picture_is_no_faster_than_they_come() -> 
     assert frame_rate_hz(waiting, 1_000_000) == 1_000
     other = core_frame("B", 1_160, cost("Edge detection", 940))  # one core is never without work
     begun = core_frame("B", 0, cost("Edge detection", 1_160))
-    busy = [frame(0, first, begun, latency_cclk=160), frame(1, second, other, latency_cclk=100)]
+    busy = [frame(0, first, begun, latency_cclk=160), frame(1, second, other, latency_cclk=600)]
     assert frame_rate_hz(busy, 1_000_000) == 1_000_000 / 940
+
+
+def test_firmware_is_no_faster_than_pictures_can_come() -> None:
+    """Behind a long first frame two pictures are there; the frames after it end 40 cycles apart, and no two pictures come so near."""
+    first = core_frame("A", 0, cost("Edge detection", 400), cost(REST, 0, idle_cclk=100))
+    short = [core_frame("A", 500 + 40 * each, cost("Edge detection", 40)) for each in range(2)]
+    frames = [
+        frame(0, first, latency_cclk=400),
+        *(frame(1 + each, short[each], latency_cclk=340 - 60 * each) for each in range(2)),
+    ]
+    assert [each.last_line_cclk for each in frames] == [100, 200, 300]
+    assert frame_rate_hz(frames, 1_000_000) == 1_000_000 / 100
 
 
 def test_frame_rate_runs_from_frame_end_to_frame_end() -> None:
