@@ -145,6 +145,30 @@ def test_a_result_that_was_edited_is_told_with_its_key(
 
 
 @pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        (("frames", 0, "cores"), [], "frames must have what at least one core did in each"),
+        (("identity", "cclk_hz"), 0, "identity.cclk_hz must be a rate in Hz, not 0.0"),
+        (("identity", "sclk_hz"), float("nan"), "identity.sclk_hz must be a rate in Hz, not nan"),
+        (("owners", 0, "waiting_cclk"), [], "owners must have a number for each of the 2 frames"),
+    ],
+)
+def test_a_result_that_no_run_leaves_is_refused(
+    home: Path, key: tuple[str | int, ...], value: object, told: str
+) -> None:
+    """Each ended in a traceback, or in frames of `nan` ms."""
+    keep("once.json", "--firmware", "slow.py:firmware")
+    plain = part = json.loads((home / "once.json").read_text())
+    for each in key[:-1]:
+        part = part[each]
+    part[key[-1]] = value
+    (home / "wrong.json").write_text(json.dumps(plain))
+    refused = bfsim("diff", "once.json", "wrong.json")
+    assert refused.exit_code == 2
+    assert f"wrong.json: {told}" in " ".join(refused.stderr.split())
+
+
+@pytest.mark.parametrize(
     ("side", "told"),
     [
         ("missing.json", "there is no such file"),

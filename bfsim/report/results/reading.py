@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -38,11 +39,22 @@ def read_result(path: Path) -> Result:
     except ValidationError as error:
         first = error.errors()[0]
         raise ConfigError(f"{path}: {key_of(first['loc'])} {wrong_value(first)}") from None
-    if any(len(each.elapsed_cclk) != len(run.frames) for each in owners):
-        raise ConfigError(f"{path}: owners must have a number for each of the {len(run.frames)} frames")
-    if not run.frames:
-        raise ConfigError(f"{path} must hold at least one frame, and holds none")
+    for wrong in _wrong(run, owners):
+        raise ConfigError(f"{path}: {wrong}")
     return Result(run, {each["index"]: each["seen"] for each in plain["frames"] if "seen" in each}, owners)
+
+
+def _wrong(run: RunRecord, owners: tuple[OwnerFrames, ...]) -> Iterator[str]:
+    """Yield what no run leaves, and what no report can be made of."""
+    if not run.frames:
+        yield "frames must be at least one, and there is none"
+    if not all(each.cores for each in run.frames):
+        yield "frames must have what at least one core did in each"
+    for name, hz in (("cclk_hz", run.identity.cclk_hz), ("sclk_hz", run.identity.sclk_hz)):
+        if not 0 < hz < inf:
+            yield f"identity.{name} must be a rate in Hz, not {hz}"
+    if any({len(each.elapsed_cclk), len(each.waiting_cclk)} != {len(run.frames)} for each in owners):
+        yield f"owners must have a number for each of the {len(run.frames)} frames"
 
 
 def _plain(path: Path) -> dict[str, Any]:
