@@ -242,6 +242,8 @@ def test_names_stand_for_files_and_choices() -> None:
         ({"board": 561}, "board must be a BoardSpec or the name of one, not int"),
         ({"settings": [3]}, "settings must be a dict of numbers by their paths, .* not list"),
         ({"defines": "USE_SDRAM"}, "defines must be a dict of macros, .* not str"),
+        ({"include_dirs": "vdk"}, "include_dirs must be a list of folders, not str"),
+        ({"include_dirs": Path("vdk")}, "include_dirs must be a list of folders, not PosixPath"),
         ({"ldf": 3}, "ldf must be a file or the name of a shipped one, not int"),
         ({"profile": None}, "profile must be the name of a compiler profile, not NoneType"),
         ({"on_seen": []}, "on_seen must be a function, not list"),

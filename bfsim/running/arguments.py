@@ -31,6 +31,7 @@ _ALLOWED = {
     "board": _Allowed((BoardSpec, str), "a BoardSpec or the name of one"),
     "settings": _Allowed((Mapping,), 'a dict of numbers by their paths, such as {"sdram.nRP": 3}'),
     "defines": _Allowed((Mapping,), 'a dict of macros, such as {"USE_SDRAM": "1"}'),
+    "include_dirs": _Allowed((list, tuple), "a list of folders"),
     "ldf": _Allowed((str, PathLike, NoneType), "a file or the name of a shipped one"),
     "profile": _Allowed((str,), "the name of a compiler profile"),
     "frames": _Allowed((Integral, NoneType), "a whole number"),
