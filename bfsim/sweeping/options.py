@@ -45,7 +45,9 @@ def flattened(table: Any, where: str) -> dict[str, Any]:
 
 
 def _advice(key: str, value: Any) -> str:
-    """Say what keys there are, or, where a path of the board may be meant, how that is written."""
+    """Say what keys there are, or, where a path of the board may be meant, how that is written: quoted it is one key."""
+    if key.partition(".")[0] in TREES:
+        return f"it is written without quotes: {cut(key)}"
     if isinstance(value, dict) and value:
         return f"a number of the board is written set.{cut(f'{key}.{next(iter(value))}')}"
     return f"known keys are {', '.join(Configuration.model_fields)}"

@@ -117,6 +117,7 @@ def test_a_path_into_a_script_that_is_a_file(tmp_path: Path) -> None:
         ("point = {}", "point must be a list of tables, [[point]], not {}"),
         ("point = [3]", "point.1 must be a table of options, not 3"),
         ("point = [{name = 3}]", "point.1.name must be text, not 3"),
+        ("axes.'set.sdram.nRP' = [1]", "axes.set.sdram.nRP must not be there; it is written without quotes: set.sdram.nRP"),
         ("axes.clock = [1]", "axes.clock must not be there; known keys are recording, firmware, board, set"),
         ("axes.sdram.nRP = [3]", "axes.sdram must not be there; a number of the board is written set.sdram.nRP"),
         ("axes.ldf = 'l2'", "axes.ldf must be a list of values, not 'l2'"),
