@@ -160,12 +160,15 @@ class Sweep:
             tell(planned, outcome)
 
     def try_out(self, planned: Planned, frames: int, workers: Workers) -> Outcome:
-        """Run the first frames of a point, twice, so that its kernels are compiled; nothing is kept."""
+        """Run the first frames of a point, twice, so that its kernels are compiled; nothing is kept, nor known if its process dies."""
         trial = replace(
             planned.point, configuration=planned.point.configuration.model_copy(update={"frames": frames})
         )
-        for _ in range(2):
-            outcome: Outcome = workers.submit(run_point, *self._call(trial), code_digest()).result()
+        try:
+            for _ in range(2):
+                outcome: Outcome = workers.submit(run_point, *self._call(trial), code_digest()).result()
+        except workers.deaths:
+            return Outcome(error="the process that tried it died", is_final=False)
         return outcome
 
     def _call(self, point: Point) -> tuple[Configuration, Path]:

@@ -214,6 +214,14 @@ def test_a_point_whose_process_dies_is_tried_once_more(file: Path, times: int) -
     assert len(swept(file)[1]) == len(failed)
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_trial_whose_process_dies_says_nothing_of_the_time(file: Path, times: int) -> None:
+    """`--dry-run` ended in a traceback where the memory of the machine did not suffice."""
+    sweep, workers = planned(file), Mortal(times)
+    tried = sweep.try_out(sweep.planned[0], 1, workers)
+    assert (tried.frames, tried.error) == (0, "the process that tried it died")
+
+
 class Gone(Here):
     """Has the scheduler go away, which cancels what was asked of it."""
 
