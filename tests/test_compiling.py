@@ -46,6 +46,19 @@ def test_what_a_compiler_says_of_a_file_obeys_no_terminal(tmp_path: Path) -> Non
         tools.build(tmp_path, (), ())
 
 
+def test_what_a_compiler_says_in_another_encoding_is_told(tmp_path: Path) -> None:
+    """As GCC does in a locale of ISO 8859: it ended in a traceback."""
+    tools = Toolchain(("sh", "-c", r"printf 'x.c:1:1: Fehler: \374ber\n' >&2; exit 1"))
+    with pytest.raises(ConfigError, match="says: x.c:1:1: Fehler: .ber$"):
+        tools.build(tmp_path, (), ())
+
+
+def test_a_compiler_that_makes_nothing_is_named(tmp_path: Path) -> None:
+    """Told was a file of a folder that is gone."""
+    with pytest.raises(ConfigError, match="^true must be GCC for the Blackfin, but makes no object file$"):
+        Toolchain(("true",)).build_object(tmp_path, ("x.c",), ())
+
+
 @pytest.mark.parametrize(
     "error",
     ["x.c:40:1: error: expected ';'", "x.s:7: Error: syntax error", "cc1: internal compiler error: no"],

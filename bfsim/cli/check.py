@@ -235,7 +235,7 @@ def _commit() -> str:
 
     command = ["git", "describe", "--always", "--dirty", "--abbrev=40", "--match="]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - it is git
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)  # noqa: S603 - it is git
     except OSError:
         return ""
     return done.stdout.strip() if done.returncode == 0 else ""

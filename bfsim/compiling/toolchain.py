@@ -59,6 +59,8 @@ class Toolchain:
         self._output(
             *self.compiler, "-r", "-nostdlib", *parts, *self.libraries, "-o", whole.name, folder=folder
         )
+        if not whole.is_file():
+            raise ConfigError(f"{self.compiler[0]} must be GCC for the Blackfin, but makes no object file")
         return whole
 
     def build(self, folder: Path, sources: Sequence[str], options: Sequence[str]) -> Path:
@@ -75,7 +77,7 @@ class Toolchain:
         import subprocess  # most starts ask no compiler
 
         done = subprocess.run(  # noqa: S603, the user's own compiler and what it made
-            command, check=False, capture_output=True, text=True, cwd=folder
+            command, check=False, capture_output=True, text=True, errors="replace", cwd=folder
         )
         if done.returncode:
             said = (
