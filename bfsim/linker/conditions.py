@@ -22,7 +22,7 @@ def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
     expanded = _DEFINED.sub(is_defined, expand(_DEFINED.sub(is_defined, condition), macros))
     if _PLAIN.fullmatch(expanded):
         return (expanded.count("!") + expanded.count("1")) % 2 == 1
-    from bfsim.linker.grammar import parse_condition  # it costs 80 ms, which few conditions need
+    from bfsim.linker.grammar import parse_condition  # it costs 100 ms, which few conditions need
 
     try:
         return parse_condition(expanded) != 0

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
-import sys
 from functools import cache
 from importlib.resources import files
-from io import BytesIO
 
-import lark
 from lark import Lark, Token, Tree, UnexpectedInput, UnexpectedToken
 from lark.exceptions import VisitError
 from lark.lexer import PatternStr
 
 from bfsim.errors import LinkError, printable
-from bfsim.files import store
 from bfsim.linker.expression_builder import ExpressionBuilder
 from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionError
 from bfsim.linker.source import Source
@@ -71,17 +66,9 @@ def parse_condition(text: str) -> int:
 
 @cache
 def _grammar() -> Lark:
-    """Return the parser, which the cache keeps: to make it takes ten times as long."""
+    """Return the parser. It takes 50 ms, and is not kept: a kept one would be a pickle, which runs code when it is read."""
     text = files("bfsim.linker").joinpath("ldf.lark").read_text(encoding="utf-8")
-    name = hashlib.sha256(f"{text} lark {lark.__version__} Python {sys.version}".encode()).hexdigest()
-    kept = store.load(name)
-    if kept is not None:
-        return Lark.load(BytesIO(kept))
-    made = Lark(text, parser="lalr", lexer="contextual", start=["start", "condition"])
-    written = BytesIO()
-    made.save(written)
-    store.save(name, written.getvalue())
-    return made
+    return Lark(text, parser="lalr", lexer="contextual", start=["start", "condition"])
 
 
 def _syntax_error(source: Source, error: UnexpectedInput) -> LinkError:
