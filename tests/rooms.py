@@ -162,8 +162,8 @@ ESTIMATE = _sets(
         "loops": "",
         "arithmetic": "loops",
         "memory": "choices loops",
-        "switches": "conditions",
         "ranges": "arithmetic",
+        "switches": "conditions ranges",
         "unoptimised": "arithmetic",
         "induction_variables": "loops ranges",
         "jump_threading": "choices conditions loops switches ranges",
@@ -172,7 +172,7 @@ ESTIMATE = _sets(
         "redundancies": "choices conditions loops prediction",
         "loop_copies": "conditions loops arithmetic memory jump_threading prediction inlining",
         "selection": (
-            "choices conditions loops arithmetic memory ranges induction_variables jump_threading "
+            "choices conditions loops arithmetic memory ranges switches induction_variables jump_threading "
             "prediction redundancies"
         ),
         "registers": "memory induction_variables selection",

@@ -1,4 +1,4 @@
-"""What a switch costs: a jump by a table, or comparisons and branches in the order of the cases."""
+"""What a switch costs: tests of bits, a jump by a table, or comparisons and branches in the order of the cases."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from bfsim.kernel import operations
 from bfsim.kernel.costs.charges import BlockCost, Test, charge, instead
 from bfsim.kernel.estimate.switches.jump_tables import MARK, first_entry
+from bfsim.kernel.estimate.switches.masks_of_places import MasksOfPlaces, masks_of_places
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import BasicBlock
 from bfsim.kernel.ir.widths import WORD, widest
@@ -17,6 +18,9 @@ def add_switch(cost: BlockCost, block: BasicBlock, flow: ControlFlow) -> None:
     """Add the switch at the end of a block to its cost [expand_case in stmt.cc, tablejump in bfin.md of GCC 12]."""
     value, line = block.terminator.operands[0], block.terminator.line
     numbers = [case for case, _ in block.cases]
+    if (masks := masks_of_places(block, flow)) is not None:
+        _add_bit_tests(cost, block, masks)
+        return
     if MARK in block.label:
         tested = [charge(each, line) for each in _table_index(flow, value, numbers)]
         default = [*tested, charge(Op.BRANCH_TAKEN, line)]
@@ -30,6 +34,32 @@ def add_switch(cost: BlockCost, block: BasicBlock, flow: ControlFlow) -> None:
     cost.charges += default
     for number, hit in zip(numbers, hits, strict=True):
         cost.tests.append(Test(value, number, instead(hit, default)))
+
+
+def _add_bit_tests(cost: BlockCost, block: BasicBlock, masks: MasksOfPlaces) -> None:
+    """Add the bit of the value, and a test of it for each place, to the cost of a block."""
+    value, line, order = block.terminator.operands[0], block.terminator.line, masks.order
+    bit = [charge(each, line) for each in _bit(masks)]
+    missed = [charge(each, line) for each in (Op.ALU, Op.COMPARE, Op.BRANCH_NOT_TAKEN)]
+    found = [charge(each, line) for each in (Op.ALU, Op.COMPARE, Op.BRANCH_TAKEN)]
+    default = [*bit, *missed * len(order)]
+    cost.charges += default
+    for number, place in masks.places.items():
+        hit = [*bit, *missed * order.index(place), *found]
+        cost.tests.append(Test(value, number, instead(hit, default)))
+
+
+def _bit(masks: MasksOfPlaces) -> Iterator[Op]:
+    """What makes the bit of a value, behind a test that it is the number of one."""
+    low, high = min(masks.places), max(masks.places)
+    if low < 0 or high >= WORD:
+        yield Op.ALU
+        high -= low
+    if not masks.is_bit:
+        if high not in operations.COMPARE_UNSIGNED_IMMEDIATE:
+            yield Op.IMM
+        yield from (Op.COMPARE, Op.BRANCH_NOT_TAKEN)
+    yield from (Op.MOVE, Op.SHIFT)
 
 
 def _table_index(flow: ControlFlow, value: str, numbers: Sequence[int]) -> Iterator[Op]:

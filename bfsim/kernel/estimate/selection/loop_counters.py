@@ -9,6 +9,7 @@ from bfsim.kernel.estimate.induction_variables.endless_loops import EndlessLoops
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.estimate.selection.library_divisions import LibraryDivisions
+from bfsim.kernel.estimate.switches.masks_of_places import masks_of_places
 from bfsim.kernel.ir.control_flow import Loop
 from bfsim.kernel.ir.text import Instruction
 from bfsim.kernel.rules import Rule
@@ -53,7 +54,6 @@ class LoopCounters:
         inside = (each for label in self.flow.inside(loop) for each in self.flow.blocks[label].instructions)
         library = any(
             each.is_call
-            or each.opcode == "switch"
             or each.is_soft_float
             or (each.is_division and self._is_inside(each, loop) and self.divisions.divides_by_call(each))
             for each in inside
@@ -61,7 +61,15 @@ class LoopCounters:
         iterations = self.evolution.iterations(loop)
         many = iterations is None or iterations > FEWEST_ITERATIONS
         counted = self.evolution.is_counted(loop) and not self.endless_loops.may_be(loop)
-        return not library and many and counted and (iterations is not None or self._steps_by_power(loop))
+        known = iterations is not None or self._steps_by_power(loop)
+        return not library and not self._jumps(loop) and many and counted and known
+
+    def _jumps(self, loop: Loop) -> bool:
+        """Whether a loop has a computed jump, as a switch is that does not test for bits."""
+        blocks = (self.flow.blocks[label] for label in self.flow.inside(loop))
+        return any(
+            each.terminator.opcode == "switch" and masks_of_places(each, self.flow) is None for each in blocks
+        )
 
     def _is_inside(self, each: Instruction, loop: Loop) -> bool:
         """Whether a value is computed in each iteration, and not before the loop."""
