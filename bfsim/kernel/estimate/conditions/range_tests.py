@@ -33,7 +33,9 @@ def _may_join(flow: ControlFlow, tested: Range) -> bool:
     """Whether both tests lead to one place if they fail, as if they were one."""
     outside = _outside(flow, tested)
     leads = {*flow.blocks[tested.first].successors} == {tested.second, outside}
-    return leads and come_alike(flow, outside, (tested.first, tested.second))
+    _, test = flow.defined[flow.blocks[tested.first].terminator.operands[0]]
+    is_of_value = any(each.startswith("%") for each in test.operands)  # `3 < 5` is none
+    return leads and is_of_value and come_alike(flow, outside, (tested.first, tested.second))
 
 
 def _outside(flow: ControlFlow, tested: Range) -> str:

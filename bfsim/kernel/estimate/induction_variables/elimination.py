@@ -15,7 +15,12 @@ from bfsim.kernel.estimate.induction_variables.induction_variables import (
     InductionVariable,
     InductionVariables,
 )
-from bfsim.kernel.estimate.induction_variables.pointer_differences import Choice, homes_of, wishes_of
+from bfsim.kernel.estimate.induction_variables.pointer_differences import (
+    Choice,
+    homes_of,
+    is_multiple,
+    wishes_of,
+)
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.preheaders import preheader_of
@@ -77,7 +82,10 @@ def eliminated_counters(
                 found |= _differences(choice) if choice.spares else {}
                 continue
             blocks = _seldom_wanted(flow, evolution, loop, name, frequency)
-            if blocks and (len(steady) > 1 or prepared):
+            is_multiplied = any(
+                map(is_multiple, flow.users.get(name, ()))
+            )  # what steps by more is a variable of its own
+            if blocks and not is_multiplied and (len(steady) > 1 or prepared):
                 found[name] = EliminatedCounter(name, variable, blocks, 1 if prepared else 2)
     return found
 

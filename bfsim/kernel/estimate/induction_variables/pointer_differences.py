@@ -62,7 +62,7 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
         for user in flow.users.get(name, []):
             if user.opcode == "getelementptr" or user.result in (evolution.exit_test(loop), counter):
                 continue  # an address, the end of the loop, its step
-            if _is_multiple(user):
+            if is_multiple(user):
                 return None  # a variable that steps by more
             if user.opcode in ("add", "sub", "xor", "trunc") and _is_sum(evolution, loop, counter, user):
                 if user.result not in seen:
@@ -126,7 +126,8 @@ def _wanted_by(flow: ControlFlow, user: Instruction, name: str) -> Iterator[tupl
         yield from ((is_narrow, home) for home in homes_of(flow, user, name))
 
 
-def _is_multiple(each: Instruction) -> bool:
+def is_multiple(each: Instruction) -> bool:
+    """Whether an instruction multiplies by a number."""
     return each.opcode in ("shl", "mul") and is_number(each.operands[1])
 
 

@@ -134,15 +134,16 @@ def _without_empty_blocks(routine: Routine, kept: Iterable[BasicBlock]) -> Routi
     """Return `routine` without empty blocks, but those that are `kept`, where no phi tells them from another way."""
     blocks = {each.label: each for each in routine.blocks}
     stays = {each.label for each in kept}
-    for block in routine.blocks:
-        before = [each.label for each in blocks.values() if block.label in each.successors]
+    for label in [*blocks]:
+        block = blocks[label]  # where a block behind it is gone, it leads elsewhere now
+        before = [each.label for each in blocks.values() if label in each.successors]
         goals = block.successors
         is_empty = len(block.instructions) == len(goals) == 1 and not block.enters
         if (
             is_empty
-            and block.label not in stays
-            and not block.label.endswith(BEFORE)
+            and label not in stays
+            and not label.endswith(BEFORE)
             and not any({*goals} & {*blocks[each].successors} for each in before)
         ):
-            bypass(blocks, before, block.label, goals[0])
+            bypass(blocks, before, label, goals[0])
     return replace(routine, blocks=tuple(blocks.values()))

@@ -24,13 +24,14 @@ def with_values_chosen_behind(flow: ControlFlow, loop: Loop) -> Routine:
     if len(ways_out) != 1 or len(before) < 2 or not loop.blocks.issuperset(before):
         return flow.routine
     own = {each.result: each for each in header.instructions if each.result}
-    used = {
-        name
-        for label, block in flow.blocks.items()
-        for each in block.instructions
-        for name, source in _uses(label, each)
-        if source not in loop.blocks and name in own
-    }
+    used: dict[str, set[str]] = {}
+    for label, block in flow.blocks.items():
+        for each in block.instructions:
+            for name, source in _uses(label, each):
+                if source not in loop.blocks and name in own:
+                    used.setdefault(name, set()).add(source)
+    if any(ways_out[0] not in flow.dominators[each] for sources in used.values() for each in sources):
+        return flow.routine  # the loop has other ends, behind which they are wanted, too
     names = {name: f"{name}{BEHIND}" for name in own if name in used}
     blocks = [
         each if each.label in loop.blocks else _behind(each, names, loop) for each in flow.routine.blocks

@@ -135,9 +135,9 @@ class Moves:
         return not taken_over and not any(phi in self.webs.live.into[way] for way in outside)
 
     def _on_edge(self, label: str, home: str, instruction: MachineInstruction) -> None:
-        if len(set(self.flow.blocks[label].successors)) == 1 or self._is_loaded_early(
-            label, home, instruction
-        ):
+        ways = set(self.flow.blocks[label].successors)
+        is_converted = home not in ways  # both sides of its branch lead there, and it has none any more
+        if is_converted or len(ways) == 1 or self._is_loaded_early(label, home, instruction):
             self.code.add(label, instruction)
         else:
             self.on_edges.setdefault((label, home), []).append(instruction)
