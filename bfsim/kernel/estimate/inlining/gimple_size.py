@@ -112,13 +112,16 @@ def _unchanged(routine: Routine, given: Given) -> Given:
 
 
 def _with_ranges(text: str, symbol: str, given: Given) -> str:
-    """Return a module in which the parameters of a routine have the ranges that are known."""
+    """Return a module in which the parameters of a routine have the ranges that are known, and are numbers where those are of one."""
     before, head, behind = re.split(rf"(define \w+ @{re.escape(symbol)}\(.*?\))", text, maxsplit=1)
     name, parameters = head.split("(", 1)
     parts = [
         each if known is None else each.replace("i32", f"i32 range(i32 {known[0]}, {known[1] + 1})", 1)
         for each, known in zip(parameters.split(", "), given, strict=True)
     ]
+    for each, known in zip(parameters.rstrip(")").split(", "), given, strict=True):
+        if known is not None and known[0] == known[1]:
+            behind = re.sub(rf"{re.escape(each.split()[-1])}(?![\w.$-])", str(known[0]), behind)
     return f"{before}{name}({', '.join(parts)}{behind}"
 
 
@@ -159,7 +162,9 @@ class _Estimator:
             return 0, 0.0
         callee = self.callees[_callee(call)]
         plain, known = estimate(callee), _estimated(callee, given)
-        return max(0, plain.size - known.size), max(0.0, plain.time - known.time)
+        size = plain.size + plain.gone_size - known.size - known.gone_size
+        time = plain.time + plain.gone_time - known.time - known.gone_time
+        return max(0, size), max(0.0, time)
 
     def _known(self, argument: str) -> Range | None:
         """The range of an argument, if all in it are positive and anything is known of it."""
