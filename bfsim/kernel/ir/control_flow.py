@@ -183,6 +183,12 @@ class ControlFlow:
                 open_visits.append((following, iter(reversed(self.blocks[following].successors))))
         return tuple(reversed(found))
 
+    def tested(self, label: str) -> str:
+        """Return the block with the test that an empty block is one side of; any other block itself, as one that ends with a test."""
+        block, before = self.blocks[label], self.predecessors[label]
+        is_empty = len(block.instructions) == 1 and len(set(block.successors)) == 1 and len(before) == 1
+        return before[0] if is_empty else label
+
     def is_overflow_guard(self, block: BasicBlock) -> bool:
         """Whether a block only tests if a sum would wrap: in C, where signed sums may not, there is no such test."""
         operands = block.terminator.operands

@@ -15,6 +15,7 @@ from bfsim.kernel.intrinsics import BY_NAME, PREFIX, Intrinsic
 
 NAME = re.compile(r"%[\w.$-]+")
 TARGET = re.compile(r"label (%[\w.$-]+)")
+TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
 PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
 CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
@@ -222,3 +223,13 @@ def predicate(compare: Instruction) -> str:
     """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
     words = compare.text.split()
     return words[2] if words[1] in ("samesign", "fast") else words[1]
+
+
+def type_of(each: Instruction) -> str:
+    """Return the type of what an instruction computes, in LLVM's words."""
+    if each.opcode in ("icmp", "fcmp"):
+        return "i1"
+    if each.opcode == "getelementptr":
+        return "ptr"
+    found = TYPE.findall(each.text)
+    return str(found[-1] if each.opcode in ("zext", "sext", "trunc") else found[0])

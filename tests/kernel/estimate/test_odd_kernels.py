@@ -37,23 +37,28 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
     return y + k
 """
 OTHER_ENDS = """
-def f(a: u8[:], b: u8[:], n: i32, t: i32) -> i32:
+def f(a: u8[:], n: i32, t: i32) -> i32:
+    x = 0
     y = 0
-    s = 0
+    k = 0
     for i in range(n):
         c = 0
-        while c < 9 and y < 50:
-            y += a[(c + i) & 127] & 7
-            if y == 13:
-                s -= y
-                break
-            if b[c] > t:
-                y -= 1
+        while c < 9:
+            if a[k & 127] > 5:
+                d = 0
+                while d < n and k == 0:
+                    if t == 255:
+                        break
+                    if a[y & 127] == x:
+                        y += 2
+                    d += 1
+                y = (y - (15 & (i >> 1))) & 0xffff
+                if k < 0 and (a[y & 127] <= t or a[y & 127] != k >> 12):
+                    x = a[k & 127]
+            for e in range(7):
+                k = (k + (a[i & 127] >> 5)) & 0xffff
             c += 1
-        if s < 1000:
-            s += y
-            y = 0
-    return s - y
+    return x + y + k
 """
 CHOICES = """
 def f(a: u8[:], n: i32, t: i32) -> i32:
@@ -62,26 +67,26 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
     z = 0
     k = 0
     for i in range(n):
-        if 0 >= t and (k & a[k & 127]) > 5:
-            y += abs(1 | a[k & 127])
-        for c in range(7):
-            d = 0
-            while d < 3 and a[(d + c) & 127] != 6:
-                k = i & 127
-                d += 1
-            if a[i & 127] >= t:
-                for e in range(3, 9):
-                    x += 2
-                g = 0
-                while g < 9 and y == 0:
-                    g += 1
-                if abs(y) != (0 if a[z & 127] <= 7 else 0):
-                    y = abs(y)
-                elif k == 2:
-                    k += 3
-                    z = a[z & 127]
-                else:
-                    k = a[z & 127]
+        for e in range(3):
+            x -= 1
+        c = 0
+        while c < n and k == 0:
+            c += 1
+            if (8 if y < t else 9) < a[i & 127]:
+                if (i ^ (4 if x >= a[i & 127] else 5)) <= 4:
+                    k = (k - 63 * x) & 0xffff
+                d = 0
+                while d < 9 and k == 0:
+                    x = a[i & 127]
+                    d += 1
+                if k <= 1:
+                    y = 15 & 0xffff
+            z = t & 0xffff
+        g = 0
+        while g < n and x == 0:
+            g += 1
+            if i > t:
+                x += 2
     return x + y + z + k
 """
 KERNELS = {"place": PLACE, "numbers": NUMBERS, "other ends": OTHER_ENDS, "choices": CHOICES}

@@ -64,7 +64,7 @@ def _found(flow: ControlFlow, block: BasicBlock) -> _Choice | None:
 def _chosen(flow: ControlFlow, phi: Instruction, home: str, sides: tuple[str, str]) -> _Choice | None:
     arms = arms_of(phi)
     low, high = sorted(int(arms[each]) for each in sides)
-    tested = {_tested(flow, each, home) for each in sides}
+    tested = {flow.tested(each) for each in sides}
     if high != low + 1 or low in (-1, 0) or len(tested) != 1:
         return None
     (label,) = tested
@@ -76,13 +76,6 @@ def _chosen(flow: ControlFlow, phi: Instruction, home: str, sides: tuple[str, st
     way = flow.blocks[label].successors[0]
     if_so = int(arms[way if way in sides else label])
     return _Choice(phi, home, label, sides, test.operands[0], low, (if_so == high) is is_set)
-
-
-def _tested(flow: ControlFlow, label: str, home: str) -> str:
-    """The block that has the test, of one of its sides, with nothing on it."""
-    block, before = flow.blocks[label], flow.predecessors[label]
-    is_empty = len(block.instructions) == 1 and set(block.successors) == {home} and len(before) == 1
-    return before[0] if is_empty else label
 
 
 def _is_of_bit(flow: ControlFlow, test: Instruction) -> bool:

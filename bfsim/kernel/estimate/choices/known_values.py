@@ -55,17 +55,11 @@ class KnownValues:
         phis = [each for each in self.flow.blocks[home].instructions if each.opcode == "phi"]
         return any(
             label != other
-            and self._test_of(label) == self._test_of(other)
+            and self.flow.tested(label) == self.flow.tested(other)
             and all(arms_of(phi)[label] == arms_of(phi)[other] for phi in phis if phi is not choice)
             for value, other in each_arm(choice)
             if is_number(value)
         )
-
-    def _test_of(self, label: str) -> str:
-        """The block of the test whose side a block is, with nothing else in it, or that is in the block itself."""
-        block, before = self.flow.blocks[label], self.flow.predecessors[label]
-        is_empty = len(block.instructions) == 1 and len(set(block.successors)) == 1 and len(before) == 1
-        return before[0] if is_empty else label
 
     def _variable(self, value: str, label: str, home: str) -> str:
         if not is_number(value):

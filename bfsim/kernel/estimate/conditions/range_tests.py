@@ -30,7 +30,7 @@ def with_range_tests(routine: Routine) -> Routine:
 
 
 def _may_join(flow: ControlFlow, tested: Range) -> bool:
-    """Whether both tests lead to one place if they fail, as if they were one."""
+    """Whether both tests are of a value, and lead to one place if they fail, as if they were one."""
     outside = _outside(flow, tested)
     leads = {*flow.blocks[tested.first].successors} == {tested.second, outside}
     _, test = flow.defined[flow.blocks[tested.first].terminator.operands[0]]

@@ -82,9 +82,8 @@ def eliminated_counters(
                 found |= _differences(choice) if choice.spares else {}
                 continue
             blocks = _seldom_wanted(flow, evolution, loop, name, frequency)
-            is_multiplied = any(
-                map(is_multiple, flow.users.get(name, ()))
-            )  # what steps by more is a variable of its own
+            # a multiple of it is a variable of its own, which steps by more
+            is_multiplied = any(map(is_multiple, flow.users.get(name, ())))
             if blocks and not is_multiplied and (len(steady) > 1 or prepared):
                 found[name] = EliminatedCounter(name, variable, blocks, 1 if prepared else 2)
     return found

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from bfsim.kernel import operations
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import Instruction, SourceLine, arms_of, each_arm, is_number
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
+COUNTING = ("getelementptr", "icmp", "phi", "br")
+"""What wants a counter as an address, for the end of a loop, or for the next iteration."""
 HIDDEN = ".len"  # every array comes with its length, which C code would not pass
 
 
@@ -38,10 +41,6 @@ class InductionVariable:
     def stride(self) -> str | None:
         """The register that holds the step, if it is no constant."""
         return f"{self.name}.stride" if self.increment.symbolic else None
-
-
-BYTE = 8
-COUNTING = ("getelementptr", "icmp", "phi", "br")
 
 
 class InductionVariables:
@@ -82,7 +81,7 @@ class InductionVariables:
         """
         if variable.steps_free or variable.increment.symbolic or len(variable.accesses) > 1:
             return False
-        if variable.accesses[0][1].bits != BYTE:
+        if variable.accesses[0][1].bits != operations.BYTE_BITS:
             return False
         loop, terms = variable.loop, self.evolution.affine(variable.accesses[0][1].operands[-1]).terms
         counters = [name for name, times in terms if times == 1]

@@ -15,7 +15,7 @@ from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
 from bfsim.kernel.estimate.conditions.short_circuits import SECOND
 from bfsim.kernel.estimate.inlining.statements import TEST_SIZE, statement_size
 from bfsim.kernel.estimate.jump_threading.flags import JumpThreading
-from bfsim.kernel.estimate.loop_copies.values_behind import type_of, with_values_chosen_behind
+from bfsim.kernel.estimate.loop_copies.values_behind import with_values_chosen_behind
 from bfsim.kernel.estimate.loops.same_values import is_same
 from bfsim.kernel.ir.control_flow import COPIED, ControlFlow, Loop
 from bfsim.kernel.ir.edges import going_to
@@ -29,6 +29,7 @@ from bfsim.kernel.ir.text import (
     phi_of,
     predicate,
     renamed,
+    type_of,
     with_each_arm,
 )
 

@@ -5,15 +5,22 @@ LLVM has none where a loop is always entered; a copy of the header before the lo
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, each_arm, phi_of, renamed, with_each_arm
+from bfsim.kernel.ir.text import (
+    BasicBlock,
+    Instruction,
+    Routine,
+    each_arm,
+    phi_of,
+    renamed,
+    type_of,
+    with_each_arm,
+)
 
 BEHIND = ".behind"
-TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
 
 
 def with_values_chosen_behind(flow: ControlFlow, loop: Loop) -> Routine:
@@ -68,13 +75,3 @@ def _behind(block: BasicBlock, names: dict[str, str], loop: Loop) -> BasicBlock:
         for each in block.instructions
     ]
     return replace(block, instructions=tuple(rows))
-
-
-def type_of(each: Instruction) -> str:
-    """Return the type of what an instruction computes, in LLVM's words."""
-    if each.opcode in ("icmp", "fcmp"):
-        return "i1"
-    if each.opcode == "getelementptr":
-        return "ptr"
-    found = TYPE.findall(each.text)
-    return str(found[-1] if each.opcode in ("zext", "sext", "trunc") else found[0])
