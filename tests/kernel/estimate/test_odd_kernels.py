@@ -36,6 +36,24 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
             c += 1
     return y + k
 """
+SURE = """
+def f(n: i32, t: i32) -> i32:
+    x = 3
+    for i in range(n):
+        if n - i < n:
+            x += 255
+            for j in range(60):
+                if x != 255:
+                    break
+            x = 0
+        elif t < i ^ n:
+            x = 0
+        else:
+            c = 0
+            while c < n:
+                x = (t << 1) // 2
+    return x
+"""
 OTHER_ENDS = """
 def f(a: u8[:], n: i32, t: i32) -> i32:
     x = 0
@@ -89,7 +107,7 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
                 x += 2
     return x + y + z + k
 """
-KERNELS = {"place": PLACE, "numbers": NUMBERS, "other ends": OTHER_ENDS, "choices": CHOICES}
+KERNELS = {"place": PLACE, "numbers": NUMBERS, "sure": SURE, "other ends": OTHER_ENDS, "choices": CHOICES}
 
 
 def test_a_search_that_notes_the_place_is_near_what_gcc_makes(tmp_path: Path) -> None:

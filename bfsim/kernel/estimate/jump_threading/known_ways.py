@@ -65,7 +65,7 @@ def with_known_ways(
     named = with_names(str(module))
     threaded = [tidied(_threaded(each, kept[each.symbol])) for each in read_module(named)]
     module = llvm.parse_assembly(write_module(named, threaded))
-    llvm_passes.run(("sroa", "aggressive_dce"), module)
+    llvm_passes.run(("sroa", "sccp", "aggressive_dce"), module)
     named = with_names(str(module))
     cleaned = [
         _without_empty_blocks(each, before.blocks)
