@@ -39,6 +39,7 @@ from bfsim.kernel.estimate.memory.predictive_commoning import with_predictive_co
 from bfsim.kernel.estimate.memory.split_loads import split_loads
 from bfsim.kernel.estimate.memory.sunk_stores import with_sunk_stores
 from bfsim.kernel.estimate.redundancies.carried_values import carry_over
+from bfsim.kernel.estimate.redundancies.chosen_loads import with_chosen_loads
 from bfsim.kernel.estimate.redundancies.hoisted_code import with_hoisted_code
 from bfsim.kernel.estimate.redundancies.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.estimate.redundancies.redundant_loads import without_redundant_loads
@@ -71,6 +72,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     split_tests,
     split_loads,
     merge_stores,
+    with_chosen_loads,
     without_partial_redundancies,
     with_hoisted_code,
     copy_headers,

@@ -27,7 +27,18 @@ from bfsim.kernel.ir.text import (
 )
 from bfsim.kernel.ir.writing import with_names, write_module
 
-HOLDS: dict[str, Callable[[int, int], bool]] = {"ne": ne, "slt": lt, "sle": le, "sgt": gt, "sge": ge}
+HOLDS: dict[str, Callable[[int, int], bool]] = {
+    "ne": ne,
+    "slt": lt,
+    "sle": le,
+    "sgt": gt,
+    "sge": ge,
+    "ult": lt,
+    "ule": le,
+    "ugt": gt,
+    "uge": ge,
+}
+"""Those of unsigned numbers where neither is negative."""
 IDLE = ("phi", "add", "icmp", "br")
 
 
@@ -118,7 +129,10 @@ def _following(flow: ControlFlow, loop: Loop, label: str, counter: Instruction, 
     known = {counter.result: number, step.result: following}
     if any(each.opcode not in IDLE for each in latch.instructions) or end.operands[0] not in known:
         return None
-    again = HOLDS[predicate(end)](known[end.operands[0]], int(end.operands[1]))
+    counted, last = known[end.operands[0]], int(end.operands[1])
+    if predicate(end).startswith("u") and min(counted, last) < 0:
+        return None
+    again = HOLDS[predicate(end)](counted, last)
     others = [
         each for each in flow.blocks[loop.header].instructions if each.opcode == "phi" and each is not counter
     ]

@@ -78,6 +78,20 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
             k += 65536
     return k
 """
+CENSUS = """
+def f(a: u8[:], o: i32[:], n: i32) -> None:
+    for x in range(2, 40):
+        centre = a[80 + x]
+        code = 0
+        for dy in range(5):
+            line = dy * 40 + x - 2
+            for dx in range(5):
+                if dy != 2 or dx != 2:
+                    code = code << 1
+                    if a[line + dx] < centre:
+                        code |= 1
+        o[x] = code
+"""
 COUNTS = "if a[(i + dy) * 10 + 5 + dx] > 100:\n                    s += 1"
 
 # Without these rules estimates are off by up to 61 %.
@@ -96,6 +110,7 @@ CASES = {
         2654,
         0.1,
     ),
+    "a census, which counts from 0": (CENSUS, 25427, 0.02),
     "the middle of a line": (SKIPPING.format("-2, 3", "j == 0", "continue"), 3388, 0.05),
     "a helper says which": (HINTED.format("i16", "near(a[i], 60)"), 1902, 0.05),
     "a helper says which not": (HINTED.format("i16", "not near(a[i], 60)"), 4782, 0.06),
