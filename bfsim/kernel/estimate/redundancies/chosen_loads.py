@@ -1,8 +1,8 @@
-"""Loads of an element that was chosen: where some ways to the choice have loaded theirs already, the others load theirs, and the value is chosen,
-too [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12].
+"""Loads of an element that was chosen: where some ways to the choice have loaded theirs, the others load theirs, and the value is chosen, too.
 
-Of `if a[c + 1] > a[c]: c += 1`, then `a[c]`: each way has the value, and the branch stays, for there are two to choose. Where one side of a
-test has to load what the other one loads at once, it is loaded before the test [do_hoist_insertion].
+Of `if a[c + 1] > a[c]: c += 1`, then `a[c]`: each way has the value, and the branch stays, for there are two to choose
+[do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. Where one side of a test has to load what the other one loads at once, it is loaded
+before the test [do_hoist_insertion].
 """
 
 from __future__ import annotations
