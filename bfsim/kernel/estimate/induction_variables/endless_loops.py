@@ -7,7 +7,7 @@ from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, LARGEST
 from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, is_number, predicate
+from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -120,10 +120,27 @@ class EndlessLoops:
             seen.add(name)
             for user in self.flow.users.get(name, []):
                 if user.opcode == "phi" and (user.result or "") not in seen:
+                    if self._is_left_apart(user, name, loop):
+                        return True
                     waiting.append(user.result or "")
                 elif user.opcode not in ("phi", "getelementptr") and self._is_use(user, loop):
                     return True
         return False
+
+    def _is_left_apart(self, phi: Instruction, counter: str, loop: Loop) -> bool:
+        """Whether a counter comes to a phi behind `loop` from a test whose other side does not begin with it.
+
+        Else what both sides compute of it is computed before the test, and so in the loop [do_hoist_insertion in tree-ssa-pre.cc].
+        """
+        if self.flow.defined[phi.result or ""][0] in loop.blocks:
+            return False
+        sources = [
+            label for label, value in arms_of(phi).items() if value == counter and label in loop.blocks
+        ]
+        insides = [
+            way for label in sources for way in self.flow.blocks[label].successors if way in loop.blocks
+        ]
+        return any(len(self.flow.predecessors[way]) > 1 and way != loop.header for way in insides)
 
     def _is_use(self, user: Instruction, loop: Loop) -> bool:
         """Whether an instruction is behind `loop`, or made in each iteration and neither its test nor a step."""
