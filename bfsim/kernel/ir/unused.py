@@ -27,3 +27,35 @@ def without_unused(routine: Routine, opcodes: Collection[str]) -> Routine:
         if blocks == routine.blocks:
             return routine
         routine = replace(routine, blocks=blocks)
+
+
+def without_dead_code(routine: Routine, kept: str) -> Routine:
+    """Return `routine` without what no store, call or branch needs, such as variables that only wait for their own next value.
+
+    `kept`: in the names of what stays.
+    """
+    made = {each.result or "": each for block in routine.blocks for each in block.instructions if each.result}
+    waiting = [
+        each
+        for block in routine.blocks
+        for each in block.instructions
+        if each.result is None or each.is_call or kept in each.result
+    ]
+    wanted = set[str]()
+    while waiting:
+        for name in waiting.pop().operands:
+            if name in made and name not in wanted:
+                wanted.add(name)
+                waiting.append(made[name])
+    blocks = (
+        replace(
+            block,
+            instructions=tuple(
+                each
+                for each in block.instructions
+                if each.result is None or each.is_call or each.result in wanted or kept in each.result
+            ),
+        )
+        for block in routine.blocks
+    )
+    return replace(routine, blocks=tuple(blocks))

@@ -13,6 +13,7 @@ from enum import Enum, auto
 from bfsim.kernel.estimate.choices.conditional_moves import are_conditional_moves, is_conditional_move
 from bfsim.kernel.estimate.choices.narrow_choices import is_narrowed, is_of_one_type, stored_bits
 from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.loads_along import FOLLOWING, goes_along
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
 from bfsim.kernel.ir.widths import BYTE, WORD, widest
 from bfsim.kernel.profile import CompilerProfile
@@ -196,7 +197,8 @@ class IfConversion:
         of_bytes = narrows and of_loads and unsigned
         if is_extreme and not of_bytes and (predicate(test)[0] == "s" or self._is_positive(test)):
             return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
-        is_unsigned_extreme = is_extreme and unsigned and (not of_bytes or stored_bits(self.flow, phi) < WORD)
+        stays_narrow = stored_bits(self.flow, phi) < WORD or (phi.result or "").endswith(FOLLOWING)
+        is_unsigned_extreme = is_extreme and unsigned and (not of_bytes or stays_narrow)
         moves = (
             not self.profile.applies(Rule.CONDITIONAL_MOVES)
             or is_unsigned_extreme
@@ -226,7 +228,9 @@ class IfConversion:
 
     def _is_narrow_load(self, value: str) -> bool:
         each = self.flow.instruction(value)
-        return each is not None and each.opcode == "load" and each.bits < WORD
+        return (
+            each is not None and (each.opcode == "load" or goes_along(self.flow, value)) and each.bits < WORD
+        )
 
     def _bounds(self, test: Instruction) -> tuple[str, ...]:
         """What a comparison with a constant bounds, by values that are there before it: LLVM writes x <= 255 as x < 256."""

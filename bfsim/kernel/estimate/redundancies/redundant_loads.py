@@ -10,8 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop, pointee_nbytes
+from bfsim.kernel.ir.edges import put_between
+from bfsim.kernel.ir.loads_along import FOLLOWING
 from bfsim.kernel.ir.preheaders import with_preheader
-from bfsim.kernel.ir.text import Instruction, Routine, arms_of, phi_of
+from bfsim.kernel.ir.text import Instruction, Routine, arms_of, each_arm, phi_of, renamed
+from bfsim.kernel.ir.unused import without_dead_code
 
 AGAIN = ".again"  # in the name of an address that is only computed to go along
 
@@ -90,7 +93,7 @@ def _kind(load: Instruction) -> str:
 def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
     """Load before the loop; in it, a phi beside that of the index, and one beside each that merges it."""
     load, loop = carried.load, carried.loop
-    first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
+    first, following, address = (f"{load.result}{name}" for name in (".first", FOLLOWING, ".address"))
     entering = flow.entering(loop)
     arms = arms_of(carried.index)
     kind = _kind(load)
@@ -119,7 +122,52 @@ def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routi
         if block.label == loop.header:
             rows.insert(0, here)
         blocks.append(replace(block, instructions=tuple(rows)))
-    return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
+    routine = _without_loads_behind(replace(routine, blocks=tuple(blocks)), carried, following)
+    return _with_addresses(ControlFlow(routine), routine, carried)
+
+
+def _without_loads_behind(routine: Routine, carried: RedundantLoad, following: str) -> Routine:
+    """Take the element that was chosen last as it comes out of the loop; who comes from elsewhere loads it. What only chose its index goes."""
+    flow = ControlFlow(routine)
+    blocks = {each.label: each for each in routine.blocks}
+    for address in _addresses_behind(flow, carried):
+        index = flow.instruction(address.operands[-1])
+        home, load = _load_at(flow, address)
+        if index is None or load is None or flow.defined[index.result or ""][0] != home:
+            continue
+        arms = list[tuple[str, str]]()
+        for number, (value, label) in enumerate(each_arm(index)):
+            if label in carried.loop.blocks:
+                arms.append((following, label))
+                continue
+            before = f"{home}{AGAIN}{number}"
+            put_between(blocks, label, home, before)
+            rows = (
+                replace(
+                    renamed(address, {index.result or "": value}), result=f"{address.result}{AGAIN}{number}"
+                ),
+                replace(
+                    renamed(load, {address.result or "": f"{address.result}{AGAIN}{number}"}),
+                    result=f"{load.result}{AGAIN}{number}",
+                ),
+            )
+            blocks[before] = replace(blocks[before], instructions=(*rows, *blocks[before].instructions))
+            arms.append((f"{load.result}{AGAIN}{number}", before))
+        phi = phi_of(load.result or "", _kind(load), arms, load)
+        rest = tuple(each for each in blocks[home].instructions if each is not load)
+        blocks[home] = replace(blocks[home], instructions=(phi, *rest))
+    return without_dead_code(replace(routine, blocks=tuple(blocks.values())), kept=AGAIN)
+
+
+def _load_at(flow: ControlFlow, address: Instruction) -> tuple[str, Instruction | None]:
+    """The load at an address in its own block that nothing is stored before, and that block."""
+    home = flow.defined[address.result or ""][0]
+    for each in flow.blocks[home].instructions:
+        if each.opcode == "store" or each.is_call:
+            break
+        if each.opcode == "load" and each.operands[0] == address.result:
+            return home, each
+    return home, None
 
 
 def _with_addresses(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
@@ -152,7 +200,7 @@ def _addresses_behind(flow: ControlFlow, carried: RedundantLoad) -> list[Instruc
 
 
 def _is_wanted_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
-    return bool(_addresses_behind(flow, carried))
+    return any(flow.users.get(each.result or "") for each in _addresses_behind(flow, carried))
 
 
 def _is_loaded_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:

@@ -10,8 +10,9 @@ from bfsim.kernel.estimate.conditions.joined_tests import Range
 from bfsim.kernel.estimate.selection.constants import load_constant
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
+from bfsim.kernel.ir.loads_along import goes_along
 from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
-from bfsim.kernel.ir.widths import WORD
+from bfsim.kernel.ir.widths import BYTE, WORD
 from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 
@@ -38,7 +39,7 @@ class Decisions:
             if self.emitter.label == joined.first:
                 self._in_range(each, joined)
             return
-        left, right = each.operands[:2]
+        left, right = (self._compared(each, value) for value in each.operands[:2])
         if is_number(right) and _is_near(predicate(each), int(right)):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif is_number(right) and self.context.profile.applies(Rule.COMPARED):
@@ -48,6 +49,14 @@ class Decisions:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
+
+    def _compared(self, each: Instruction, value: str) -> str:
+        """What is compared of a value: one that goes along is narrow, and so extended each time."""
+        made = self.flow.instruction(value)
+        if made is None or made.bits >= WORD or not goes_along(self.flow, value):
+            return value
+        self.append(Op.EXTEND, each, f"{value}.compared", DATA, (value, DATA))
+        return f"{value}.compared"
 
     def _in_range(self, each: Instruction, tested: Range) -> None:
         """The distance from the lower end, compared as an unsigned number."""
@@ -102,7 +111,10 @@ class Decisions:
             if self.context.folding.is_short(conversion.operands[0]):
                 self.append(Op.EXTEND, each, result, DATA, (result, DATA))
         elif conversion.kind is ConversionKind.EXTREME:
-            self.append(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in conversion.operands))
+            operands = conversion.operands
+            if each.bits == BYTE:  # there is an instruction for half-words [smaxhi3 in bfin.md]
+                operands = tuple(self._compared(each, value) for value in operands)
+            self.append(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in operands))
         elif conversion.kind is ConversionKind.CLAMP:
             *inner, bound = conversion.operands
             self.append(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))

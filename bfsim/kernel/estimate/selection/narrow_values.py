@@ -14,6 +14,7 @@ from bfsim.kernel.estimate.selection.folding import NARROW, Folding
 from bfsim.kernel.estimate.selection.loop_counters import LoopCounters
 from bfsim.kernel.estimate.selection.narrow_trees import is_cut_tree
 from bfsim.kernel.ir.control_flow import pointee_nbytes
+from bfsim.kernel.ir.loads_along import FOLLOWING
 from bfsim.kernel.ir.text import OF_VARIABLE, Instruction, is_number
 from bfsim.kernel.ir.widths import BYTE
 from bfsim.kernel.rules import Rule
@@ -105,7 +106,9 @@ class NarrowValues:
         """Whether a use takes the narrow value as it is: a store, a mask of it, or arithmetic that is stored as narrow."""
         chosen = user.opcode == "phi" and user.bits in NARROW and self.profile.applies(Rule.NARROW_CHOICES)
         stored = chosen and all(each.opcode == "store" for each in self.folding.users(user.result or ""))
-        along = user.opcode == "phi" and ALONG in (user.result or "")
+        along = user.opcode == "phi" and (
+            ALONG in (user.result or "") or (user.result or "").endswith(FOLLOWING)
+        )
         narrow = (self.in_narrow_tree(user) and user.opcode != "shl") or self.narrowed(user)
         return user.opcode == "store" or stored or along or narrow or self._masks(load, user)
 
