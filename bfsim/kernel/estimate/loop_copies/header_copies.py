@@ -33,9 +33,8 @@ from bfsim.kernel.ir.text import (
     with_each_arm,
 )
 
-WHILE = re.compile(
-    r"test(\.|$)"
-)  # the test of a `while` by itself: what the loop steps would stand before it
+WHILE = re.compile(r"test(\.|$)")
+"""The block of the test of a `while`."""
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
 
@@ -84,7 +83,7 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
         return False
     if loop.latch.endswith(SECOND):
         return False  # LLVM had made one test of both, so they are at its end
-    if inside == [loop.latch] and WHILE.match(loop.latch):
+    if WHILE.match(loop.header) or (inside == [loop.latch] and _is_while_alone(flow.blocks[loop.latch])):
         return False  # it ended with its `break`: it is a do-while loop already [do_while_loop_p]
     way_out = next(way for way in header.successors if way not in loop.blocks)
     back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
@@ -97,6 +96,12 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
     ):
         return False
     return _counts(flow, loop) and _uses_are_near(flow, header, inside[0], way_out)
+
+
+def _is_while_alone(block: BasicBlock) -> bool:
+    """Whether a block is the test of a `while`, and nothing is stepped in it."""
+    steps = (each for each in block.instructions if each.opcode not in ("phi", "icmp", "br"))
+    return WHILE.match(block.label) is not None and not any(steps)
 
 
 def _size(flow: ControlFlow, header: BasicBlock) -> int:
