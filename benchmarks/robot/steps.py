@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,9 +14,11 @@ from tinyphoon.scan_lines import window
 from tinyphoon.stages.blob_detection import BlobThresholds
 from tinyphoon.stages.circle_detection import CircleThresholds, circle_detection
 from tinyphoon.stages.circle_erosion import eroded_circles, select_outer_edges
-from tinyphoon.stages.edge_detection import OF_ALL_PIXELS
+from tinyphoon.stages.colour_reduction import colour_row
+from tinyphoon.stages.edge_detection import direction_row, magnitude_row, sobel_row, suppress_row
 from tinyphoon.stages.fast_opening import erode_columns
 from tinyphoon.stages.hysteresis import clear_labels
+from tinyphoon.stages.longhand_roots import longhand_magnitude_row
 from tinyphoon.stages.looped_erosion import erode_pixels, looped_erosion, looped_row
 from tinyphoon.stages.open_closing import LAG_LINES, NoiseRemoval
 from tinyphoon.stages.rosenfeld_blobs import (
@@ -30,14 +32,41 @@ from tinyphoon.stages.rosenfeld_blobs import (
 )
 from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_rectification import move_row
-from tinyphoon.stages.strong_gradients import STRONG_FIRST
+from tinyphoon.stages.strong_gradients import STRONG_FIRST, direct_strong_row
 
 BLACK_CHROMA = 128
 SMALL_REACH = 8  # to each side; the thesis says "small" (T §5.2.4)
 
 
-edges_of_all_pixels = partial(rosenfeld_edges, steps=OF_ALL_PIXELS)
+def all_slopes(
+    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, _: int
+) -> Generator[Any, Any, None]:
+    """Make a row of gradients as `strong_slopes` does, with the directions of weak ones, too."""
+    gx, gy = core.array("gx"), core.array("gy")
+    yield core.run(sobel_row, *smooth, gx, gy)
+    yield core.run(longhand_magnitude_row, gx, gy, magnitude)
+    yield core.run(direction_row, gx, gy, core.array("atan"), direction)
+
+
+def strong_slopes_by_other_roots(
+    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, edge_threshold: int
+) -> Generator[Any, Any, None]:
+    """Make a row of gradients as `strong_slopes` does, by the roots of `tinyphoon`."""
+    gx, gy = core.array("gx"), core.array("gy")
+    yield core.run(sobel_row, *smooth, gx, gy)
+    yield core.run(magnitude_row, gx, gy, magnitude)
+    yield core.run(direct_strong_row, gx, gy, magnitude, core.array("atan"), direction, edge_threshold)
+
+
+edges_of_all_pixels = partial(
+    rosenfeld_edges, steps=replace(STRONG_FIRST, slopes=all_slopes, suppress=suppress_row)
+)
 """Every pixel has a direction, and weak ones are removed last."""
+
+edges_by_other_roots = partial(
+    rosenfeld_edges, steps=replace(STRONG_FIRST, colours=colour_row, slopes=strong_slopes_by_other_roots)
+)
+"""The roots of gradients and chroma are those of `tinyphoon`."""
 
 colours_of_each_pixel = partial(rosenfeld_edges, steps=replace(STRONG_FIRST, colours=pixel_colours_row))
 """The two pixels of a pair, which share U and V, have each its own root and hue."""

@@ -23,6 +23,7 @@ from tinyphoon.stages.edge_detection import (
     suppress_row,
 )
 from tinyphoon.stages.edge_storing import store_edges_row
+from tinyphoon.stages.longhand_roots import longhand_root
 from tinyphoon.tables import arctangent_table
 
 ROWS = [rows for width in WIDTHS for rows in three_rows(width)]
@@ -43,8 +44,9 @@ def filled(width: int, dtype: type[np.generic] = np.uint8) -> np.ndarray:
 @example(65535**2 - 1)
 @example(65535**2)
 def test_square_root_is_exact(square: int) -> None:
-    """The long-hand root is the integer root of every unsigned word."""
+    """Both long-hand roots are the integer root of every unsigned word."""
     assert isqrt32(square) == math.isqrt(square)
+    assert longhand_root(square) == math.isqrt(square)
 
 
 def test_arctangent_table_rises_to_an_eighth_of_a_turn() -> None:
