@@ -30,7 +30,7 @@ from tinyphoon.stages.circle_detection import circle_detection
 from tinyphoon.stages.colour_reduction import join_groups
 from tinyphoon.stages.line_detection import scan_by_labels
 from tinyphoon.stages.rectification import rectification
-from tinyphoon.strategy.models import MODELS, Shape
+from tinyphoon.strategy.models import MODELS, ObjectModel, Shape
 from tinyphoon.variants import THESIS, mains
 
 SLOWER = "cm-bf561-500-100"
@@ -101,13 +101,20 @@ def other_programs(code_in_l2: Path) -> Iterator[Reading]:
     yield Reading(title="`thesis` at 500/100 MHz", firmware=thesis, setting=Setting(SLOWER, {}))
 
 
+def write_models(script: Path, *models: ObjectModel) -> Path:
+    """Write a script by which the strategy unit orders these models of the firmware's, and return it."""
+    script.write_text(json.dumps({"send": [{"models": [{"name": each.name} for each in models]}]}))
+    return script
+
+
 def of_colours(folder: Path, recording: Path) -> Iterator[Reading]:
     """Yield what the time of blobs hangs on beside the picture: how many colours are sought, each in a pass of its own."""
-    black, no_marks = folder / "black.mcap", folder / "no_marks.json"
+    black = folder / "black.mcap"
     write_black(recording, black)
-    models = [{"name": each.name} for each in MODELS if each.shape is not Shape.MARKER]
-    no_marks.write_text(json.dumps({"send": [{"models": models}]}))
-    without = {"script": no_marks}
+    unmarked = (each for each in MODELS if each.shape is not Shape.MARKER)
+    without = {"script": write_models(folder / "no_marks.json", *unmarked)}
+    of_one_team = {"script": write_models(folder / "one_team.json", *MODELS)}
+    yield Reading(title="the marks of one team sought", firmware=thesis, options=of_one_team)
     yield Reading(title="a black picture", firmware=thesis, recording=black)
     yield Reading(
         title="no robots' marks sought, a black picture", firmware=thesis, options=without, recording=black

@@ -27,6 +27,7 @@ from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_opening import sdram_opening
 from tinyphoon.stages.sdram_rectification import sdram_rectification, sdram_rectification_buffers, untouched
 from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.strategy.models import model_words
 from tinyphoon.strategy.modes import THESIS_FIELD
 
 FAST = Steps(edge_detection=fast_edge_detection, open_closing=fast_opening)
@@ -40,6 +41,12 @@ THESIS = Steps(
     circle_detection=eroded_circles,
 )
 RECTIFIED_FEATURES = Steps(rectification=picture_as_it_came, feature_rectification=feature_rectification)
+
+THESIS_ORDERS = {
+    "ordered_mode": np.array(to_words(THESIS_FIELD)),
+    "ordered_models": model_words(THESIS_FIELD.models),
+}
+"""What is in force before the first message of the strategy unit."""
 
 
 def mains(steps: Steps) -> Mapping[str, partial]:
@@ -63,7 +70,7 @@ def thesis_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
         more = *rosenfeld_buffers(size, images), *shape_buffers(size, images), *looped_buffers()
         of_core[core] = (*records, *more)
     of_core["shared"] = tuple(
-        replace(each, values=np.array(to_words(THESIS_FIELD))) if each.name == "ordered_mode" else each
+        replace(each, values=THESIS_ORDERS[each.name]) if each.name in THESIS_ORDERS else each
         for each in of_core["shared"]
     )
     return of_core

@@ -144,6 +144,16 @@ def test_the_opening_knows_no_models(firmware: Firmware, is_kept: bool) -> None:
     assert opened.all() if is_kept else not opened.any()
 
 
+@pytest.mark.parametrize(("firmware", "blobs"), [(tinyphoon, 0), (thesis, 1)])
+def test_the_marks_of_both_teams_are_sought(firmware: Firmware, blobs: int) -> None:
+    """The rules give each team a colour (T §2.3): red, and cyan."""
+    turn = np.radians(12.5 * 360 / 28)
+    picture = np.full((20, 40), 150, np.uint8)
+    picture[:, 0::4], picture[:, 2::4] = 128 + 60 * np.sin(turn), 128 + 60 * np.cos(turn)
+    _, outcome = run(stereo((picture, picture)), firmware)
+    assert dict(outcome.frames[0].results)["blobs_A"] == blobs
+
+
 def test_the_circles_of_the_balls_that_the_thesis_erodes_for() -> None:
     """A blob without a ball's form costs no erosion, and no circle is found for it."""
     form = np.zeros(BLOB_WORDS, np.uint32)

@@ -15,7 +15,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import reduce
 from itertools import combinations
@@ -160,6 +160,8 @@ BLUE = hues(9, 11)
 YELLOW = hues(21, 23)
 RED = hues(25, 27)
 GREEN = hues(15, 19)
+# The hue of the cyan mark in the scene of T Figure 6.10, as others are left between blue and green.
+CYAN = hues(12, 14)
 
 # Goals 400 mm wide and 150 mm deep [MiroSot] and 100 mm high [assumed, as in scenes/soccer.py]: 4 to 1 from the
 # front, and not even as wide as high at a sharp angle (T Figure 6.14) or half in view.
@@ -203,6 +205,10 @@ MODELS = (
     ),
 )
 """The objects of the indoor field."""
+
+THESIS_MODELS = (*MODELS, replace(MODELS[-1], name="other team's marker", number=6, colours=CYAN))
+"""Those, and the marks of the other team: the rules give each of the two teams a colour of its own (T §2.3), and the players of both are
+to be detected (T §1.3.1, §6.3.2)."""
 
 # Its aspects hold from every side, and a quarter more for shade and reflections: a side of 100 mm by 100 mm, and the diagonal.
 BOX = ObjectModel(

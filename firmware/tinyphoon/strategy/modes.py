@@ -20,6 +20,7 @@ from tinyphoon.stages.stereo_lines import Correspondence, StereoLineThresholds
 from tinyphoon.strategy.depth_report import ReportLimits
 from tinyphoon.strategy.models import (
     MODELS,
+    THESIS_MODELS,
     ObjectModel,
     Shape,
     colour_groups,
@@ -243,11 +244,12 @@ INDOOR_FIELD = Mode(
 THESIS_FIELD = replace(
     INDOOR_FIELD,
     edges=replace(INDOOR_FIELD.edges, least_chroma=0),  # T Eq. 5.2 alone
-    blobs=replace(INDOOR_FIELD.blobs, merged=False),
+    blobs=replace(INDOOR_FIELD.blobs, colour_groups=colour_groups(THESIS_MODELS), merged=False),
     circles=PLAIN_CIRCLES,
     objects=replace(
         INDOOR_FIELD.objects, refined=False, hidden_arc=0, circle_area=True
     ),  # T Eq. 4.1, the mean of both cameras; T Eq. 2.13
+    models=THESIS_MODELS,
     refinement=replace(INDOOR_FIELD.refinement, reach=0),
     # T §5.2.7 and §5.2.8: the nearest of like direction
     stereo_lines=replace(INDOOR_FIELD.stereo_lines, correspondence=Correspondence.NEAREST, edge_range=0),
