@@ -24,10 +24,9 @@ from tinyphoon.stages.open_closing import LAG_LINES, NoiseRemoval
 from tinyphoon.stages.rosenfeld_blobs import (
     LABELS,
     count_pixel,
-    count_row,
     label_picture,
     label_row,
-    rename_row,
+    rename_and_count_row,
     rosenfeld_blobs,
 )
 from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
@@ -156,36 +155,42 @@ def blobs_of_all_colours_at_once(
 
 
 @kernel
-def rename_and_count_row(
-    labels: u16[:], table: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32
-) -> i32:
-    """Give the pixels of row `y` the labels that theirs have become, and add them to their segments, as `count_row` does."""
+def rename_row(labels: u16[:], table: u16[:]) -> None:
+    """Give every pixel of a row the label that its own has become."""
     for x in range(len(labels)):
         if labels[x] != 0:
-            label = table[labels[x]]
-            labels[x] = label
-            used = count_pixel(label, numbers, blob_data, colours, x, y, used)
+            labels[x] = table[labels[x]]
+
+
+@kernel
+def count_row(labels: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32) -> i32:
+    """Add the pixels of row `y` to the records of their segments, of which `used` were met before it; return how many are now."""
+    for x in range(len(labels)):
+        if labels[x] != 0:
+            used = count_pixel(labels[x], numbers, blob_data, colours, x, y, used)
     return used
 
 
-def segment_in_two_passes(
+def segment_in_three_passes(
     core: Core, frame: Frame, colours: int, segments: int
 ) -> Generator[Any, Any, tuple[int, int]]:
-    """Segment as `segment_colours` does, but count pixels while they are renamed."""
+    """Segment as `segment_colours` does, but count pixels after they are renamed."""
     labels = core.rows("label_image")
     table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
     used = yield from label_picture(core, frame, colours)
     for y in range(frame.height):
         core.at(y)
-        counted = table, numbers, blobs, colours, y, segments
-        segments = yield core.run(rename_and_count_row, labels[y], *counted)
+        yield core.run(rename_row, labels[y], table)
+    for y in range(frame.height):
+        core.at(y)
+        segments = yield core.run(count_row, labels[y], numbers, blobs, colours, y, segments)
     core.at()
     return segments, max(0, used - LABELS + 1)
 
 
-def blobs_in_two_passes(core: Core, frame: Frame, thresholds: BlobThresholds) -> Generator[Any, Any, int]:
-    """Run the algorithm of Rosenfeld, its last step together with the sums of the blobs."""
-    found: int = yield from rosenfeld_blobs(core, frame, thresholds, segment_in_two_passes)
+def blobs_in_three_passes(core: Core, frame: Frame, thresholds: BlobThresholds) -> Generator[Any, Any, int]:
+    """Run the algorithm of Rosenfeld, the sums of the blobs in a pass of their own."""
+    found: int = yield from rosenfeld_blobs(core, frame, thresholds, segment_in_three_passes)
     return found
 
 
@@ -214,8 +219,8 @@ def segment_dma_lines(
     fetched = core.window_ring(labels, core.overlay("colour_ring", u16, frame.width)[:2])
     for y in range(frame.height):
         line = yield from fetched.line()
-        yield core.run(rename_row, line, table)
-        segments = yield core.run(count_row, line, numbers, core.array("blob_data"), colours, y, segments)
+        counted = table, numbers, core.array("blob_data"), colours, y, segments
+        segments = yield core.run(rename_and_count_row, line, *counted)
     return segments, max(0, used - LABELS + 1)
 
 

@@ -34,10 +34,10 @@ from tinyphoon.stages.line_segments import (
     START_Y,
     TURN,
 )
-from tinyphoon.stages.rosenfeld_blobs import label_row, met, rename_row
+from tinyphoon.stages.rosenfeld_blobs import label_row, met, rename_and_count_row
 from tinyphoon.stages.sdram_rectification import move_row, untouched
 from tinyphoon.stages.strong_gradients import direct_strong_row
-from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, pair
+from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS, pair
 from tinyphoon.stores.circles import CIRCLE_BLOB, CIRCLE_WORDS
 from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.strategy.models import BLUE, MODELS, YELLOW, model_words
@@ -186,14 +186,16 @@ def test_edges_beyond_the_store_are_those_at_the_bottom() -> None:
 
 
 def labels_of(picture: Sequence[str]) -> list[list[int]]:
-    """Labels of the pixels that are not blank, renamed by the table."""
+    """Labels of the pixels that are not blank, renamed by the table; all of them are counted."""
     words = np.array([[int(pixel != " ") for pixel in row] for row in picture], np.uint32)
     labels, table = np.zeros(words.shape, np.uint16), np.zeros(64, np.uint16)
     used = 0
     for y in range(1, len(words) - 1):
         used = label_row(words[y], labels[y - 1], labels[y], table, 1, used)
-    for row in labels:
-        rename_row(row, table)
+    numbers, records, segments = np.zeros(64, np.uint16), np.zeros(8 * BLOB_WORDS, np.uint32), 0
+    for y, row in enumerate(labels):
+        segments = rename_and_count_row(row, table, numbers, records, 1, y, segments)
+    assert records[PIXELS::BLOB_WORDS][1 : segments + 1].sum() == (words != 0).sum()
     return labels.tolist()
 
 

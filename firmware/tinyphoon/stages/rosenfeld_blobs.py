@@ -5,8 +5,10 @@ one in this line and the line before take the other, from the pixel above to the
 the look-up table, which begins empty; in the end all labels are renamed by the table (T §2.3.3). [said] Of the colours that the models
 name (T §5.2.3) it is executed for one after the other, or for all in parallel (T §2.3.4). [implied] The accesses to SDRAM take the time
 of the stage (T §6.6), so picture and labels are read and written there by the core; T §5.2 says that DMA brings the lines of this
-stage, too, which would be a third of the time. [assumed] One model's colours after the other's, and these as one; of two labels the
-smaller one stays; pixels are counted in another pass.
+stage, too, which would take much less. [implied] Segmentation and blob detection each move once over the picture (T §5.2), functions
+that access the same data can be one, to save accesses to SDRAM (T §1.3.4), and the sums of a segment want labels that are final: so one
+pass makes labels, and one renames and counts. [assumed] One model's colours after the other's, and these as one; of two labels the
+smaller one stays.
 """
 
 from __future__ import annotations
@@ -93,14 +95,6 @@ def label_row(words: u32[:], above: u16[:], here: u16[:], table: u16[:], colours
 
 
 @kernel
-def rename_row(labels: u16[:], table: u16[:]) -> None:
-    """Give every pixel of a row the label that its own has become."""
-    for x in range(len(labels)):
-        if labels[x] != 0:
-            labels[x] = table[labels[x]]
-
-
-@kernel
 def count_pixel(
     label: i32, numbers: u16[:], blob_data: u32[:], colours: u32, x: i32, y: i32, used: i32
 ) -> i32:
@@ -121,11 +115,18 @@ def count_pixel(
 
 
 @kernel
-def count_row(labels: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32) -> i32:
-    """Add the pixels of row `y` to the records of their segments, of which `used` were met before it; return how many are now."""
+def rename_and_count_row(
+    labels: u16[:], table: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32
+) -> i32:
+    """Give the pixels of row `y` the labels that theirs have become, and add them to the records of their segments.
+
+    `used` segments were met before the row; returns how many are now.
+    """
     for x in range(len(labels)):
         if labels[x] != 0:
-            used = count_pixel(labels[x], numbers, blob_data, colours, x, y, used)
+            label = table[labels[x]]
+            labels[x] = label
+            used = count_pixel(label, numbers, blob_data, colours, x, y, used)
     return used
 
 
@@ -188,10 +189,8 @@ def segment_colours(
     used = yield from label_picture(core, frame, colours)
     for y in range(frame.height):
         core.at(y)
-        yield core.run(rename_row, labels[y], table)
-    for y in range(frame.height):
-        core.at(y)
-        segments = yield core.run(count_row, labels[y], numbers, blobs, colours, y, segments)
+        counted = table, numbers, blobs, colours, y, segments
+        segments = yield core.run(rename_and_count_row, labels[y], *counted)
     core.at()
     return segments, max(0, used - LABELS + 1)
 
