@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from bfsim.api import i32, kernel, u8, u32
-from tinyphoon.arithmetic import angle8
+from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.stages.colour_reduction import DARKEST, FIRST_HUE, HUES, MOST_CHROMA, colour_word
-from tinyphoon.stages.longhand_roots import longhand_root
 
 
 @kernel
@@ -13,7 +12,7 @@ def pixel_colour(
     luma: i32, u: i32, v: i32, atan: u8[:], joined_colours: u32[:], eps_black: i32, eps_white: i32, least: i32
 ) -> u32:
     """Return the word of a pixel (T Eq. 5.1 to 5.3); one with less chroma than `least` has no hue, as in `colour_row`."""
-    chroma = i32(longhand_root(u32(v * v + u * u)))
+    chroma = i32(isqrt32(u32(v * v + u * u)))
     brightness = luma - chroma
     never_black = least if least != 0 else MOST_CHROMA + 1
     darkest = eps_black if chroma < never_black else DARKEST

@@ -67,7 +67,7 @@ OF_THE_THESIS = (
     read_as(
         "colours: root and hue of each pixel, not of each pair", edge_detection=steps.colours_of_each_pixel
     ),
-    read_as("roots: long-hand by the way of `tinyphoon`", edge_detection=steps.edges_by_other_roots),
+    read_as("roots: by the routine of [Tur94] as it is printed", edge_detection=steps.edges_by_tur94),
     read_as("colours: those of a model are one", colour_groups=join_groups),
     read_as("opening: loops of T Eq. 2.14 and 2.15 over lines in L1", open_closing=steps.looped_opening),
     read_as("blobs: lines of picture and labels by DMA", blob_detection=steps.blobs_on_dma_lines),

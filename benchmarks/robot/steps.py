@@ -8,17 +8,16 @@ from functools import partial
 from typing import Any
 
 from benchmarks.robot.pixel_colours import pixel_colours_row
+from benchmarks.robot.tur94_roots import tur94_colour_row, tur94_magnitude_row
 from bfsim.api import Core, Frame, Row, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area, area_in
 from tinyphoon.scan_lines import window
 from tinyphoon.stages.blob_detection import BlobThresholds
 from tinyphoon.stages.circle_detection import CircleThresholds, circle_detection
 from tinyphoon.stages.circle_erosion import eroded_circles, select_outer_edges
-from tinyphoon.stages.colour_reduction import colour_row
-from tinyphoon.stages.edge_detection import direction_row, magnitude_row, sobel_row, suppress_row
+from tinyphoon.stages.edge_detection import OF_ALL_PIXELS, sobel_row
 from tinyphoon.stages.fast_opening import erode_columns
 from tinyphoon.stages.hysteresis import clear_labels
-from tinyphoon.stages.longhand_roots import longhand_magnitude_row
 from tinyphoon.stages.looped_erosion import erode_pixels, looped_erosion, looped_row
 from tinyphoon.stages.open_closing import LAG_LINES, NoiseRemoval
 from tinyphoon.stages.rosenfeld_blobs import (
@@ -37,35 +36,24 @@ BLACK_CHROMA = 128
 SMALL_REACH = 8  # to each side; the thesis says "small" (T §5.2.4)
 
 
-def all_slopes(
-    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, _: int
-) -> Generator[Any, Any, None]:
-    """Make a row of gradients as `strong_slopes` does, with the directions of weak ones, too."""
-    gx, gy = core.array("gx"), core.array("gy")
-    yield core.run(sobel_row, *smooth, gx, gy)
-    yield core.run(longhand_magnitude_row, gx, gy, magnitude)
-    yield core.run(direction_row, gx, gy, core.array("atan"), direction)
+edges_of_all_pixels = partial(rosenfeld_edges, steps=OF_ALL_PIXELS)
+"""Every pixel has a direction, and weak ones are removed last."""
 
 
-def strong_slopes_by_other_roots(
+def strong_slopes_by_tur94(
     core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, edge_threshold: int
 ) -> Generator[Any, Any, None]:
-    """Make a row of gradients as `strong_slopes` does, by the roots of `tinyphoon`."""
+    """Make a row of gradients as `strong_slopes` does, by the roots of [Tur94]."""
     gx, gy = core.array("gx"), core.array("gy")
     yield core.run(sobel_row, *smooth, gx, gy)
-    yield core.run(magnitude_row, gx, gy, magnitude)
+    yield core.run(tur94_magnitude_row, gx, gy, magnitude)
     yield core.run(direct_strong_row, gx, gy, magnitude, core.array("atan"), direction, edge_threshold)
 
 
-edges_of_all_pixels = partial(
-    rosenfeld_edges, steps=replace(STRONG_FIRST, slopes=all_slopes, suppress=suppress_row)
+edges_by_tur94 = partial(
+    rosenfeld_edges, steps=replace(STRONG_FIRST, colours=tur94_colour_row, slopes=strong_slopes_by_tur94)
 )
-"""Every pixel has a direction, and weak ones are removed last."""
-
-edges_by_other_roots = partial(
-    rosenfeld_edges, steps=replace(STRONG_FIRST, colours=colour_row, slopes=strong_slopes_by_other_roots)
-)
-"""The roots of gradients and chroma are those of `tinyphoon`."""
+"""The roots of gradients and chroma are those of [Tur94]."""
 
 colours_of_each_pixel = partial(rosenfeld_edges, steps=replace(STRONG_FIRST, colours=pixel_colours_row))
 """The two pixels of a pair, which share U and V, have each its own root and hue."""

@@ -3,8 +3,8 @@
 [said] Step 2 makes a gradient vector for every pixel, step 3 removes those that are shorter than the threshold, and step 4 compares
 what is left with its neighbours in the direction of the edge (T §2.1.4); the first four steps are done in one pass (T §5.2.1).
 [implied] So lengths are wanted of all pixels (T Eq. 2.3), directions (T Eq. 2.4) of those that step 3 leaves. [assumed] A length is
-compared as such, not its square (T Eq. 1.1), for step 4 and the edge store want it, too. Roots, here and of the colours, are those of
-`longhand_roots.py`.
+compared as such, not its square (T Eq. 1.1), for step 4 and the edge store want it, too. [assumed] Its root is by the long-hand way of
+`isqrt32`, as everywhere, not by the routine of [Tur94], which T §1.3.4 cites for it.
 
 Edges are those of `suppress_row`, which looks at the threshold last.
 """
@@ -16,8 +16,7 @@ from typing import Any
 
 from bfsim.api import Core, Row, i16, i32, kernel, u8
 from tinyphoon.arithmetic import angle8
-from tinyphoon.stages.edge_detection import RowSteps, sobel_row
-from tinyphoon.stages.longhand_roots import longhand_colour_row, longhand_magnitude_row
+from tinyphoon.stages.edge_detection import RowSteps, magnitude_row, sobel_row
 
 
 @kernel
@@ -64,8 +63,8 @@ def strong_slopes(
     """Make a row of gradients as `slopes_row` does, without the directions of weak ones."""
     gx, gy = core.array("gx"), core.array("gy")
     yield core.run(sobel_row, *smooth, gx, gy)
-    yield core.run(longhand_magnitude_row, gx, gy, magnitude)
+    yield core.run(magnitude_row, gx, gy, magnitude)
     yield core.run(direct_strong_row, gx, gy, magnitude, core.array("atan"), direction, edge_threshold)
 
 
-STRONG_FIRST = RowSteps(colours=longhand_colour_row, slopes=strong_slopes, suppress=suppress_strong_row)
+STRONG_FIRST = RowSteps(slopes=strong_slopes, suppress=suppress_strong_row)

@@ -11,6 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from benchmarks.robot.tur94_roots import tur94_root
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy, three_rows
 from tinyphoon.arithmetic import isqrt32
@@ -23,7 +24,6 @@ from tinyphoon.stages.edge_detection import (
     suppress_row,
 )
 from tinyphoon.stages.edge_storing import store_edges_row
-from tinyphoon.stages.longhand_roots import longhand_root
 from tinyphoon.tables import arctangent_table
 
 ROWS = [rows for width in WIDTHS for rows in three_rows(width)]
@@ -46,7 +46,7 @@ def filled(width: int, dtype: type[np.generic] = np.uint8) -> np.ndarray:
 def test_square_root_is_exact(square: int) -> None:
     """Both long-hand roots are the integer root of every unsigned word."""
     assert isqrt32(square) == math.isqrt(square)
-    assert longhand_root(square) == math.isqrt(square)
+    assert tur94_root(square) == math.isqrt(square)
 
 
 def test_arctangent_table_rises_to_an_eighth_of_a_turn() -> None:

@@ -1,8 +1,7 @@
-"""Square roots as [Tur94] has them, for the lengths of gradients and for chroma.
+"""Square roots by the routine that [Tur94] prints, which T §1.3.4 cites, for the lengths of gradients and for chroma.
 
-[said] Where a root is wanted it is a fixed-point one by long-hand division, that of [Tur94] (T §1.3.4). In it two bits of the number come
-from a low word into a high one each turn, and what is tried is twice the root so far, and one. `isqrt32` finds the same roots by another
-way, which needs no second word. [assumed] Without bits behind the point, so 16 turns, for gradients and chroma are whole numbers.
+Two bits of the number come from a low word into a high one each turn, and what is tried is twice the root so far, and one.
+`isqrt32` finds the same roots by a bit that moves down, and needs no second word. Without bits behind the point there are 16 turns.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from tinyphoon.stages.colour_reduction import DARKEST, FIRST_HUE, HUES, MOST_CHR
 
 
 @kernel
-def longhand_root(square: u32) -> u32:
+def tur94_root(square: u32) -> u32:
     """Return the root of `square`, rounded down, as `isqrt32` does."""
     root: u32 = 0
     high: u32 = 0
@@ -30,15 +29,15 @@ def longhand_root(square: u32) -> u32:
 
 
 @kernel
-def longhand_magnitude_row(gx: i16[:], gy: i16[:], magnitude: u8[:]) -> None:
+def tur94_magnitude_row(gx: i16[:], gy: i16[:], magnitude: u8[:]) -> None:
     """Gradient magnitude of one row, as `magnitude_row` makes it."""
     for x in range(len(magnitude)):
         square = gx[x] * gx[x] + gy[x] * gy[x]
-        magnitude[x] = min(i32(longhand_root(u32(square))) >> 2, 255)
+        magnitude[x] = min(i32(tur94_root(u32(square))) >> 2, 255)
 
 
 @kernel
-def longhand_colour_row(
+def tur94_colour_row(
     uyvy: u8[:],
     atan: u8[:],
     joined_colours: u32[:],
@@ -52,7 +51,7 @@ def longhand_colour_row(
     for pair in range(len(colours) >> 1):
         u = uyvy[4 * pair] - 128
         v = uyvy[4 * pair + 2] - 128
-        chroma = i32(longhand_root(u32(v * v + u * u)))
+        chroma = i32(tur94_root(u32(v * v + u * u)))
         left = uyvy[4 * pair + 1] - chroma
         right = uyvy[4 * pair + 3] - chroma
         darkest = eps_black if chroma < never_black else DARKEST
