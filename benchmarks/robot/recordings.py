@@ -1,15 +1,18 @@
-"""Other recordings made of a scene's: smaller, black, or of cameras that run free."""
+"""Other recordings made of a scene's: smaller, black, with tables that rectify it, or of cameras that run free."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
+from bfsim.api import SourcePixels
 from bfsim.machine.cameras.skipping import skipped
 from bfsim.recording import RecordingReader
+from bfsim.recording.frames import RectificationTables
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.writer import RecordingWriter
 
@@ -19,12 +22,12 @@ PICTURES_SHOWN = 12
 
 @contextmanager
 def like(
-    recording: Path, made: Path, *, halvings: int = 0
+    recording: Path, made: Path, *, halvings: int = 0, rectification: RectificationTables | None = None
 ) -> Iterator[tuple[RecordingReader, RecordingWriter]]:
     """Open a recording, and one to be made of it, of the same cameras, with width and height halved so often."""
     with RecordingReader(recording) as reader:
         size = {"width": reader.width >> halvings, "height": reader.height >> halvings}
-        with RecordingWriter(made, **size, geometry=reader.geometry) as writer:
+        with RecordingWriter(made, **size, geometry=reader.geometry, rectification=rectification) as writer:
             yield reader, writer
 
 
@@ -42,6 +45,14 @@ def write_black(recording: Path, black: Path) -> None:
         picture = YuvPlanes.from_image(Image.new("RGB", (reader.width, reader.height))).to_uyvy()
         for frame in reader.frames():
             writer.add(picture, picture, frame.left_ns, frame.right_ns)
+
+
+def write_rectified(recording: Path, rectified: Path, tables: Mapping[str, SourcePixels]) -> None:
+    """Write a recording with the tables of its "left" and its "right" camera."""
+    places = {side: np.stack([each.rows, each.columns]).astype(np.int32) for side, each in tables.items()}
+    with like(recording, rectified, rectification=RectificationTables(**places)) as (reader, writer):
+        for frame in reader.frames():
+            writer.add(frame.left, frame.right, frame.left_ns, frame.right_ns)
 
 
 def write_free(recording: Path, free: Path) -> None:
