@@ -144,7 +144,7 @@ def test_a_load_that_a_way_out_may_skip_stays(profile: CompilerProfile, tmp_path
 def test_the_value_that_goes_along_with_an_index_is_loaded_once(
     profile: CompilerProfile, tmp_path: Path
 ) -> None:
-    """`a[least]` is loaded before the loop, and behind it; in it, only `a[j]` is, and the least is found."""
+    """`a[least]` is loaded before the loop; in it, only `a[j]` is, and the least comes out of it in a register, as in GCC's code."""
     text = """
     @kernel
     def f(a: {kind}[:]) -> i32:
@@ -160,7 +160,7 @@ def test_the_value_that_goes_along_with_an_index_is_loaded_once(
         kernel = import_text(text.format(kind=kind), tmp_path).f
         values = np.array([5, 4, 7, 2, 9, 2, 8], DTYPES[kind])
         run = Run(kernel, profile, {"a": values})
-        assert run.traced == {("a", "load"): 8}
+        assert run.traced == {("a", "load"): 7}
         assert kernel(values) == 3
         assert kernel(values[:1]) == 0
 

@@ -91,7 +91,7 @@ class Likelihood:
         votes = [
             *self._by_opcode(block),
             *self._by_calls(block),
-            *_by_hint(block),
+            *(_by_hint(block) or self._by_hints_elsewhere(block)),
             *self.comparisons.get(block.label, ()),
             *self._by_loops_behind(block),
         ]
@@ -137,6 +137,21 @@ class Likelihood:
         """A side that leads to a loop inside the one around the test is unlikely."""
         votes = zip((1 - LOOP_GUARD, LOOP_GUARD), block.successors, strict=True)
         return [vote for vote, way in votes if (block.label, way) in self.loop_guards]
+
+    def _by_hints_elsewhere(self, block: BasicBlock) -> list[float]:
+        """A side that leads where another test's unlikely side does is unlikely, too: the `continue` is there [predict_paths_leading_to]."""
+        votes = zip((1 - CONTINUE, CONTINUE), block.successors, strict=True)
+        return [vote for vote, way in votes if way in self._unlikely] if len({*block.successors}) > 1 else []
+
+    @cached_property
+    def _unlikely(self) -> frozenset[str]:
+        """Blocks that hints call unlikely, to which more than one test leads, but not each iteration."""
+        found = set[str]()
+        for block in self.flow.routine.blocks:
+            for vote in _by_hint(block) if block.terminator.opcode == "br" else ():
+                found.add(block.successors[vote > EVEN])
+        ways_round = {label for loop in self.flow.loops for label in (loop.header, loop.latch)}
+        return frozenset(each for each in found - ways_round if len(self.flow.predecessors[each]) > 1)
 
     def _leaving(self, loop: Loop) -> float:
         """How likely each exit of a loop is; before its first iteration, too, as the test there is a copy of its header's."""
