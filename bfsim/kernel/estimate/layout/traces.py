@@ -266,8 +266,8 @@ class _Connecting:
         best, following = None, None
         entry_count = self.graph.count[self.graph.names[0]]
         for edge in edges:
-            if best is not None and edge.probability <= best.probability:
-                continue
+            if edge.target == edge.source or (best is not None and edge.probability <= best.probability):
+                continue  # a copy behind itself would need the same jump
             number = self.start.get(edge.target, -1)
             if number >= 0 and len(self.traces[number]) == 1:
                 best, following = edge, None

@@ -81,6 +81,19 @@ def test_a_small_return_is_copied() -> None:
     assert large.copied == set()
 
 
+def test_a_loop_that_nothing_ends_is_not_copied_behind_itself(tmp_path: Path) -> None:
+    """Somebody has forgotten `i += 1`: the loop is one small block, whose copy would jump to a copy, and so on."""
+    text = """
+@kernel
+def fill(a: u8[:]) -> None:
+    i = 0
+    while i < len(a):
+        a[i] = 1
+"""
+    fill = import_text(text, tmp_path, "endless").fill
+    assert 0 < fill.code_bytes(GCC_O2)["endless_fill"] < 30
+
+
 def test_of_two_sides_as_likely_the_one_that_is_next_in_the_source_is_in_line(tmp_path: Path) -> None:
     """LLVM turns `if` and `else` round; GCC leaves the `if` first: odd numbers take no jump to get to their step."""
     text = """
