@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from bfsim.errors import BfsimWarning, KernelError
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.kernel.calls.arguments import Arguments
+from bfsim.kernel.calls.outside import refuse_in_firmware
 from bfsim.kernel.calls.work import Work
 from bfsim.kernel.costs.counters import Counter
 from bfsim.kernel.estimate.estimated import costs_of
@@ -246,7 +247,7 @@ class Kernel:
         """Run on numpy arrays and ints, as the firmware would, but without a machine around it.
 
         Returns what the kernel returns; arrays that it stores into are changed. Raises KernelError for arguments that do
-        not fit.
+        not fit, and FirmwareError in a main loop.
         """
         if named:
             names = ", ".join(each.name for each in self.function.parameters)
@@ -255,6 +256,7 @@ class Kernel:
             )
         if _IN_PYTHON.get() and self.definition:
             return self.definition(*arguments)
+        refuse_in_firmware(self.name)
         self.arguments.check(arguments)
         return self._run(arguments, self.compile(DEFAULT)).value
 

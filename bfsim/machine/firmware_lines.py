@@ -21,6 +21,7 @@ NOT_FIRMWARE = re.compile(
             re.escape(str(Path(np.__file__).parent) + os.sep),
             re.escape(sysconfig.get_path("stdlib") + os.sep) + "(?!site-packages)",
             "<frozen ",
+            "<string>",  # what dataclasses write
         )
     )
 )

@@ -42,6 +42,22 @@ def an_array_of_its_own(core: Core, frame: Frame) -> Play:
     yield core.run(first, np.zeros(4, np.uint8))  # type: ignore[arg-type]
 
 
+def the_array_of_a_row(core: Core, frame: Frame) -> Play:
+    """Call a kernel as `kernel(row.array)` is called in a test."""
+    yield core.run(first, frame.rows[0].array)  # type: ignore[arg-type]
+
+
+def a_kernel_as_a_function(core: Core, frame: Frame) -> Play:
+    """Forget the core: the call would cost no cycles."""
+    core.publish(first=first(frame.rows[0].array))
+    yield core.run(spin, 1)
+
+
+def a_kernel_of_rows_as_a_function(core: Core, frame: Frame) -> Play:
+    """Forget the core, and give what only a core takes."""
+    yield first(frame.rows[0])
+
+
 def a_list_of_rows(core: Core, frame: Frame) -> Play:
     """Call a kernel with many rows where it takes one."""
     yield core.run(first, list(frame.rows))  # type: ignore[arg-type]
@@ -179,7 +195,20 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
             3,
         ),
         (work_twice, FirmwareError, r"core A: firmware must yield each core\.run\(\.\.\.\) once", 4),
-        (an_array_of_its_own, KernelError, r"source must be a row of a placed buffer, not array\(", 2),
+        (
+            an_array_of_its_own,
+            KernelError,
+            "a row of a placed buffer, not an array: pass the row, not its",
+            2,
+        ),
+        (the_array_of_a_row, KernelError, "source must be a row of a placed buffer, not an array: pass", 2),
+        (a_kernel_as_a_function, FirmwareError, r"or it costs no cycles: write `yield core\.run\(first, ", 2),
+        (
+            a_kernel_of_rows_as_a_function,
+            FirmwareError,
+            "kernel first must be run by the core, or it costs",
+            2,
+        ),
         (a_list_of_rows, KernelError, r"source must be a row of a placed buffer, not \[<row of camera", 2),
         (a_number, FirmwareError, "or `yield from` a wait, not 42", 2),
         (one_argument_too_few, KernelError, r"copy must get source, out, not 1 argument \(", 2),
@@ -193,7 +222,7 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         (unknown_buffer, FirmwareError, "core A has no buffer 'camara'; it has camera, image, in_l2", 2),
         (array_of_many_rows, FirmwareError, r"buffer image has 8 rows; use core\.rows\('image'\)", 2),
         (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'", 2),
-        (gone_line, FirmwareError, "line 0 is not in ring in_ring", 3),
+        (gone_line, FirmwareError, "line 0 is not in ring in_ring, .* none of whose lines was taken yet", 3),
         (division, FirmwareError, "core A: firmware failed with ZeroDivisionError: integer division", 2),
         (
             no_method,
@@ -213,6 +242,30 @@ def test_the_message_ends_with_the_line_of_the_mistake(
     with pytest.raises(kind, match=message) as caught:
         run(every_frame(body))
     assert str(caught.value).endswith(f" ({__file__}:{body.__code__.co_firstlineno + line})")
+
+
+@pytest.mark.parametrize("is_a_generator", [False, True])
+@pytest.mark.parametrize(("mistake", "message"), [(division, "ZeroDivisionError"), (first, "no cycles")])
+def test_a_mistake_in_a_handler_is_told_with_its_line(
+    mistake: Any, message: str, is_a_generator: bool
+) -> None:
+    """One that does all at once ended in a traceback."""
+
+    def handler(core: Core) -> None:
+        first(core.array("single_row").array) if mistake is first else 1 // 0
+
+    def waiting_handler(core: Core) -> Play:
+        yield core.run(spin, 1)
+        handler(core)
+
+    def body(core: Core, frame: Frame) -> Play:
+        core.on_interrupt("TIMER0", waiting_handler if is_a_generator else handler)
+        core.request_interrupt("TIMER0")
+        yield core.run(spin, 10)
+
+    with pytest.raises(FirmwareError, match=message) as caught:
+        run(every_frame(body))
+    assert str(caught.value).endswith(f" ({__file__}:{handler.__code__.co_firstlineno + 1})")
 
 
 def test_the_last_work_of_a_frame_must_be_yielded_as_well() -> None:

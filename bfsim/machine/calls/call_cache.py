@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import FirmwareError, KernelError
+from bfsim.errors import FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.build import Build
 from bfsim.kernel.calls.access_trace import AccessTrace
@@ -223,8 +223,11 @@ class CallCache:
             row = arguments[position]
             if not isinstance(row, Row):
                 name = kernel.function.parameters[position].name
+                got = (
+                    "an array: pass the row, not its `.array`" if isinstance(row, np.ndarray) else shown(row)
+                )
                 raise KernelError(
-                    f"{name} must be a row of a placed buffer, not {row!r} (kernel {kernel.name}, {kernel.place})"
+                    f"{name} must be a row of a placed buffer, not {got} (kernel {kernel.name}, {kernel.place})"
                 )
             rows.append(row)
         outside = [each for each in rows if self._is_traced(each)]

@@ -19,7 +19,7 @@ from bfsim.machine.core.pictures.frames import Frame
 from bfsim.machine.core.pictures.pictures import CAMERAS
 from bfsim.machine.core.pictures.places import Columns, Pixels
 from bfsim.machine.core.tasks.tasks import Run
-from bfsim.machine.core.waits import awaited
+from bfsim.machine.core.waits import awaited, entered
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
@@ -57,6 +57,7 @@ class Core:
         """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
         return self._tasks.run  # without a call between, for firmware asks for this most
 
+    @entered
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Charge everything inside to the row `name` of the budget."""

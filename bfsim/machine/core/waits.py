@@ -1,7 +1,11 @@
-"""Waits that firmware has made: without `yield from` before it a wait is never begun, and nothing happens."""
+"""Waits that firmware has made: without `yield from` before it a wait is never begun, and nothing happens.
+
+So it is with a stage without `with`. Stages, lines and rows, of which there are many, are looked at in a run's first picture.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 from collections.abc import Callable, Generator
 from functools import wraps
@@ -25,6 +29,7 @@ class Waits:
     def __init__(self, core: str) -> None:
         self._core = core
         self._made: list[tuple[Wait, str]] = []
+        self._pictures = 0  # asked for
         self.present: str | None = None
         """What the core waits for, in words, while only another device can let it go on."""
 
@@ -32,7 +37,23 @@ class Waits:
         """Note a wait that the firmware has just made. Who asks for the next frame must have begun all before."""
         if name_of(wait) == "next_frame":
             self.check()
+            self._pictures += 1
         self._made.append((wait, running_line()))
+
+    @property
+    def are_all_noted(self) -> bool:
+        """Whether those that are many are noted, too: until the second picture is asked for."""
+        return self._pictures < 2
+
+    def noting(self, method: Callable[[], Wait]) -> Callable[[], Wait]:
+        """Return what has each wait noted that `method` makes."""
+
+        def made() -> Wait:
+            wait = method()
+            self.note(wait)
+            return wait
+
+        return made
 
     def check(self) -> None:
         """Raise FirmwareError if a wait was never begun."""
@@ -44,7 +65,8 @@ class Waits:
         """Say which wait was never begun, and where; empty if none."""
         for wait, place in self._made:
             if inspect.getgeneratorstate(wait) == inspect.GEN_CREATED:
-                return f"core {self._core}: {name_of(wait)}(...) at {place} does nothing: write `yield from` before it"
+                before = "with" if name_of(wait) == "stage" else "yield from"
+                return f"core {self._core}: {name_of(wait)}(...) at {place} does nothing: write `{before}` before it"
         return ""
 
 
@@ -71,5 +93,21 @@ def awaited(method: Method[Owner, Arguments, Result]) -> Method[Owner, Arguments
         wait = method(self, *arguments, **named)
         self._waits.note(wait)
         return wait
+
+    return made
+
+
+Named = Callable[[Owner, str], "contextlib._GeneratorContextManager[None]"]
+
+
+def entered(method: Named[Owner]) -> Named[Owner]:
+    """Note each stage that this method gives, in the first picture."""
+
+    @wraps(method)
+    def made(self: Owner, name: str) -> contextlib._GeneratorContextManager[None]:
+        stage = method(self, name)
+        if self._waits.are_all_noted:
+            self._waits.note(stage.gen)
+        return stage
 
     return made

@@ -112,9 +112,9 @@ class InputRing:
         """Return the row of line `number`, which must still be in the ring."""
         taken = self._words[DONE]
         if not taken - self._depth < number < taken or number < 0:
+            at = f"is at line {taken - 1}" if taken else "none of whose lines was taken yet"
             raise FirmwareError(
-                f"line {number} is not in ring {self._rows[0].buffer}, which has {self._depth} rows "
-                f"and is at line {taken - 1}"
+                f"line {number} is not in ring {self._rows[0].buffer}, which has {self._depth} rows and {at}"
             )
         return self._rows[number % self._depth]
 

@@ -1,4 +1,4 @@
-"""Waits that firmware never begins, for lack of a `yield from`: each is told with its line."""
+"""Waits and stages that firmware never begins, for lack of a `yield from` or a `with`: each is told with its line."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import pytest
 
 from bfsim.api import Core, Frame
 from bfsim.errors import FirmwareError
+from bfsim.linker import parse_ldf
+from bfsim.shipped import LDF_FOLDER
 from tests.machine.kernels import first, spin
 from tests.machine.rig import Play, every_frame, run, see_all
 
@@ -31,9 +33,39 @@ def forgotten_dma(core: Core, frame: Frame) -> Play:
     yield core.run(spin, 1)
 
 
+def forgotten_line(core: Core, frame: Frame) -> Play:
+    """The core works on the same line again and again."""
+    ring = core.input_ring(frame.rows, "in_ring")
+    row = yield from ring.line()
+    ring.line()
+    yield core.run(first, row)
+
+
+def kept_line(core: Core, frame: Frame) -> Play:
+    """It lives on, and is no row."""
+    ring = core.input_ring(frame.rows, "in_ring")
+    rows = [ring.line()]
+    yield core.run(spin, len(rows))
+
+
+def forgotten_row(core: Core, frame: Frame) -> Play:
+    """The first line of `image` is sent as it was."""
+    out = core.output_ring("out_ring", core.rows("image"))
+    out.row()
+    out.send()
+    yield from out.flush()
+
+
 @pytest.mark.parametrize(
     ("body", "name", "line"),
-    [(forgotten_post, "post", 2), (forgotten_flush, "flush", 3), (forgotten_dma, "wait", 2)],
+    [
+        (forgotten_post, "post", 2),
+        (forgotten_flush, "flush", 3),
+        (forgotten_dma, "wait", 2),
+        (forgotten_line, "line", 4),
+        (kept_line, "line", 3),
+        (forgotten_row, "row", 3),
+    ],
 )
 def test_a_wait_that_is_never_begun_is_told_with_its_line(body: Any, name: str, line: int) -> None:
     """Python runs nothing of it and says nothing; it is noticed when the next frame is asked for."""
@@ -42,6 +74,40 @@ def test_a_wait_that_is_never_begun_is_told_with_its_line(body: Any, name: str, 
         run(every_frame(body))
     told = f"core A: {name}(...) at {place} does nothing: write `yield from` before it; noticed ("
     assert str(caught.value).startswith(told)
+
+
+@pytest.mark.parametrize("ldf", ["thesis", "cache"])
+@pytest.mark.parametrize("body", [forgotten_line, forgotten_row])
+def test_lines_of_pictures_in_cached_memory_are_told_of_as_well(body: Any, ldf: str) -> None:
+    """The rings are the pictures themselves there."""
+    with pytest.raises(FirmwareError, match=r"core A: (line|row)\(\.\.\.\) at .* does nothing: "):
+        run(every_frame(body), ldf=parse_ldf(LDF_FOLDER / f"{ldf}.ldf"))
+
+
+def test_a_stage_without_with_is_told() -> None:
+    """What follows it would be charged to no stage."""
+
+    def body(core: Core, frame: Frame) -> Play:
+        core.stage("Work")
+        yield core.run(spin, 1)
+
+    line = body.__code__.co_firstlineno + 1
+    told = rf"core A: stage\(\.\.\.\) at .*:{line} does nothing: write `with` before it; noticed"
+    with pytest.raises(FirmwareError, match=told):
+        run(every_frame(body))
+
+
+def test_many_lines_are_looked_at_in_the_first_picture_alone() -> None:
+    """Later ones cost no time for it."""
+    waits = []
+
+    def body(core: Core, frame: Frame) -> Play:
+        ring = core.input_ring(frame.rows, "in_ring")
+        waits.append("line" in vars(ring))
+        yield from ring.line()
+
+    run(every_frame(body), frames=3)
+    assert waits == [True, False, False]
 
 
 def test_a_wait_that_is_never_begun_is_told_at_the_end_of_all() -> None:

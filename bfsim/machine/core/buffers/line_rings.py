@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
@@ -11,6 +12,8 @@ from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
+
+Ring = TypeVar("Ring", InputRing, CachedInput, OutputRing, CachedOutput)
 
 
 class LineRings:
@@ -30,18 +33,28 @@ class LineRings:
     def input(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
         """Return a ring that fetches the lines of `image`, or the image's own lines if it is cached."""
         if self._is_cached(image):
-            return CachedInput(image, self._on_line)
+            return self._noted(CachedInput(image, self._on_line), "line")
         return self.window(image, self._layouts.rows(ring) if isinstance(ring, str) else ring)
 
     def window(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
         """Return a ring that fetches the lines of `image` even if it is cached."""
-        return InputRing(self._progress, self.streams[0], image, rows, self._on_line)
+        ring = InputRing(self._progress, self.streams[0], image, rows, self._on_line)
+        return self._noted(ring, "line")
 
     def output(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
         """Return a ring that takes lines to `image`, or the image's own lines if it is cached."""
         if self._is_cached(image):
-            return CachedOutput(image)
-        return OutputRing(self._progress, self.streams[1], self._layouts.rows(ring), image)
+            return self._noted(CachedOutput(image), "row")
+        return self._noted(
+            OutputRing(self._progress, self.streams[1], self._layouts.rows(ring), image), "row"
+        )
+
+    def _noted(self, ring: Ring, method: str) -> Ring:
+        """Have each wait that `method` of a ring makes noted, while all are."""
+        waits = self._progress.waits
+        if waits.are_all_noted:
+            setattr(ring, method, waits.noting(getattr(ring, method)))
+        return ring
 
     def _is_cached(self, image: Sequence[Row]) -> bool:
         return bool(image) and self._access_trace.caches(image[0].offset)

@@ -20,6 +20,10 @@ class Frame:
     width: int
     height: int
 
+    def __repr__(self) -> str:
+        """Return it in short, for who prints it: it has hundreds of rows."""
+        return f"<frame {self.index}, {self.width}x{self.height}>"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FinishedFrame:

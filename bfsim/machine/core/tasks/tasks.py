@@ -13,6 +13,7 @@ from bfsim.errors import BfsimError, FirmwareError, KernelError, is_failure, sho
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.calls.work import UNYIELDED
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
+from bfsim.machine.core.interrupts import Handler
 from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.synchronisation.handovers import Handovers
 from bfsim.machine.core.tasks.asked import Asked
@@ -132,7 +133,7 @@ class Tasks:
                     clock.stall(
                         StallReason.INTERRUPT, self._events.interrupt_entry_cclk, f"interrupt {source}"
                     )
-                    task = handler()
+                    task = self._handled(handler)
                     if isinstance(task, Generator):
                         yield from self.perform(task)
                     clock.stall(
@@ -140,6 +141,15 @@ class Tasks:
                     )
                 if clock.timeline:
                     clock.timeline.interrupt(source, begin_cclk, clock.cclk)
+
+    def _handled(self, handler: Handler) -> object:
+        """Call a handler of the firmware, which may be done then, or give a generator."""
+        try:
+            return handler()
+        except BaseException as error:
+            if not is_failure(error):
+                raise
+            raise self.told(error) from error
 
     def check_claimed(self) -> None:
         """Raise FirmwareError if a call was not yielded."""
