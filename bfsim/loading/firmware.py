@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bfsim import shipped
+from bfsim.loading.forgotten import check_calls
 from bfsim.loading.importing import OwnModules
 from bfsim.loading.kernels import entries_of, kernels_of
 from bfsim.loading.modules import SHIPPED, import_own, path_of
@@ -52,6 +53,10 @@ def load_firmware(name: str) -> LoadedFirmware:
             name, path_of(module), is_built_in=True, firmware=getattr(module, name), own=own
         )
     found = load_named(name, FIRMWARE)
+    for each, module in found.own.modules.items():
+        source = found.own.sources.get(each)
+        if source and not source.path.is_relative_to(SHIPPED.folder):
+            check_calls(source.path, vars(module))
     return LoadedFirmware(
         found.name, path_of(found.module), is_built_in=False, firmware=found.value, own=found.own
     )

@@ -97,14 +97,15 @@ def awaited(method: Method[Owner, Arguments, Result]) -> Method[Owner, Arguments
     return made
 
 
-Named = Callable[[Owner, str], "contextlib._GeneratorContextManager[None]"]
+Stage = contextlib._GeneratorContextManager[None]  # noqa: SLF001  # what `contextmanager` makes, with its generator
+Named = Callable[[Owner, str], Stage]
 
 
 def entered(method: Named[Owner]) -> Named[Owner]:
     """Note each stage that this method gives, in the first picture."""
 
     @wraps(method)
-    def made(self: Owner, name: str) -> contextlib._GeneratorContextManager[None]:
+    def made(self: Owner, name: str) -> Stage:
         stage = method(self, name)
         if self._waits.are_all_noted:
             self._waits.note(stage.gen)
