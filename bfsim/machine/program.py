@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.machine.buffers import Buffers, FrameSize
 from bfsim.machine.peripherals.device import MakeDevice, Script
 from bfsim.seen import PictureColours, Seen
-from bfsim.trace import BudgetRow, Reference
+from bfsim.trace import REST, BudgetRow, Reference
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core
@@ -65,6 +65,28 @@ class Calibration:
     geometries: tuple[Geometry, ...] = ()
 
 
+def _check_rows(rows: Sequence[BudgetRow]) -> None:
+    """Raise FirmwareError for rows that no budget can have: each cycle would be counted twice, or in none."""
+    for row in rows:
+        if not isinstance(row, BudgetRow):
+            raise FirmwareError(f"rows must be of BudgetRow, not {shown(row)}")
+        stage = row.stage
+        if not isinstance(stage, str) or not stage.strip() or not stage.isprintable() or '"' in stage:
+            raise FirmwareError(
+                f"the stage of a row must be a name on one line without quotes, not {shown(stage)}"
+            )
+        if stage == REST:
+            raise FirmwareError(f"the stage of a row must not be {REST}, which is what no stage has")
+    whole = [each.stage for each in rows if each.within is None]
+    for number, row in enumerate(rows):
+        if any(row.stage == each.stage for each in rows[:number]):
+            raise FirmwareError(f"rows must have each stage once, not {row.stage} twice")
+        if row.within is not None and row.within not in whole:
+            raise FirmwareError(
+                f"{row.stage} must be within another row, which is in none itself, not within {shown(row.within)}"
+            )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Firmware:
     """A program for the whole chip.
@@ -102,6 +124,7 @@ class Firmware:
     write_through: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        _check_rows(self.rows)
         known = [each.stage for each in self.rows if each.reference_ms is not None]
         if known and self.reference is None:
             raise FirmwareError(

@@ -253,6 +253,32 @@ def test_numbers_of_a_reference_need_a_word_about_it() -> None:
         firmware(rows=(BudgetRow(stage="Work", reference_ms=3.5),))
 
 
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        (
+            (BudgetRow(stage="Work"), BudgetRow(stage="Work")),
+            "rows must have each stage once, not Work twice",
+        ),
+        ((BudgetRow(stage="(the rest)"),), r"the stage of a row must not be \(the rest\), which is what no"),
+        ((BudgetRow(stage="Work", within="Work"),), "Work must be within another row, .* not within 'Work'"),
+        ((BudgetRow(stage="Work", within="Play"),), "Work must be within another row, .* not within 'Play'"),
+        (
+            (BudgetRow(stage="a"), BudgetRow(stage="b", within="a"), BudgetRow(stage="c", within="b")),
+            "c must be within another row, which is in none itself, not within 'b'",
+        ),
+        ((BudgetRow(stage=" "),), "must be a name on one line without quotes, not ' '"),
+        ((BudgetRow(stage="a\nb"),), r"must be a name on one line without quotes, not 'a\\nb'"),
+        ((BudgetRow(stage='"a"'),), "must be a name on one line without quotes, not '\"a\"'"),
+        (("Work",), "rows must be of BudgetRow, not 'Work'"),
+    ],
+)
+def test_rows_that_no_budget_can_have_are_refused(rows: Any, message: str) -> None:
+    """A stage in two rows was counted twice, and one called as what no stage has made frames twice as long."""
+    with pytest.raises(FirmwareError, match=message):
+        firmware(rows=rows)
+
+
 def test_a_camera_buffer_of_16_bit_elements_holds_the_same_bytes() -> None:
     """DMA fills bytes: 16 elements of 16 bits are a line of 16 pixels."""
     seen = []

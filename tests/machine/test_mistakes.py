@@ -127,6 +127,18 @@ def float_result(core: Core, frame: Frame) -> Play:
     yield core.run(spin, 1)
 
 
+def number_without_end(core: Core, frame: Frame) -> Play:
+    """Publish what no file of numbers has room for."""
+    core.publish(share=1 << 63)
+    yield core.run(spin, 1)
+
+
+def result_of_two_words(core: Core, frame: Frame) -> Play:
+    """Publish under what is no name."""
+    core.publish(**{"red\npixels": 1})
+    yield core.run(spin, 1)
+
+
 def end_of_all(core: Core, frame: Frame) -> Play:
     """End Python, which would pass for success."""
     yield core.run(spin, 1)
@@ -233,6 +245,13 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         (end_of_all, FirmwareError, "core A: firmware failed with SystemExit: 0", 3),
         (what_is_no_exception, FirmwareError, "core A: firmware failed with GeneratorExit: done", 3),
         (float_result, FirmwareError, "core A: the result share must be an integer, not 0.5; ", 2),
+        (
+            number_without_end,
+            FirmwareError,
+            "the result share must fit in 64 bits, not 9223372036854775808",
+            2,
+        ),
+        (result_of_two_words, FirmwareError, r"a result must have a name such as .*, not 'red\\npixels'", 2),
     ],
 )
 def test_the_message_ends_with_the_line_of_the_mistake(

@@ -147,16 +147,25 @@ class Core:
         self._pictures.at(rows, columns)
 
     def publish(self, **results: int) -> None:
-        """Add numbers to the record of the current frame. Raises FirmwareError for one that is no integer."""
+        """Add numbers to the record of the current frame. Raises FirmwareError for one that is no integer of 64 bits."""
         self._pictures.publish(**{name: self._integer(name, value) for name, value in results.items()})
 
     def _integer(self, name: str, value: int) -> int:
+        if not name.isidentifier():
+            raise FirmwareError(
+                f"core {self.name}: a result must have a name such as edges_found, not {shown(name)}"
+            )
         try:
-            return index(value)
+            number = index(value)
         except TypeError:
             raise FirmwareError(
                 f"core {self.name}: the result {name} must be an integer, not {shown(value)}; with a fraction, publish it in a smaller unit"
             ) from None
+        if not -(2**63) <= number < 2**63:
+            raise FirmwareError(
+                f"core {self.name}: the result {name} must fit in 64 bits, not {shown(value)}"
+            )
+        return number
 
     def remark(self, text: str) -> None:
         """Add a sentence about the current frame to the report."""
