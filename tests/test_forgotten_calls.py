@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from pathlib import Path
 
 import pytest
@@ -31,7 +33,8 @@ def main(core):
     while (yield from core.next_frame()) is not None:
         {statement}
 
-def script(core):
+def spare(core):
+    yield lines(core)
     lines(core)
 
 fw = Firmware(mains={{"A": main, "B": main}}, buffers=lambda size: {{}}, camera="camera", rows=())
@@ -64,6 +67,39 @@ def test_a_generator_that_nobody_takes_is_told_with_its_line(folder: Path, name:
     )
 
 
+def test_main_loops_that_a_function_makes_are_looked_at_as_well(folder: Path) -> None:
+    """What they close over may call it."""
+    text = (
+        FIRMWARE.format(statement="yield from lines(core)")
+        + """
+def made(body):
+    def main(core):
+        yield from body(core)
+    return main
+
+def body(core):
+    yield
+    lines(core)
+
+loop = made(body)
+other = Firmware(mains={"A": loop, "B": loop}, buffers=lambda size: {}, camera="camera", rows=())
+"""
+    )
+    Path("eye.py").write_text(text)
+    assert load_firmware("eye.py:fw").firmware.camera == "camera"
+    with pytest.raises(FirmwareError, match=r"^lines\(\.\.\.\) does nothing: "):
+        load_firmware("eye.py:other")
+
+
+def test_it_may_stand_in_what_the_main_loop_calls(folder: Path) -> None:
+    """In a function of another module."""
+    Path("helpers.py").write_text(
+        "def edges(core):\n    yield\n    more(core)\n\ndef more(core):\n    yield\n"
+    )
+    with pytest.raises(FirmwareError, match=r"^more\(\.\.\.\) does nothing: .*helpers\.py:3\)$"):
+        load_firmware(written("yield from helpers.edges(core)"))
+
+
 @pytest.mark.parametrize(
     "statement",
     [
@@ -77,13 +113,20 @@ def test_a_generator_that_nobody_takes_is_told_with_its_line(folder: Path, name:
     ],
 )
 def test_what_may_do_something_is_left_alone(folder: Path, statement: str) -> None:
-    """A call of another function, or of one that nobody can know; and a script is no main loop."""
+    """A call of another function, or of one that nobody can know; and a loop that is not run."""
     assert load_firmware(written(statement)).firmware.camera == "camera"
 
 
 def test_firmware_that_is_an_object_is_looked_at_as_well(folder: Path) -> None:
     """As a test or a script has it."""
-    firmware = load_firmware(written("yield from lines(core)")).firmware
-    Path("eye.py").write_text(FIRMWARE.format(statement="lines(core)"))
-    with pytest.raises(FirmwareError, match=r"^lines\(\.\.\.\) does nothing: .*eye\.py:20\)$"):
-        simulate(frames=1, firmware=firmware)
+    name = written("lines(core)")
+    spec = importlib.util.spec_from_file_location("eye", name.removesuffix(":fw"))
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(folder)
+        patch.setitem(sys.modules, "eye", module)
+        spec.loader.exec_module(module)
+        with pytest.raises(FirmwareError, match=r"^lines\(\.\.\.\) does nothing: .*eye\.py:20\)$"):
+            simulate(frames=1, firmware=module.fw)
+        del sys.modules["helpers"]

@@ -53,10 +53,7 @@ def load_firmware(name: str) -> LoadedFirmware:
             name, path_of(module), is_built_in=True, firmware=getattr(module, name), own=own
         )
     found = load_named(name, FIRMWARE)
-    for each, module in found.own.modules.items():
-        source = found.own.sources.get(each)
-        if source and not source.path.is_relative_to(SHIPPED.folder):
-            check_calls(source.path, vars(module))
+    check_calls(found.value)
     return LoadedFirmware(
         found.name, path_of(found.module), is_built_in=False, firmware=found.value, own=found.own
     )

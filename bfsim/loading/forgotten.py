@@ -11,33 +11,88 @@ import inspect
 import linecache
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 from bfsim.errors import FirmwareError
+from bfsim.loading.libraries import INSTALLED
+from bfsim.loading.modules import SHIPPED
+from bfsim.machine.firmware_lines import is_firmware
+from bfsim.machine.program import Firmware
 
 Namespace = Mapping[str, Any]
 """What a module holds by its names."""
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
-def check_calls(file: Path, namespace: Namespace) -> None:
-    """Look at a source and at what its module holds.
+def check_calls(firmware: Firmware) -> None:
+    """Look at the main loops of firmware that is not built in, and at what they call.
 
-    Raises FirmwareError for the first statement of a generator function that does nothing but make a generator.
+    Raises FirmwareError for a statement of a generator function that does nothing but make a generator.
     """
-    text = file.read_bytes() if file.is_file() else "".join(linecache.getlines(str(file)))  # of a notebook
-    for function, above in _functions(ast.parse(text), ()):
-        if not _is_generator(function):
+    pending: list[Any] = [*firmware.mains.values()]
+    seen: set[FunctionType] = set()
+    while pending:
+        function = pending.pop()
+        function = getattr(
+            function, "__func__", getattr(function, "func", function)
+        )  # of a method, or a partial
+        if isinstance(function, FunctionType) and function not in seen and _is_own(function):
+            seen.add(function)
+            _check(function)
+            pending += _named(function)
+
+
+def _is_own(function: FunctionType) -> bool:
+    """Whether a function is of the firmware, and this neither an installed package nor built in."""
+    path = Path(function.__code__.co_filename)
+    return (
+        is_firmware(str(path))
+        and INSTALLED.isdisjoint(path.parts)
+        and not path.is_relative_to(SHIPPED.folder)
+    )
+
+
+def _named(function: FunctionType) -> Iterator[Any]:
+    """Yield what a function, and those in it, may call: what it closes over, and of its module, and of those that this has imported."""
+    yield from inspect.getclosurevars(function).nonlocals.values()
+    names = {name for code in _codes(function.__code__) for name in code.co_names}
+    own = [function.__globals__[name] for name in sorted(names) if name in function.__globals__]
+    yield from own
+    for module in (each for each in own if isinstance(each, ModuleType)):
+        yield from (getattr(module, name) for name in sorted(names) if hasattr(module, name))
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for each in code.co_consts:
+        if isinstance(each, CodeType):
+            yield from _codes(each)
+
+
+def _check(function: FunctionType) -> None:
+    """Look at a function and at those in it."""
+    file = function.__code__.co_filename
+    lines = {each.co_firstlineno for each in _codes(function.__code__)}
+    for each, above in _functions(_parsed(file), ()):
+        first = min([each.lineno, *(decorator.lineno for decorator in each.decorator_list)])
+        if first not in lines or not _is_generator(each):
             continue
-        for each in _own_nodes(function):
-            if isinstance(each, ast.Expr) and isinstance(each.value, ast.Call):
-                called = each.value.func
-                if _makes_a_generator(called, (*above, function), namespace):
-                    name = ast.unparse(called)
+        for statement in _own_nodes(each):
+            if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
+                called = statement.value.func
+                if _makes_a_generator(called, (*above, each), function.__globals__):
                     raise FirmwareError(
-                        f"{name}(...) does nothing: write `yield from` before it ({file}:{each.lineno})"
+                        f"{ast.unparse(called)}(...) does nothing: write `yield from` before it ({file}:{statement.lineno})"
                     )
+
+
+def _parsed(file: str) -> ast.AST:
+    """Return the source of a file, or of a cell of a notebook; nothing where there is none."""
+    try:
+        return ast.parse("".join(linecache.getlines(file)))
+    except SyntaxError:  # it is being edited
+        return ast.Module([], [])
 
 
 def _functions(

@@ -44,8 +44,7 @@ def given_firmware(firmware: Firmware) -> LoadedFirmware:
         _add_sources(own.sources, each)
     add_libraries(own.sources, SHIPPED.folder)
     add_files_of_code(own, kernels_of(own) | entries_of(firmware))
-    for each in namespaces:
-        _check(own.sources, each)
+    check_calls(firmware)
     file = _file(home)
     module = located(str(file))[0] if file else home["__name__"]
     is_built_in = module == shipped.FIRMWARE_PACKAGE and attribute in shipped.FIRMWARE
@@ -106,15 +105,6 @@ def _add_sources(sources: dict[str, ImportedFile], namespace: Namespace) -> None
         if text and not Path(cell).is_file():
             sources[cell] = ImportedFile(Path(cell), CELL, hashlib.sha256(text.encode()).hexdigest())
             _add_imported(sources, imports_of(text, ""), (Root(Path.cwd()), SHIPPED))
-
-
-def _check(sources: Mapping[str, ImportedFile], namespace: Namespace) -> None:
-    """Raise FirmwareError where a source of a module, or a cell, calls what is to be waited for."""
-    file = _file(namespace)
-    for each in sources.values():
-        is_of_it = each.path == file if file else each.relative == CELL
-        if is_of_it and not each.path.is_relative_to(SHIPPED.folder):
-            check_calls(each.path, namespace)
 
 
 def _add_imported(sources: dict[str, ImportedFile], modules: Sequence[str], roots: Sequence[Root]) -> None:

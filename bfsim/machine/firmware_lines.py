@@ -31,14 +31,15 @@ TASKS = str(Path(__file__).parent / "core" / "tasks" / "tasks.py")
 
 
 @cache
-def _is_firmware(file: str) -> bool:
+def is_firmware(file: str) -> bool:
+    """Whether a file may be one of the firmware: it is neither Python's, nor numpy's, nor bfsim's."""
     return not NOT_FIRMWARE.match(file)
 
 
 def running_line() -> str:
     """Return the innermost line of the firmware that has called here, such as firmware/core_a.py:41."""
     frame = sys._getframe()  # noqa: SLF001  # the way to one's callers
-    while frame.f_back is not None and not _is_firmware(frame.f_code.co_filename):
+    while frame.f_back is not None and not is_firmware(frame.f_code.co_filename):
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
 
@@ -54,7 +55,7 @@ def line_at(task: Any) -> str:
     place = ""
     while task is not None and getattr(task, "gi_frame", None) is not None:
         code = task.gi_frame.f_code
-        if _is_firmware(code.co_filename):
+        if is_firmware(code.co_filename):
             place = f" ({code.co_filename}:{task.gi_frame.f_lineno})"
         task = task.gi_yieldfrom
     return place
@@ -68,7 +69,7 @@ def line_at_work(interruption: KeyboardInterrupt) -> str:
     calls = traceback.extract_tb(interruption.__traceback__)
     tasks = [number for number, each in enumerate(calls) if each.filename == TASKS and each.name == "perform"]
     called = calls[tasks[-1] + 1 :] if tasks else []
-    own = list(takewhile(lambda each: _is_firmware(each.filename), called))
+    own = list(takewhile(lambda each: is_firmware(each.filename), called))
     said = f", {interruption}" if str(interruption) else ""
     return f"{said} ({own[-1].filename}:{own[-1].lineno})" if own else said
 
@@ -76,5 +77,5 @@ def line_at_work(interruption: KeyboardInterrupt) -> str:
 def line_of(error: BaseException) -> str:
     """Return the innermost line of the firmware that `error` came through, as ` (file:line)`; nothing if none."""
     calls = traceback.extract_tb(error.__traceback__)
-    places = [f"{each.filename}:{each.lineno}" for each in calls if _is_firmware(each.filename)]
+    places = [f"{each.filename}:{each.lineno}" for each in calls if is_firmware(each.filename)]
     return f" ({places[-1]})" if places else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from typing import Any, Protocol
 
 import simpy
@@ -13,7 +13,6 @@ from bfsim.errors import BfsimError, FirmwareError, KernelError, is_failure, sho
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.calls.work import UNYIELDED
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
-from bfsim.machine.core.interrupts import Handler
 from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.synchronisation.handovers import Handovers
 from bfsim.machine.core.tasks.asked import Asked
@@ -142,7 +141,7 @@ class Tasks:
                 if clock.timeline:
                     clock.timeline.interrupt(source, begin_cclk, clock.cclk)
 
-    def _handled(self, handler: Handler) -> object:
+    def _handled(self, handler: Callable[[], object]) -> object:
         """Call a handler of the firmware, which may be done then, or give a generator."""
         try:
             return handler()
