@@ -69,6 +69,10 @@ class OverlayWriter:
 
     def _publish(self) -> None:
         if self._encode is not None:
+            if not self._drawn:
+                raise ConfigError(
+                    f"{self.path}: there is nothing to draw: the firmware's view has shown nothing"
+                )
             draft = self._folder / self.path.name
             self._encode(self._drawn, draft)
             draft.replace(self.path.resolve())

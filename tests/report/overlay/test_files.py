@@ -109,3 +109,13 @@ def test_places_that_cannot_be_are_refused_before_the_run(tmp_path: Path) -> Non
     for name in ("seen", *(f"seen{suffix}" for suffix in ENCODERS)):
         with pytest.raises(ConfigError, match="missing must exist"):
             OverlayWriter(tmp_path / "missing" / name)
+
+
+def test_a_file_of_no_pictures_is_refused(tmp_path: Path) -> None:
+    """The view of a firmware may show nothing in any frame: it ended in a traceback."""
+    with (
+        pytest.raises(ConfigError, match=r"seen\.gif: there is nothing to draw: the firmware's view has"),
+        OverlayWriter(tmp_path / "seen.gif"),
+    ):
+        pass
+    assert not [*tmp_path.iterdir()]

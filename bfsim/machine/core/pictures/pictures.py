@@ -12,7 +12,8 @@ from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.core.buffers.layouts import Layouts
 from bfsim.machine.core.pictures.frames import FinishedFrame, Frame
 from bfsim.machine.core.pictures.places import Columns, Pixels, place_of
-from bfsim.machine.core.pictures.readout import Readout, seen_by
+from bfsim.machine.core.pictures.readout import Readout
+from bfsim.machine.core.pictures.views import seen_by
 from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.tasks.tasks import Tasks
 from bfsim.machine.core.waits import Wait

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import FirmwareError, shown
 from bfsim.machine.core.pictures.frames import Frame
 from bfsim.machine.memories import Row
 from bfsim.seen import CAMERAS, Seen, SeenText
@@ -93,21 +92,6 @@ def plain_view(readout: Readout) -> Seen:
         for line, each in enumerate(words)
     )
     return Seen(camera=readout.camera, picture=picture, texts=tuple(texts))
-
-
-def seen_by(view: Callable[[Readout], Seen | None], readout: Readout) -> Seen | None:
-    """Return what a view says. Raises FirmwareError where that is not of the core's camera."""
-    seen = view(readout)
-    if seen is None:
-        return None
-    if not isinstance(seen, Seen):
-        raise FirmwareError(f"view must return a bfsim.api.Seen or None, not {shown(seen)}")
-    if seen.camera != readout.camera:
-        raise FirmwareError(
-            f"view of core {readout.core} must return a Seen of camera {readout.camera!r} (readout.camera), "
-            f"not {shown(seen.camera)}"
-        )
-    return seen
 
 
 def stacked(rows: Sequence[Row]) -> NDArray[Any]:
