@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -17,6 +19,7 @@ FAINTEST = 0.4
 EDGE_SIDE = 0.6  # of the side of a pixel
 
 MAP_SHARE = 0.45  # of the colour of a map over the picture
+MAP_STEPS = 4096  # from its first colour to its last: finer than 8 bits of red, green and blue show
 
 
 def picture_with_edges(
@@ -48,6 +51,14 @@ def picture_with_edges(
     return np.asarray((picture + (colour - picture) * share).round(), np.uint8)
 
 
+@cache
+def _map_paints() -> NDArray[np.uint8]:
+    """Return the colours of a map, RGBA: blue first."""
+    share = round(255 * MAP_SHARE)
+    steps = (1 - step / MAP_STEPS for step in range(MAP_STEPS + 1))
+    return np.array([(*colours.scale_colour(each), share) for each in steps], np.uint8)
+
+
 def _with_map(image: Image.Image, heat: SeenMap) -> Image.Image:
     """Return a picture under a map: blue for the least of its numbers, red for the greatest, nothing where there is none."""
     values = np.asarray(heat.values, float)
@@ -58,7 +69,7 @@ def _with_map(image: Image.Image, heat: SeenMap) -> Image.Image:
     high = float(known.max()) if heat.highest is None else heat.highest
     parts = np.clip((values - low) / ((high - low) or 1.0), 0, 1)
     paint = np.zeros((*values.shape, 4), np.uint8)
-    for place in zip(*np.nonzero(np.isfinite(values)), strict=True):
-        paint[place] = (*colours.scale_colour(1 - parts[place]), round(255 * MAP_SHARE))
+    there = np.isfinite(values)
+    paint[there] = _map_paints()[np.rint(parts[there] * MAP_STEPS).astype(int)]
     over = Image.fromarray(paint, "RGBA").resize(image.size, Image.Resampling.NEAREST)
     return Image.alpha_composite(image.convert("RGBA"), over).convert("RGB")

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from bfsim.report.overlay import style
+from bfsim.report.overlay.ground import MAP_SHARE, picture_with_edges
 from bfsim.report.overlay.heat import BARS, GAP, LINE, STAGES, _time
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
@@ -215,6 +216,21 @@ def test_what_others_want_to_draw_is_drawn() -> None:
     assert low[2] > low[0]
     assert high[0] > high[2]
     assert shown(heat, 20, 45) == shown(one(), 20, 45)
+
+
+def test_a_map_may_have_a_number_for_each_pixel(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As one of depths has: each number was painted by itself, which took a second and more a picture. The colours are the same."""
+    asked = []
+    scale_colour = colours.scale_colour
+    monkeypatch.setattr(colours, "scale_colour", lambda part: asked.append(part) or scale_colour(part))
+    values = np.linspace(0, 1, 240 * 320).reshape(240, 320)
+    plain = Seen(camera="left", picture=made.grey(320, 240))
+    seen = replace(plain, map=SeenMap(name="depth", values=values))
+    under, over = (picture_with_edges(each, (), 1, colours.ROOM, 0).astype(float) for each in (plain, seen))
+    assert len(asked) < 10_000
+    for place in ((0, 0), (100, 17), (120, 200), (239, 319)):
+        expected = (1 - MAP_SHARE) * under[place] + MAP_SHARE * np.array(scale_colour(1 - values[place]))
+        assert np.abs(over[place] - expected).max() < 3
 
 
 @pytest.mark.parametrize(
