@@ -5,18 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import BfsimError, ConfigError, FirmwareError, is_failure, with_article
+from bfsim.errors import BfsimError, ConfigError, FirmwareError, is_failure, shown, with_article
 from bfsim.loading.firmware import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.peripherals.device import Script
 from bfsim.recording import RecordingReader
 from bfsim.recording.importing.images import picture_of_file
 from bfsim.running.device_script import read_script
-from bfsim.seen import PictureColours
+from bfsim.seen import NamedColour, PictureColours
 
 MCAP_MAGIC = b"\x89MCAP"
 
@@ -90,6 +91,15 @@ def _patch(picture: NDArray[np.uint8], area: Area) -> NDArray[np.uint8]:
     return picture[top:bottom, left // 2 * 4 : -(-right // 2) * 4]
 
 
+def _is_colour(named: object) -> bool:
+    """Whether it has a name, and a colour to draw it with."""
+    if not isinstance(named, NamedColour) or not isinstance(named.name, str):
+        return False
+    parts: Any = named.colour
+    is_three = isinstance(parts, tuple) and len(parts) == 3
+    return is_three and all(isinstance(each, int) and 0 <= each <= 255 for each in parts)
+
+
 def _named(
     loaded: LoadedFirmware, picture: NDArray[np.uint8], *, told: Script, script: Path | None, frame: int
 ) -> PictureColours:
@@ -117,15 +127,28 @@ def _named(
         raise FirmwareError(
             f"colours of {loaded.name} must return a bfsim.api.PictureColours, not {with_article(type(found).__name__)}"
         )
-    shape = picture.shape[0], picture.shape[1] // 2
-    if found.numbers.shape != shape or found.numbers.dtype != np.uint8:
+    _check_drawable(found, loaded.name, (picture.shape[0], picture.shape[1] // 2))
+    return found
+
+
+def _check_drawable(found: PictureColours, name: str, shape: tuple[int, int]) -> None:
+    """Raise FirmwareError unless each pixel of a picture of `shape` has a number, and each number a colour to draw it with."""
+    numbers: Any = found.numbers
+    if not isinstance(numbers, np.ndarray):
         raise FirmwareError(
-            f"colours of {loaded.name} must return numbers of uint8 and of shape {shape}, not {found.numbers.dtype} "
-            f"of {found.numbers.shape}"
+            f"colours of {name} must return numbers of uint8 and of shape {shape}, not {with_article(type(numbers).__name__)}"
         )
-    if not found.named or found.numbers.max(initial=0) >= len(found.named):
+    if numbers.shape != shape or numbers.dtype != np.uint8:
         raise FirmwareError(
-            f"colours of {loaded.name} must name every number in its picture, up to {found.numbers.max()}, but "
+            f"colours of {name} must return numbers of uint8 and of shape {shape}, not {numbers.dtype} of {numbers.shape}"
+        )
+    for each in found.named:
+        if not _is_colour(each):
+            raise FirmwareError(
+                f"colours of {name} must name each by a NamedColour with red, green and blue, 0 to 255, not {shown(each)}"
+            )
+    if not found.named or numbers.max(initial=0) >= len(found.named):
+        raise FirmwareError(
+            f"colours of {name} must name every number in its picture, up to {numbers.max()}, but "
             f"names {len(found.named)}"
         )
-    return found

@@ -159,6 +159,36 @@ def test_firmware_that_fails_is_told_with_its_line(other: Path, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        ("numbers=numbers.tolist(), named=halves", "numbers of uint8 and of shape (6, 8), not a list"),
+        ("numbers=numbers, named=('dark', 'bright')", "must name each by a NamedColour with red, green and"),
+        (
+            "numbers=numbers, named=(NamedColour(name='dark', colour='black'),)",
+            "0 to 255, not NamedColour(name=",
+        ),
+        (
+            "numbers=numbers, named=(NamedColour(name=None, colour=(0, 0, 0)),)",
+            "0 to 255, not NamedColour(name=",
+        ),
+    ],
+)
+def test_what_is_no_colour_is_refused(thirds: Path, tmp_path: Path, found: str, said: str) -> None:
+    """With what it must be: it ended in a traceback."""
+    text = OTHER.replace(
+        "halving = ",
+        f"""
+def odd(picture, script, frame):
+    numbers, halves = picture[:, 1::2] // 128, (NamedColour(name="dark", colour=(0, 0, 0)),) * 2
+    return PictureColours({found})
+
+halving = """,
+    ).replace("colours=halves", "colours=odd")
+    (tmp_path / "odd.py").write_text(text)
+    assert said in refused(thirds, "--firmware", f"{tmp_path / 'odd.py'}:halving")
+
+
+@pytest.mark.parametrize(
     ("options", "said"),
     [
         (("--frame", "0"), "--frame must go with a recording"),
