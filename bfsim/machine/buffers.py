@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.types import FloatType, Number
 
 
@@ -42,6 +42,8 @@ class Buffer:
     handed_over: bool = False
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.isidentifier():
+            raise FirmwareError(f"a buffer must have a name such as line_ring, not {shown(self.name)}")
         if not isinstance(self.element, Number):
             raise FirmwareError(
                 f"buffer {self.name} must have elements of i8 to u32 or f32, not {self.element!r}"

@@ -34,6 +34,9 @@ def test_a_camera_in_the_scratchpad_is_refused() -> None:
 @pytest.mark.parametrize(
     ("what", "message"),
     [
+        ({"name": 3}, "a buffer must have a name such as line_ring, not 3"),
+        ({"name": "line ring"}, "a buffer must have a name such as line_ring, not 'line ring'"),
+        ({"name": ""}, "a buffer must have a name such as line_ring, not ''"),
         ({"element": int}, "buffer table must have elements of i8 to u32 or f32, not <class 'int'>"),
         ({"rows": 2.0}, r"buffer table must have whole rows and columns, not 2\.0 and 3"),
         ({"columns": 0}, "buffer table must have at least one row and one column, not 1 and 0"),
