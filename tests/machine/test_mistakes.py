@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Core, Frame
+from bfsim.api import CameraSettings, Core, Frame
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
 from bfsim.files.save import writing
 from bfsim.run import simulate
@@ -139,6 +139,36 @@ def result_of_two_words(core: Core, frame: Frame) -> Play:
     yield core.run(spin, 1)
 
 
+def ring_of_a_name(core: Core, frame: Frame) -> Play:
+    """Take the arguments of an output ring for those of an input ring."""
+    core.input_ring("image", "in_ring")
+    yield core.run(spin, 1)
+
+
+def ring_the_other_way_round(core: Core, frame: Frame) -> Play:
+    """Take the arguments of an input ring for those of an output ring."""
+    core.output_ring(core.rows("image"), "out_ring")  # type: ignore[arg-type]
+    yield core.run(spin, 1)
+
+
+def ring_without_rows(core: Core, frame: Frame) -> Play:
+    """Give it an empty list."""
+    core.input_ring(frame.rows, [])
+    yield core.run(spin, 1)
+
+
+def settings_in_a_dict(core: Core, frame: Frame) -> Play:
+    """Forget the class."""
+    core.set_camera({"gain": 16})  # type: ignore[arg-type]
+    yield core.run(spin, 1)
+
+
+def gain_without_end(core: Core, frame: Frame) -> Play:
+    """Give a register more than it holds."""
+    core.set_camera(CameraSettings(exposure_lines=200, gain=256, red_gain=128, blue_gain=128))
+    yield core.run(spin, 1)
+
+
 def end_of_all(core: Core, frame: Frame) -> Play:
     """End Python, which would pass for success."""
     yield core.run(spin, 1)
@@ -244,6 +274,16 @@ def wait_for_a_row(core: Core, frame: Frame) -> Play:
         ),
         (end_of_all, FirmwareError, "core A: firmware failed with SystemExit: 0", 3),
         (what_is_no_exception, FirmwareError, "core A: firmware failed with GeneratorExit: done", 3),
+        (
+            ring_of_a_name,
+            FirmwareError,
+            r"core\.input_ring\(rows, ring\) must get the rows of a picture, ",
+            2,
+        ),
+        (ring_the_other_way_round, FirmwareError, r"core\.output_ring\(ring, rows\) must get the rows of", 2),
+        (ring_without_rows, FirmwareError, "a ring needs at least 2 rows, not none", 2),
+        (settings_in_a_dict, FirmwareError, "must get a bfsim.api.CameraSettings, not {'gain': 16}", 2),
+        (gain_without_end, FirmwareError, "gain must be 0 to 255, not 256", 2),
         (float_result, FirmwareError, "core A: the result share must be an integer, not 0.5; ", 2),
         (
             number_without_end,

@@ -7,11 +7,13 @@ picture is not modelled: they are in the recording.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.sensor_spec import CameraSpec
+from bfsim.errors import FirmwareError, shown
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +27,14 @@ class CameraSettings:
     gain: int
     red_gain: int
     blue_gain: int
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.exposure_lines, Integral) or self.exposure_lines < 0:
+            raise FirmwareError(f"exposure_lines must be 0 or more, not {shown(self.exposure_lines)}")
+        for name in ("gain", "red_gain", "blue_gain"):
+            value = getattr(self, name)
+            if not isinstance(value, Integral) or not 0 <= int(value) <= 255:
+                raise FirmwareError(f"{name} must be 0 to 255, not {shown(value)}")
 
 
 @dataclass(slots=True)

@@ -176,6 +176,8 @@ class Core:
 
         The two-wire bus to the camera is not modelled.
         """
+        if not isinstance(settings, CameraSettings):
+            raise FirmwareError(f"set_camera must get a bfsim.api.CameraSettings, not {shown(settings)}")
         change = partial(self._parts.capture.change_camera, self.name, settings)
         self._parts.progress.when_there(change)
 

@@ -22,6 +22,8 @@ EMPTY, FULL = StallReason.RING_EMPTY, StallReason.RING_FULL
 
 
 def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
+    if not rows:
+        raise FirmwareError("a ring needs at least 2 rows, not none")
     if not image:
         raise FirmwareError(f"the picture for ring {rows[0].buffer} must have at least one line, not none")
     if len(rows) < 2:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from bfsim.api import Core, Frame
+from bfsim.errors import FirmwareError
 from bfsim.machine.board import Fidelity
+from bfsim.machine.core.pictures.places import place_of
 from bfsim.report.heat.places import Heats
 from bfsim.spans import Place, Span, SpanKind
 from tests.machine.kernels import copy, spin
@@ -135,3 +138,27 @@ def test_a_handler_is_elsewhere() -> None:
     _, spans = told(made_board(every_frame(work)), frames=1)
     found = {each.issue_cclk: each.place for each in spans if each.kind is SpanKind.CALL}
     assert found == {cycles_of(spin, 50): None} | {cycles_of(spin, n): row(3) for n in (20, 21, 22)}
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        (("x",), "a place of core.at must be in whole pixels, not 'x'"),
+        ((2.5, 3), "a place of core.at must be in whole pixels, not 2.5"),
+        ((1, lambda: [2, None]), "a place of core.at must be in whole pixels, not None"),
+        ((lambda: [(1, 2), (3, 4.5)],), "a place of core.at must be in whole pixels, not 4.5"),
+        ((lambda: "abc",), "a pixel of core.at must be a row and a column, not 'a'"),
+        ((lambda: [(1, 2, 3)],), r"a pixel of core.at must be a row and a column, not \(1, 2, 3\)"),
+    ],
+)
+def test_what_is_no_place_is_refused(place: Any, message: str) -> None:
+    """Where it is said: the heat map, which is drawn much later, ended in a traceback."""
+    with pytest.raises(FirmwareError, match=message):
+        place_of(*place, *(None,) * (2 - len(place)))
+
+
+def test_numbers_of_numpy_are_places() -> None:
+    """As they stand in buffers."""
+    pixels = np.array([[3, 4], [1, 2]], np.uint16)
+    assert place_of(lambda: pixels, None) == place_of(lambda: [(1, 2), (3, 4)], None)
+    assert place_of(np.int16(3), lambda: pixels[:, 1]) == place_of(3, lambda: [2, 4])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
+from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.core.buffers.layouts import Layouts
@@ -14,6 +15,22 @@ from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
 
 Ring = TypeVar("Ring", InputRing, CachedInput, OutputRing, CachedOutput)
+
+
+TAKES = {"input_ring": "(rows, ring)", "window_ring": "(rows, ring)", "output_ring": "(ring, rows)"}
+"""What makes rings, and its arguments: who mistakes their order is told."""
+
+
+def _check_rows(method: str, image: Sequence[Row]) -> None:
+    """Raise FirmwareError unless a ring is over the rows of a picture."""
+    if (
+        isinstance(image, str)
+        or not isinstance(image, Sequence)
+        or not all(isinstance(each, Row) for each in image[:1])
+    ):
+        raise FirmwareError(
+            f"core.{method}{TAKES[method]} must get the rows of a picture, such as frame.rows or core.rows('image'), not {shown(image)}"
+        )
 
 
 class LineRings:
@@ -32,17 +49,20 @@ class LineRings:
 
     def input(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
         """Return a ring that fetches the lines of `image`, or the image's own lines if it is cached."""
+        _check_rows("input_ring", image)
         if self._is_cached(image):
             return self._noted(CachedInput(image, self._on_line), "line")
         return self.window(image, self._layouts.rows(ring) if isinstance(ring, str) else ring)
 
     def window(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
         """Return a ring that fetches the lines of `image` even if it is cached."""
+        _check_rows("window_ring", image)
         ring = InputRing(self._progress, self.streams[0], image, rows, self._on_line)
         return self._noted(ring, "line")
 
     def output(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
         """Return a ring that takes lines to `image`, or the image's own lines if it is cached."""
+        _check_rows("output_ring", image)
         if self._is_cached(image):
             return self._noted(CachedOutput(image), "row")
         return self._noted(
