@@ -14,6 +14,7 @@ from bfsim.chip.dma_registers import (
     Flow,
     WdSize,
 )
+from bfsim.errors import shown
 from bfsim.machine.dma.mmr import check_value, refuse
 
 Code = TypeVar("Code", Flow, WdSize)
@@ -37,6 +38,13 @@ class DmaConfig:
     FLOW: Flow = Flow.STOP
 
     def __post_init__(self) -> None:
+        for kind, code in ((WdSize, self.WDSIZE), (Flow, self.FLOW)):
+            if not isinstance(code, kind):  # WDSIZE=16 would set DI_SEL, and move bytes
+                known = ", ".join(f"{kind.__name__}.{each.name}" for each in kind)
+                refuse(f"CONFIG: {kind.__name__.upper()} must be one of {known}, not {shown(code)}", where="")
+        for flag in CONFIG_FLAGS:
+            if getattr(self, flag) not in (False, True):
+                refuse(f"CONFIG: {flag} must be True or False, not {shown(getattr(self, flag))}", where="")
         check_value("CONFIG: NDSIZE", self.NDSIZE, 0, (1 << NDSIZE_FIELD[1]) - 1, where="")
 
     def encode(self) -> int:

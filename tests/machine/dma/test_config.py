@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -39,6 +40,22 @@ def test_what_is_decoded_is_encoded() -> None:
         assert config.encode() == value
         good += 1
     assert good == (1 << 15) * 3 // 4 * 5 // 8
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"WDSIZE": 16}, r"CONFIG: WDSIZE must be one of WdSize\.WDSIZE_8, WdSize\.WDSIZE_16, .*, not 16"),
+        ({"WDSIZE": 2}, "not 2$"),
+        ({"FLOW": "AUTO"}, r"CONFIG: FLOW must be one of Flow\.STOP, Flow\.AUTO, .*, not 'AUTO'"),
+        ({"DI_EN": 3}, "CONFIG: DI_EN must be True or False, not 3"),
+        ({"NDSIZE": 16}, r"CONFIG: NDSIZE must be 0\.\.15, not 16"),
+    ],
+)
+def test_fields_that_would_run_into_others_are_refused(fields: dict[str, Any], message: str) -> None:
+    """WDSIZE=16 set DI_SEL, and moved bytes; 8 set RESTART."""
+    with pytest.raises(MmrError, match=message):
+        DmaConfig(**fields)
 
 
 EZ_KIT_PPI = {"DMAEN": False, "WNR": True, "DMA2D": True, "DI_EN": True, "NDSIZE": 4, "FLOW": Flow.LARGE}
