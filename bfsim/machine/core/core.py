@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Generator, Iterator, Sequence
-from functools import cached_property, partial
+from functools import partial
 from operator import index
 from typing import Any
 
@@ -32,8 +32,14 @@ SPI = "SPI"
 class Core:
     """One core. Firmware gets it as the argument of its main loop."""
 
+    run: Run
+    """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
+
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
+        # without a call between, for firmware asks for this most; and no cached_property: behind one Python 3.11 looks up all
+        # attributes of an object by their names, which takes it four times as long
+        self.run = parts.tasks.run
         self._waits = parts.progress.waits
         self._tasks, self._pictures, self._layouts = (
             parts.tasks,
@@ -50,12 +56,7 @@ class Core:
         """The core's own clock, in ticks of the simulation. A core that runs ahead does not know what its firmware waits for."""
         return self._parts.clock.ticks
 
-    # ---- kernels
-
-    @cached_property
-    def run(self) -> Run:
-        """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
-        return self._tasks.run  # without a call between, for firmware asks for this most
+    # ---- stages
 
     @entered
     @contextlib.contextmanager
