@@ -24,11 +24,13 @@ def traffic_in(words: Any) -> NDArray[np.int64]:
 
 def traffic_records(words: Any, owners: MemoryOwners, cclk_ticks: int) -> tuple[TrafficRecord, ...]:
     """Return what was counted in the state `words` of the bus, by buffer and master; who moved nothing is left out."""
-    counted = zip(owners, traffic_in(words), strict=False)
+    numbered = sorted(enumerate(owners), key=lambda each: each[1].memory)
+    counted = traffic_in(words)[: len(numbered)]
+    by_name = {name: counted[:, masters].sum(axis=1).tolist() for name, masters in NAMED.items()}
     records = []
-    for owner, rows in sorted(counted, key=lambda each: each[0].memory):
-        for name, masters in NAMED.items():
-            read, written, hits, misses, conflicts, busy = rows[list(masters)].sum(axis=0).tolist()
+    for number, owner in numbered:
+        for name, rows in by_name.items():
+            read, written, hits, misses, conflicts, busy = rows[number]
             if read or written:
                 records.append(
                     TrafficRecord(
