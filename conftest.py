@@ -22,10 +22,6 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     return None if is_whole(config) else 0
 
 
-os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
-"""Thousands of boards are made that hardly touch their memories: with huge pages each touch clears 2 MB. Workers and commands inherit it."""
-
-
 def pytest_configure(config: pytest.Config) -> None:
     """Leave what is exhaustive out of plain `pytest`; look for garbage as seldom as the commands do."""
     if is_whole(config) and not config.option.markexpr:

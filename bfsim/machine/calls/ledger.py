@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from bfsim.errors import FirmwareError
 from bfsim.kernel.native.entries import NativeEntry, native, native_entry, words_at
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.new_state import zeros
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
@@ -118,20 +118,12 @@ def charge_sites(
     return found
 
 
-def _zeros(count: int) -> Rows:
-    """Return `count` zeros straight from the kernel, which clears what is touched of them.
-
-    np.zeros clears all 10 MB of a ledger itself where the process has freed as much before: 10 ms for each further board.
-    """
-    return np.frombuffer(mmap(-1, 8 * count, MAP_PRIVATE | MAP_ANONYMOUS), np.int64)
-
-
 class Ledger:
     """The counts of one core. `bus_stalls`: those of its sites, as the bus has them."""
 
     def __init__(self, bus_stalls: Rows) -> None:
-        self._events = _zeros(MAX_EVENTS)
-        self._conflicts = _zeros(w.MAX_SITES)
+        self._events = zeros(MAX_EVENTS)
+        self._conflicts = zeros(w.MAX_SITES)
         self.events_at, self.conflicts_at = self._events.ctypes.data, self._conflicts.ctypes.data
         """Addresses of what each counter has counted, and of what conflicts in L1 have cost at each site, which is added to there."""
         self.event_count, self._site_count = 0, w.NO_SITE + 1
@@ -139,13 +131,13 @@ class Ledger:
         self._new_charges: list[Rows] = []
         self._site_owners: list[int] = [0] * self._site_count
         self._know(np.zeros((5, 0), np.int64))
-        self._events_before, self._sites_before = _zeros(MAX_EVENTS), _zeros(SITE_COUNTS)
-        self._places, self._amounts = _zeros(SITE_COUNTS), _zeros(SITE_COUNTS)  # room for what differs
+        self._events_before, self._sites_before = zeros(MAX_EVENTS), zeros(SITE_COUNTS)
+        self._places, self._amounts = zeros(SITE_COUNTS), zeros(SITE_COUNTS)  # room for what differs
         self._charge_events = _charging(charge_events, self._events, self._events_before)
         self._charge_sites = _charging(
             charge_sites, SITE_COLUMNS, bus_stalls, self._conflicts, self._sites_before, self._places, self._amounts
         )  # fmt: skip
-        self._reported_events, self._reported_sites = _zeros(MAX_EVENTS), _zeros(SITE_COUNTS)
+        self._reported_events, self._reported_sites = zeros(MAX_EVENTS), zeros(SITE_COUNTS)
         self._reported_count = 0
 
     def room(self, events: int, sites: int) -> tuple[Rows, int, int]:
