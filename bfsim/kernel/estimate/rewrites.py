@@ -98,6 +98,7 @@ SWITCHES = {
     split_loads: Rule.MERGED_LOADS,
     without_partial_redundancies: Rule.PARTIAL_REDUNDANCIES,
     with_hoisted_code: Rule.CODE_HOISTING,
+    with_chosen_loads: Rule.CARRIED_LOADS,
     without_redundant_loads: Rule.CARRIED_LOADS,
     with_early_loads: Rule.SINKING,
     sink: Rule.SINKING,

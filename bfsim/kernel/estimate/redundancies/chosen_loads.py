@@ -115,7 +115,9 @@ class _Loads:
 
     def _loaded(self, label: str, at: Affine, kind: str) -> str | None:
         """What was loaded from an address on every way to the end of a block, if nothing in memory changed since."""
-        while True:
+        seen = set[str]()
+        while label not in seen:  # nobody comes to a ring of blocks
+            seen.add(label)
             for each in reversed(self.flow.blocks[label].instructions):
                 if _changes(each):
                     return None
@@ -125,6 +127,7 @@ class _Loads:
             if len(before) != 1:
                 return None
             (label,) = before
+        return None
 
     def _is_same(self, one: Affine, other: Affine) -> bool:
         """Whether two sums are one, also by variables of a loop that are always as far apart."""

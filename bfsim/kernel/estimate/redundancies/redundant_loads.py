@@ -7,13 +7,14 @@ branch stays.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.ir.edges import put_between
 from bfsim.kernel.ir.loads_along import FOLLOWING
 from bfsim.kernel.ir.preheaders import with_preheader
-from bfsim.kernel.ir.text import Instruction, Routine, arms_of, each_arm, phi_of, renamed
+from bfsim.kernel.ir.text import Instruction, Routine, arms_of, phi_of, renamed
 from bfsim.kernel.ir.unused import without_dead_code
 
 AGAIN = ".again"  # in the name of an address that is only computed to go along
@@ -122,41 +123,59 @@ def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routi
         if block.label == loop.header:
             rows.insert(0, here)
         blocks.append(replace(block, instructions=tuple(rows)))
-    routine = _without_loads_behind(replace(routine, blocks=tuple(blocks)), carried, following)
+    routine = _without_loads_behind(replace(routine, blocks=tuple(blocks)), carried)
     return _with_addresses(ControlFlow(routine), routine, carried)
 
 
-def _without_loads_behind(routine: Routine, carried: RedundantLoad, following: str) -> Routine:
+def _without_loads_behind(routine: Routine, carried: RedundantLoad) -> Routine:
     """Take the element that was chosen last as it comes out of the loop; who comes from elsewhere loads it. What only chose its index goes."""
     flow = ControlFlow(routine)
-    blocks = {each.label: each for each in routine.blocks}
     for address in _addresses_behind(flow, carried):
-        index = flow.instruction(address.operands[-1])
         home, load = _load_at(flow, address)
-        if index is None or load is None or flow.defined[index.result or ""][0] != home:
+        index = flow.instruction(address.operands[-1])
+        if load is not None and index is not None and flow.defined[index.result or ""][0] == home:
+            values = _values_out(carried, index)
+            if values is not None:
+                return _without_loads_behind(_with_values_out(flow, address, load, values), carried)
+    return without_dead_code(routine, kept=AGAIN)
+
+
+def _values_out(carried: RedundantLoad, index: Instruction) -> dict[str, str] | None:
+    """What goes along beside an index that is merged behind the loop, by the blocks in it; None where something else comes out of it."""
+    along = {
+        carried.merged.result: f"{carried.load.result}{FOLLOWING}",
+        carried.index.result: carried.load.result or "",
+    }
+    inside = {label: value for label, value in arms_of(index).items() if label in carried.loop.blocks}
+    return (
+        {label: along[value] for label, value in inside.items()}
+        if along.keys() >= {*inside.values()}
+        else None
+    )
+
+
+def _with_values_out(
+    flow: ControlFlow, address: Instruction, load: Instruction, values: Mapping[str, str]
+) -> Routine:
+    """Return the routine without a load behind a loop. `values`: by the blocks from which they come out of it."""
+    blocks = {each.label: each for each in flow.routine.blocks}
+    index, home = address.operands[-1], flow.defined[load.result or ""][0]
+    arms = [(value, label) for label, value in values.items()]
+    for number, (label, value) in enumerate(arms_of(flow.defined[index][1]).items()):
+        if label in values:
             continue
-        arms = list[tuple[str, str]]()
-        for number, (value, label) in enumerate(each_arm(index)):
-            if label in carried.loop.blocks:
-                arms.append((following, label))
-                continue
-            before = f"{home}{AGAIN}{number}"
-            put_between(blocks, label, home, before)
-            rows = (
-                replace(
-                    renamed(address, {index.result or "": value}), result=f"{address.result}{AGAIN}{number}"
-                ),
-                replace(
-                    renamed(load, {address.result or "": f"{address.result}{AGAIN}{number}"}),
-                    result=f"{load.result}{AGAIN}{number}",
-                ),
-            )
-            blocks[before] = replace(blocks[before], instructions=(*rows, *blocks[before].instructions))
-            arms.append((f"{load.result}{AGAIN}{number}", before))
-        phi = phi_of(load.result or "", _kind(load), arms, load)
-        rest = tuple(each for each in blocks[home].instructions if each is not load)
-        blocks[home] = replace(blocks[home], instructions=(phi, *rest))
-    return without_dead_code(replace(routine, blocks=tuple(blocks.values())), kept=AGAIN)
+        before, name = f"{home}{AGAIN}{number}", f"{address.result}{AGAIN}{number}"
+        put_between(blocks, label, home, before)
+        rows = (
+            replace(renamed(address, {index: value}), result=name),
+            replace(renamed(load, {address.result or "": name}), result=f"{load.result}{AGAIN}{number}"),
+        )
+        blocks[before] = replace(blocks[before], instructions=(*rows, *blocks[before].instructions))
+        arms.append((f"{load.result}{AGAIN}{number}", before))
+    phi = phi_of(load.result or "", _kind(load), arms, load)
+    rest = tuple(each for each in blocks[home].instructions if each is not load)
+    blocks[home] = replace(blocks[home], instructions=(phi, *rest))
+    return replace(flow.routine, blocks=tuple(blocks.values()))
 
 
 def _load_at(flow: ControlFlow, address: Instruction) -> tuple[str, Instruction | None]:
