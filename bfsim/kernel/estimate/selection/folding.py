@@ -121,17 +121,25 @@ class Folding:
         return self._shifted_before(masked) or masked.operands[0]
 
     def _is_overwritten(self, masked: Instruction) -> bool:
-        """Whether what was moved before the branch takes over the register of a value that is masked: it is masked before, and compared behind."""
+        """Whether what is shifted behind the mask, or was moved before the branch, takes over the register of a value: it is compared behind that."""
         value, here = masked.operands[0], self._block_of(masked)
         own = {id(each) for each in here}
+        behind = {id(each) for each in here[here.index(masked) :]}
         takes_over = any(
             each.operands[0] == value
-            and (each.result or "").endswith(BEFORE_TESTS)
-            and any(user.opcode == "phi" for user in self.users(each.result or ""))
+            and ((each.result or "").endswith(BEFORE_TESTS) or id(each) in behind)
+            and any(user.opcode == "phi" for user in self._users_of_bits(each))
             for each in here
             if each.opcode in SHIFTS
         )
         return takes_over and all(id(user) in own for user in self.users(value))
+
+    def _users_of_bits(self, each: Instruction) -> list[Instruction]:
+        """What uses a value, or some of its bits that are masked at once."""
+        users = [*self.users(each.result or "")]
+        masks = [user for user in users if user.opcode == "and" and is_number(user.operands[1])]
+        at_once = (mask for mask in masks if not self.in_sunk_mask(mask))
+        return users + [user for mask in at_once for user in self.users(mask.result or "")]
 
     def _shifted_before(self, masked: Instruction) -> str | None:
         """The value that was shifted before one of its bits is tested: LLVM makes a test of the value before of that."""
@@ -156,8 +164,16 @@ class Folding:
         """Whether every arm of a phi ends in a mask of 8 bits, or of 16: as a conversion, it is done once behind them."""
         if phi.opcode != "phi" or len(phi.operands) < 2 or not self.profile.applies(Rule.SUNK_MASK):
             return False
-        masks = [self._masked(each) for each in phi.operands]
-        return None not in masks and len({self._is_byte_mask(each) for each in masks if each}) == 1
+        masks = [each for each in map(self._masked, phi.operands) if each is not None]
+        if len(masks) < len(phi.operands) or self._is_written_before(masks):
+            return False
+        return len({self._is_byte_mask(each) for each in masks}) == 1
+
+    def _is_written_before(self, masks: list[Instruction]) -> bool:
+        """Whether it is one mask for all arms, which the source has before the test that they are of."""
+        (mask, *others) = {id(each): each for each in masks}.values()
+        here = self._block_of(mask)
+        return not others and here[-1].opcode == "br" and mask.line.line < here[-1].line.line
 
     def _masked(self, value: str) -> Instruction | None:
         each = self.flow.instruction(value)
