@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from mmap import MADV_NOHUGEPAGE, MAP_ANONYMOUS, MAP_PRIVATE, mmap
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,18 +10,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import PARTNERS, ranks_of
 from bfsim.machine.bus.sdram import new_sdram
 from bfsim.machine.memories import Memories
-
-
-def zeros(count: int) -> NDArray[np.int64]:
-    """Return `count` words straight from the system, which clears those small pages of them that are touched.
-
-    np.zeros asks for pages of 2 MB, or clears all words itself where the process has freed as much before: that took each further board
-    of a process 10 ms, and the process 100 MB.
-    """
-    pages = mmap(-1, 8 * count, MAP_PRIVATE | MAP_ANONYMOUS)
-    with suppress(OSError):  # of a system that has no large ones
-        pages.madvise(MADV_NOHUGEPAGE)
-    return np.frombuffer(pages, np.int64)
+from bfsim.machine.pages import zeros
 
 
 def new_state(board: BoardSpec, memories: Memories) -> NDArray[np.int64]:

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from bfsim.errors import FirmwareError
 from bfsim.kernel.native.entries import NativeEntry, native, native_entry, words_at
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.new_state import zeros
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
+from bfsim.machine.pages import zeros
 from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason
 

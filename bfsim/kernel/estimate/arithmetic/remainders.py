@@ -1,7 +1,7 @@
 """x - x / y * y is the remainder [match.pd of GCC 12].
 
-Of unsigned numbers it is made one before anything else is done: LLVM would write products with other constants, of which no remainder can be
-seen any more.
+Of unsigned numbers, and where the divisor is written twice, it is made one before anything else is done: LLVM would write products with other
+factors, of which no remainder can be seen any more.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from bfsim.kernel.ir.value_numbers import ValueNumbers
 
 
 def with_remainders(routine: Routine) -> Routine:
-    """Return `routine` with those of unsigned numbers, while its variables are registers and nothing else was done."""
+    """Return `routine` with those that LLVM would hide, while its variables are registers and nothing else was done."""
     flow, numbers = ControlFlow(routine), ValueNumbers()
     for label in flow.order:
         for each in flow.blocks[label].instructions:

@@ -18,6 +18,7 @@ from bfsim.kernel.ir.text import Instruction, Routine, arms_of, phi_of, renamed
 from bfsim.kernel.ir.unused import without_dead_code
 
 AGAIN = ".again"  # in the name of an address that is only computed to go along
+ELSEWHERE = ".elsewhere"  # in the names of what is loaded on the ways past a loop
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,14 +165,14 @@ def _with_values_out(
     for number, (label, value) in enumerate(arms_of(flow.defined[index][1]).items()):
         if label in values:
             continue
-        before, name = f"{home}{AGAIN}{number}", f"{address.result}{AGAIN}{number}"
+        before, name = f"{home}{ELSEWHERE}{number}", f"{address.result}{ELSEWHERE}{number}"
         put_between(blocks, label, home, before)
         rows = (
             replace(renamed(address, {index: value}), result=name),
-            replace(renamed(load, {address.result or "": name}), result=f"{load.result}{AGAIN}{number}"),
+            replace(renamed(load, {address.result or "": name}), result=f"{load.result}{ELSEWHERE}{number}"),
         )
         blocks[before] = replace(blocks[before], instructions=(*rows, *blocks[before].instructions))
-        arms.append((f"{load.result}{AGAIN}{number}", before))
+        arms.append((f"{load.result}{ELSEWHERE}{number}", before))
     phi = phi_of(load.result or "", _kind(load), arms, load)
     rest = tuple(each for each in blocks[home].instructions if each is not load)
     blocks[home] = replace(blocks[home], instructions=(phi, *rest))

@@ -1,9 +1,9 @@
-"""The memory that the state of the buses takes."""
+"""What memory straight from the system takes, by the state of the buses, most of which nobody touches."""
 
 from pathlib import Path
 
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.new_state import zeros
+from bfsim.machine.pages import zeros
 
 
 def resident_pages() -> int:
