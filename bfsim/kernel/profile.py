@@ -31,34 +31,44 @@ class LibraryRoutine:
 
 
 @dataclass(frozen=True, slots=True)
-class Fill:
-    """The routine that fills memory with one byte: cycles of less than a word, what a word takes more, and each 16 bytes."""
+class MemoryRoutine:
+    """A routine that fills or moves memory: cycles of a short piece, of each byte, and more where a piece is long enough for whole words."""
 
     cclk: int
-    word_cclk: int
+    byte_cclk: int
+    words_from: int
+    """Bytes from which on there are words."""
+    words_cclk: int
     block_cclk: int
+    """Each 16 bytes, from then on."""
 
     def of(self, nbytes: int) -> int:
         """Return the cycles of a piece of so many bytes."""
         return (
             self.cclk
-            + (self.word_cclk if nbytes >= FILL_WORD_BYTES else 0)
-            + nbytes // FILL_BLOCK_BYTES * self.block_cclk
+            + nbytes * self.byte_cclk
+            + (self.words_cclk if nbytes >= self.words_from else 0)
+            + nbytes // MEMORY_BLOCK_BYTES * self.block_cclk
         )
 
 
-FILL_WORD_BYTES, FILL_BLOCK_BYTES = 4, 16
+MEMORY_BLOCK_BYTES = 16
 
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """Integer division. Remainders come from routines of their own. `fill` is None where loops that fill stay loops."""
+    """Integer division. Remainders come from routines of their own.
+
+    `fill`, `move_bytes` and `move_words` (where both ends may lie at words): None where loops that fill or move stay loops.
+    """
 
     divide_signed: LibraryRoutine
     divide_unsigned: LibraryRoutine
     remainder_signed: LibraryRoutine
     remainder_unsigned: LibraryRoutine
-    fill: Fill | None
+    fill: MemoryRoutine | None
+    move_bytes: MemoryRoutine | None
+    move_words: MemoryRoutine | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,14 +139,18 @@ LIBGCC = Library(
     remainder_signed=LibraryRoutine(
         216, (*DIV_MIX, (Op.PUSH, 3), (Op.POP, 3), (Op.MUL32, 1), (Op.ALU, 1), (Op.CALL, 1), (Op.RETURN, 1))
     ),
-    fill=Fill(60, 46, 5),   # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; where it begins at no multiple of four: 11 to 23 more, or 20 less of 4 to 6 bytes
+    fill=MemoryRoutine(60, 0, 4, 46, 5),  # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; where it begins at no multiple of four: 11 to 23 more, or 20 less of 4 to 6 bytes
+    move_bytes=MemoryRoutine(65, 2, 16, 8, 0),  # [libgcc] memmove of newlib to where it is at no multiple of four from: 1 byte 67, 15 bytes 95, 200 bytes 473; downwards 2 less
+    move_words=MemoryRoutine(80, 0, 16, 47, 10),  # [libgcc] by a multiple of four: 4 bytes 73, 12 bytes 89, 16 bytes 127, 28 bytes 158, 32 bytes 137, 800 bytes 617
 )  # fmt: skip
 ADI = Library(
     divide_signed=LibraryRoutine(47),       # [VLIB] ___div32: 25 to 91 cycles with the call, 52 on average
     divide_unsigned=LibraryRoutine(47),     # [assumed] as signed
     remainder_signed=LibraryRoutine(51),    # [assumed] a division, a multiplication and a subtraction
     remainder_unsigned=LibraryRoutine(51),  # [assumed] the same
-    fill=None,                       # [assumed] no word of such a call in ADI's compiler manual
+    fill=None,                       # [assumed] no word of such calls in ADI's compiler manual
+    move_bytes=None,
+    move_words=None,
 )  # fmt: skip
 
 LIBGCC_FLOATS = FloatLibrary(  # [libgcc] means of 2000 operands of magnitudes 2**-8 to 2**12, both signs; (least, most)

@@ -14,8 +14,8 @@ from bfsim.kernel.estimate.layout.cross_jumps import CrossJumps
 from bfsim.kernel.estimate.layout.frame_costs import FrameCosts
 from bfsim.kernel.estimate.layout.hardware_loops import HardwareLoops
 from bfsim.kernel.estimate.layout.switch_costs import add_switch
-from bfsim.kernel.estimate.loops.counted_fills import block_filled, word_filled
-from bfsim.kernel.estimate.loops.idioms import fills_of
+from bfsim.kernel.estimate.loops.memory_calls import MemoryCall
+from bfsim.kernel.estimate.loops.memory_lengths import block_ends, words_begin
 from bfsim.kernel.estimate.registers.registers import allocate
 from bfsim.kernel.estimate.scheduling.bundles import bundled
 from bfsim.kernel.estimate.scheduling.schedule import Issue, issues
@@ -120,29 +120,30 @@ class _OptimisedLowering:
         ]
         self._loops(block, cost)
         self._leave_block(block, cost)
-        if block.label in self.context.fills:
-            cost.tests += self._filled(self.context.fills[block.label])
         others = cost.charges[:before] + cost.charges[before + len(instructions) :]
         cost.accesses = [each.access for each in instructions if each.access is not None]
-        if block.label in self.context.fills:
-            cost.fills = fills_of(self.flow, self.context.fills[block.label])
+        for call in self.context.memory_calls.get(block.label, ()):
+            self._memory_call(call, cost)
         cost.nbytes = sum(each.code_bytes for each in instructions) + sum(
             COSTS[each.op].nbytes for each in others
         )
         return cost
 
-    def _filled(self, loop: Loop) -> list[Test]:
-        """What a routine that fills takes for the length that there is."""
-        fill = self.profile.library.fill
-        if fill is None or self.context.evolution.iterations(loop) is not None:
-            return []
-        parts = ((word_filled(loop.header), fill.word_cclk), (block_filled(loop.header), fill.block_cclk))
-        return [
-            Test(
-                value, None, tuple(Charge(Op.LIBRARY, each.line, cclk) for each in fills_of(self.flow, loop))
-            )
-            for value, cclk in parts
-        ]
+    def _memory_call(self, call: MemoryCall, cost: BlockCost) -> None:
+        """What a routine of the library accesses, and what it takes for the length that there is."""
+        if call.load is not None:
+            cost.accesses += [call.load, call.store]
+        elif call.is_inline:
+            cost.accesses.append(call.store)
+        else:
+            cost.fills.append(call.store)
+        if call.iterations is not None:
+            return
+        line, routine = call.store.line, call.routine
+        if routine.byte_cclk:
+            cost.charges.append(Charge(Op.LIBRARY, line, call.nbytes * routine.byte_cclk))
+        parts = (words_begin(call), routine.words_cclk), (block_ends(call), routine.block_cclk)
+        cost.tests += [Test(value, None, (Charge(Op.LIBRARY, line, cclk),)) for value, cclk in parts if cclk]
 
     def _issues(self, label: str) -> list[Issue]:
         instructions = self.code.of[label]

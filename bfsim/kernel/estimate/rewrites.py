@@ -6,6 +6,7 @@ What is costed, and what is compiled for the host and reports its accesses, is r
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from bfsim.kernel.estimate.arithmetic.common_factors import with_common_factors
 from bfsim.kernel.estimate.arithmetic.even_addresses import with_even_addresses
@@ -29,9 +30,9 @@ from bfsim.kernel.estimate.conditions.range_tests import with_range_tests
 from bfsim.kernel.estimate.conditions.short_circuits import split_tests
 from bfsim.kernel.estimate.jump_threading.known_answers import with_known_answers
 from bfsim.kernel.estimate.loop_copies.header_copies import copy_breaks, copy_headers
-from bfsim.kernel.estimate.loops.counted_fills import count_fills
 from bfsim.kernel.estimate.loops.final_values import with_final_values
 from bfsim.kernel.estimate.loops.lagging_counters import without_lagging
+from bfsim.kernel.estimate.loops.memory_lengths import count_memory_calls
 from bfsim.kernel.estimate.memory.early_loads import with_early_loads
 from bfsim.kernel.estimate.memory.invariant_loads import hoist_loads
 from bfsim.kernel.estimate.memory.merged_stores import merge_stores
@@ -162,8 +163,8 @@ def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:
 def rewritten_last(text: str, profile: CompilerProfile) -> str:
     """Return the module `text` as it is costed; no pass may follow.
 
-    One would put numbers back in place of variables, and leave out what counts the fills that a routine of the library makes.
+    One would put numbers back in place of variables, and leave out what counts the bytes that a routine of the library fills or moves.
     """
     if profile.applies(Rule.KNOWN_VALUES):
         text = _each(text, with_known_values)
-    return _each(text, count_fills) if profile.library.fill else text
+    return _each(text, partial(count_memory_calls, library=profile.library))

@@ -81,7 +81,7 @@ class CrossJumps:
     def _may_jump(self, label: str) -> bool:
         """Whether a block with code of its own does nothing at its end but go on."""
         block = self.flow.blocks[label]
-        is_apart = label in self.context.replaced or label in self.context.fills
+        is_apart = label in self.context.replaced
         return (
             bool(self.code.of[label])
             and len(set(block.successors)) == 1

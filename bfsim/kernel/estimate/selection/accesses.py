@@ -136,7 +136,7 @@ class Accesses:
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
         for variable in self.context.induction_variables.all:
-            if variable.loop.header in self.context.fills or variable.neighbour is not None:
+            if variable.loop.header in self.context.memory_calls or variable.neighbour is not None:
                 continue
             line = variable.line
             entering, latch = self.flow.entering(variable.loop), variable.loop.latch

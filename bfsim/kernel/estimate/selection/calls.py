@@ -1,17 +1,16 @@
-"""Calls: of other kernels, of the run-time library, and of what fills memory."""
+"""Calls: of other kernels, of the run-time library, and of what fills or moves memory."""
 
 from __future__ import annotations
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.loops.idioms import fills_of
+from bfsim.kernel.estimate.loops.memory_calls import MemoryCall
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
-from bfsim.kernel.ir.control_flow import Loop
 from bfsim.kernel.ir.text import Instruction
 from bfsim.kernel.operations import Op
 from bfsim.kernel.profile import LibraryRoutine
 
-ANY, DATA = RegisterBank.ANY, RegisterBank.DATA
+ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
 
 
 class Calls:
@@ -41,21 +40,23 @@ class Calls:
             else:
                 self.append(Op.IMM if not value.startswith("%") else Op.MOVE, each, None, DATA, (value, ANY))
 
-    def fill(self, loop: Loop) -> None:
-        """Call memset instead of iterating; of an unknown length, the loop's counters tell (`counted_fills`)."""
-        fill = self.context.profile.library.fill
-        assert fill is not None
-        iterations = self.context.evolution.iterations(loop)
-        for each in fills_of(self.context.flow, loop):
-            self.emitter.label = self.context.flow.entering(loop)
-            root = self.context.flow.root(each.operands[1])
-            for argument in (root, each.operands[0], ""):
-                used = ((argument, ANY),) if argument.startswith("%") else ()
-                self.append(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
-            self.append(self._op(each), each, None, DATA)
-            nbytes = each.bits // operations.BYTE_BITS
-            cclk = fill.cclk if iterations is None else fill.of(iterations * nbytes)
-            self.append(Op.LIBRARY, each, None, DATA, cclk=cclk, nbytes=0)
+    def memory(self, call: MemoryCall) -> None:
+        """Call memset or memmove instead of iterating; of an unknown length, the loop's counters tell (`memory_lengths`)."""
+        each, root = call.store, self.context.flow.root
+        self.emitter.label = self.context.flow.entering(call.loop)
+        if call.is_inline:
+            self.append(Op.MOVE, each, None, POINTER, (root(each.operands[1]), ANY))
+            self.append(Op.ALU, each, None, POINTER)  # a pointer of its own that walks, and a step
+            for _ in range(call.total or 0):
+                self.append(Op.STORE8, each, None, DATA, (each.operands[0], ANY))
+            return
+        what = each.operands[0] if call.load is None else root(call.load.operands[0])
+        for argument in (root(each.operands[1]), what, ""):
+            used = ((argument, ANY),) if argument.startswith("%") else ()
+            self.append(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
+        self.append(self._op(each), each, None, DATA)
+        cclk = call.routine.cclk if call.total is None else call.routine.of(call.total)
+        self.append(Op.LIBRARY, each, None, DATA, cclk=cclk, nbytes=0)
 
     def library(self, each: Instruction, routine: LibraryRoutine, name: str) -> None:
         """What a routine of the run-time library takes."""

@@ -9,8 +9,9 @@ from bfsim.kernel.estimate.conditions.joined_tests import ranges
 from bfsim.kernel.estimate.induction_variables.field_addresses import FieldAddresses
 from bfsim.kernel.estimate.induction_variables.induction_variables import HIDDEN, InductionVariables
 from bfsim.kernel.estimate.jump_threading.flags import JumpThreading
-from bfsim.kernel.estimate.loops.idioms import bit_counting_loops, filling_loops
+from bfsim.kernel.estimate.loops.bit_counts import bit_counting_loops
 from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.estimate.loops.memory_calls import memory_calls
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.estimate.memory.predictive_commoning import ALONG
 from bfsim.kernel.estimate.prediction.predict import Likelihood
@@ -59,14 +60,18 @@ class Context:
         self.fields = FieldAddresses(self.flow, self.induction_variables) if has_fields else None
         counts_bits = profile.applies(Rule.BIT_COUNTS)
         self.bit_counts = bit_counting_loops(self.flow, self.evolution) if counts_bits else {}
-        self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}
+        self.memory_calls = memory_calls(self.flow, self.evolution, profile.library)
         self.folding = Folding(self.flow, profile, self.if_conversion.flags)
         self.divisions = LibraryDivisions(self.flow, profile)
         self.counters = LoopCounters(
             self.evolution,
             self.induction_variables,
             self.divisions,
-            frozenset(self.fills),
+            frozenset(
+                header
+                for header, calls in self.memory_calls.items()
+                if not all(each.is_inline for each in calls)
+            ),
             self.likelihood.frequency,
         )
         self.demanded = DemandedValues(
@@ -78,13 +83,13 @@ class Context:
             self.counters,
         )
         self.narrow = NarrowValues(self.folding, self.induction_variables, self.counters, self.demanded.emits)
-        self.replaced = self.bit_counts | self.fills
+        self.replaced = frozenset({*self.bit_counts, *self.memory_calls})
         """Loops of one block that are an operation or a call."""
 
     @cached_property
     def tail_calls(self) -> dict[str, TailCall]:
         """Calls that are jumps, by the labels of their blocks."""
-        return tail_calls(self.flow, self.arguments, len(self.parameters()), self.fills)
+        return tail_calls(self.flow, self.arguments, len(self.parameters()), self.memory_calls)
 
     def is_kept(self, block: BasicBlock) -> bool:
         """Whether the condition at the end of a block was computed before the loop: a register keeps it, and CC gets it back."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bfsim.kernel.estimate.loops.idioms import counting_ops
+from bfsim.kernel.estimate.loops.bit_counts import counting_ops
 from bfsim.kernel.estimate.selection.accesses import Accesses
 from bfsim.kernel.estimate.selection.arithmetic import Arithmetic
 from bfsim.kernel.estimate.selection.calls import Calls
@@ -27,19 +27,14 @@ DATA = RegisterBank.DATA
 def select(context: Context) -> MachineCode:
     """Return the operations of every block of a routine."""
     selector = _Selector(context)
-    for loop in context.bit_counts.values():
-        line = context.flow.blocks[loop.header].instructions[-1].line
-        for op in counting_ops(context.flow, loop):
-            selector.emitter.code.add(context.flow.entering(loop), MachineInstruction(op, line, None, DATA))
-    for loop in context.fills.values():
-        selector.calls.fill(loop)
     for label in context.flow.order:
-        if label in context.replaced:
-            continue
         selector.accesses.counters(label)
         for each in context.flow.blocks[label].instructions:
-            if context.demanded.emits(each):
-                selector.emit(each, context.code_motion.of.get(each.result or "", label))
+            place = context.code_motion.of.get(each.result or "", label)
+            if context.demanded.emits(each) and place not in context.replaced:
+                selector.emit(each, place)
+        if label in context.replaced:
+            selector.in_place_of_loop(label)
     selector.accesses.pointers()
     if context.profile.applies(Rule.NARROW_TREES):
         for label, block in selector.emitter.code.of.items():
@@ -90,6 +85,16 @@ class _Selector:
             )
             for opcode in opcodes.split()
         }
+
+    def in_place_of_loop(self, header: str) -> None:
+        """Append what is in place of a loop to the block before it."""
+        context = self.emitter.context
+        for call in context.memory_calls.get(header, ()):
+            self.calls.memory(call)
+        if header in context.bit_counts:
+            loop, line = context.bit_counts[header], context.flow.blocks[header].terminator.line
+            for op in counting_ops(context.flow, loop):
+                self.emitter.code.add(context.flow.entering(loop), MachineInstruction(op, line, None, DATA))
 
     def emit(self, each: Instruction, label: str) -> None:
         """Append the operations of one instruction to the block where it is computed."""

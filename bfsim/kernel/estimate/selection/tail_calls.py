@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.estimate.loops.memory_calls import MemoryCall
+from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction, arms_of
 from bfsim.kernel.operations import REGISTER_ARGUMENTS
 
@@ -28,20 +29,19 @@ def tail_calls(
     flow: ControlFlow,
     arguments: Callable[[Instruction], list[str]],
     parameters: int,
-    fills: Mapping[str, Loop],
+    memory_calls: Mapping[str, list[MemoryCall]],
 ) -> dict[str, TailCall]:
     """Return the calls that become jumps, by the labels of their blocks.
 
-    `parameters`: how many the caller has. `fills`: loops that are a call of the routine that fills; it stands for its store.
+    `parameters`: how many the caller has. `memory_calls`: those in place of loops, by header; each stands for its store.
     """
     found = {}
-    for header, loop in fills.items():
-        (way,) = {*flow.blocks[header].successors} - loop.blocks
-        stores = [each for each in flow.blocks[header].instructions if each.opcode == "store"]
+    for header, calls in memory_calls.items():
+        (way,) = {*flow.blocks[header].successors} - {header}
         empty = len(flow.blocks[way].instructions) == 1
         end = _returning(flow, way, None)
-        if len(stores) == 1 and empty and end is not None:
-            found[flow.entering(loop)] = TailCall(stores[0], end)
+        if len(calls) == 1 and not calls[0].is_inline and empty and end is not None:
+            found[flow.entering(calls[0].loop)] = TailCall(calls[0].store, end)
     for label, block in flow.blocks.items():
         call = block.instructions[-2] if len(block.instructions) > 1 else None
         if call is None or not call.is_call or len(arguments(call)) > max(REGISTER_ARGUMENTS, parameters):

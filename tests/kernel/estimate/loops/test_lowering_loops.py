@@ -45,10 +45,11 @@ def test_filling_with_one_byte_is_a_call(kind: str, value: str, called: bool, tm
 
 
 def test_a_short_fill_and_another_compiler_keep_the_loop(tmp_path: Path) -> None:
-    """Fifteen words are stored one by one; VisualDSP++ is not known to call."""
-    text = "def f(a: i32[:]):\n    for i in range({}):\n        a[i] = 0\n"
-    assert not {Op.CALL, Op.TAIL_CALL} & lowered(text.format(14), tmp_path).keys()
-    assert Op.TAIL_CALL in lowered(text.format(15), tmp_path)
+    """Fourteen bytes of zeros are stored one by one, and four of another byte; VisualDSP++ is not known to call."""
+    text = "def f(a: {}[:], x: i32):\n    for i in range({}):\n        a[i] = {}\n"
+    for kind, value, few, many in (("u8", "0", 14, 15), ("i16", "0", 7, 8), ("u8", "x", 4, 9)):
+        assert not {Op.CALL, Op.TAIL_CALL} & lowered(text.format(kind, few, value), tmp_path).keys()
+        assert Op.TAIL_CALL in lowered(text.format(kind, many, value), tmp_path)
     assert Op.CALL not in lowered(loops("a[i] = 0"), tmp_path, VDSP_O2)
 
 

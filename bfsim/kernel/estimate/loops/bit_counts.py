@@ -1,22 +1,17 @@
-"""Loops that compilers replace by an instruction or a call.
+"""Loops that compilers replace by an instruction.
 
 Counting the bits of a word is ONES on the Blackfin: GCC knows the number of iterations of `while x: x &= x - 1`
-[number_of_iterations_popcount in tree-ssa-loop-niter.cc]. Filling an array with one byte is a call of memset
-[classify_builtin_st in tree-loop-distribution.cc of GCC 12, part of -O2].
+[number_of_iterations_popcount in tree-ssa-loop-niter.cc].
 """
 
 from __future__ import annotations
 
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, arms_of
-from bfsim.kernel.ir.widths import BYTE
+from bfsim.kernel.ir.text import arms_of
 from bfsim.kernel.operations import Op
 
 ALLOWED = {"phi", "add", "and", "icmp", "br"}
-FILLING = {"phi", "add", "and", "getelementptr", "trunc", "store", "icmp", "br"}
-MOST_STORES = 15  # fewer words than that are stored one by one [CLEAR_RATIO in GCC's defaults.h]
-WORD_BYTES = 4
 
 
 def bit_counting_loops(flow: ControlFlow, evolution: ScalarEvolution) -> dict[str, Loop]:
@@ -93,31 +88,3 @@ def _is_stored_narrow(flow: ControlFlow, loop: Loop) -> bool:
             elif user.opcode not in ("phi", "trunc"):
                 return False
     return True
-
-
-def filling_loops(flow: ControlFlow, evolution: ScalarEvolution) -> dict[str, Loop]:
-    """Return the loops, by their only block, that do nothing but fill arrays with one byte."""
-    return {
-        loop.header: loop for loop in flow.loops if len(loop.blocks) == 1 and _fills(flow, evolution, loop)
-    }
-
-
-def fills_of(flow: ControlFlow, loop: Loop) -> list[Instruction]:
-    """Return the stores of a loop that fills: each is a call."""
-    return [each for each in flow.blocks[loop.header].instructions if each.opcode == "store"]
-
-
-def _fills(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> bool:
-    rows = flow.blocks[loop.header].instructions
-    if any(each.opcode not in FILLING for each in rows) or not evolution.is_counted(loop):
-        return False
-    stores, iterations = fills_of(flow, loop), evolution.iterations(loop)
-    for each in stores:
-        value, nbytes = each.operands[0], each.bits // BYTE
-        increment = evolution.increment(each.operands[1], loop)
-        few = iterations is not None and iterations * nbytes < MOST_STORES * WORD_BYTES
-        if few or increment is None or increment.symbolic or abs(increment.constant) != nbytes:
-            return False
-        if not (value in ("0", "-1") or (nbytes == 1 and evolution.code_motion.is_invariant(value, loop))):
-            return False
-    return bool(stores)
