@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, LARGEST
@@ -162,11 +164,18 @@ class EndlessLoops:
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         if test is None or not is_number(test.operands[1]):
             return False
-        block = self.flow.blocks[self.flow.entering(loop)]
-        while len(set(block.successors)) == 1 and len(self.flow.predecessors[block.label]) == 1:
-            block = self.flow.blocks[self.flow.predecessors[block.label][0]]
-        guard = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
-        return guard is not None and guard.opcode == "icmp" and is_number(guard.operands[1])
+        guards = self._tests_before(self.flow.entering(loop))
+        return any(each.opcode == "icmp" and is_number(each.operands[1]) for each in guards)
+
+    def _tests_before(self, label: str) -> Iterator[Instruction]:
+        """Yield the conditions on the ways to the end of block `label`, the last of each way."""
+        block = self.flow.blocks[label]
+        if len(set(block.successors)) > 1:
+            test = self.flow.instruction(block.terminator.operands[0])
+            yield from [] if test is None else [test]
+        elif all(loop.header != label for loop in self.flow.loops):
+            for each in self.flow.predecessors[label]:
+                yield from self._tests_before(each)
 
     def _is_inclusive(self, loop: Loop) -> bool:
         """Whether a loop runs up to a bound and with it, and that may be the largest number there is; so may the `stop` of `stop + 1`."""
