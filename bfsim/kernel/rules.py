@@ -92,6 +92,7 @@ class Rule(StrEnum):
     COUNTER_REGISTERS = (
         "the counter of a hardware loop takes a pointer register while the registers are allocated"
     )
+    KEPT_ADDRESSES = "a pointer is copied where accesses come before the one with its post-increment, and loads are made behind it"
     STEPPED_BETWEEN = (
         "what is loaded is extended on its own if its pointer is kept before a step that comes between"
     )
@@ -158,6 +159,7 @@ GCC: dict[Rule, str] = {
     Rule.THREADED_HINTS: "predict_paths_leading_to in predict.cc",
     Rule.PREDICTIVE_COMMONING: "tree-predcom.cc, which the vectoriser of -O2 brings along",
     Rule.COUNTER_REGISTERS: "loop_end in bfin.md",
+    Rule.KEPT_ADDRESSES: "tree-ssa-ter.cc",
     Rule.STEPPED_BETWEEN: "can_combine_p in combine.cc",
     Rule.NARROW_TREES: "convert_to_integer_1 in convert.cc",
     Rule.SUM_CLASSES: "find_costs_and_classes in ira-costs.cc",
@@ -264,6 +266,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.THREADED_HINTS: (),
     Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/estimate/memory/test_predictive_commoning.py
     Rule.COUNTER_REGISTERS: (),
+    Rule.KEPT_ADDRESSES: (),
     Rule.STEPPED_BETWEEN: (),
     Rule.NARROW_TREES: (),
     Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_register_classes.py

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bfsim.kernel import operations
+from bfsim.kernel.estimate.induction_variables.kept_addresses import Access, keeps_address, stepping_access
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import Instruction, SourceLine, arms_of, each_arm, is_number
@@ -26,11 +27,14 @@ class InductionVariable:
     root: str
     increment: Increment
     line: SourceLine
-    accesses: list[tuple[str, Instruction, int]] = field(default_factory=list)
-    """(block, access, offset in bytes)"""
+    accesses: list[Access] = field(default_factory=list)
     start: tuple[tuple[str, int], ...] = ()
     """What is added to the array's address where the loop starts, with factors: values that the loop around does not step along."""
+    stepping: Access | None = None
+    """The access behind which GCC steps the pointer."""
     steps_free: bool = False
+    keeps_address: bool = False
+    """Whether an iteration keeps what the pointer was before its step, which is a sum of its own then."""
     offset_apart: bool = False
     neighbour: InductionVariable | None = None
     """The variable whose pointer serves this one as well: only some iterations access it, at a distance that does not change."""
@@ -64,7 +68,10 @@ class InductionVariables:
                     for where, pointer in self._pointers(label, each):
                         self._place(where, each, pointer, found)
         for variable in self.all:
+            variable.stepping = stepping_access(variable.accesses, variable.loop, evolution)
             variable.steps_free = self._steps_free(variable)
+            keeps = variable.steps_free and profile.applies(Rule.KEPT_ADDRESSES)
+            variable.keeps_address = keeps and keeps_address(variable.accesses, variable.stepping, flow)
             variable.offset_apart = not any(offset == 0 for _, _, offset in variable.accesses)
         indexed = [each for each in self.all if self._is_indexed(each)]
         self.all = [each for each in self.all if each not in indexed]
@@ -182,7 +189,7 @@ class InductionVariables:
                     )
                     variable.start = self._start(affine, root, loop)
                     self.all.append(variable)
-                variable.accesses.append((label, each, affine.constant))
+                variable.accesses.append(Access(label, each, affine.constant))
                 self.of[id(each)] = variable
                 return
 
@@ -253,7 +260,8 @@ class InductionVariables:
             return False
         if len(labels) == 1 and self.flow.every_iteration(next(iter(labels)), variable.loop):
             return any(abs(step) == each.bits // 8 for _, each, _ in variable.accesses)
-        label, lowest, _ = min(variable.accesses, key=lambda access: access[2])
+        assert variable.stepping is not None
+        label, lowest, _ = variable.stepping
         downwards = self.profile.applies(Rule.DOWNWARD_POINTERS) and len(self.flow.exits(variable.loop)) == 1
         return (abs(step) if downwards else step) == lowest.bits // 8 and self.flow.every_iteration(
             label, variable.loop

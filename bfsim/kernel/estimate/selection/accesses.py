@@ -154,6 +154,8 @@ class Accesses:
                     entering,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, ((variable.name, POINTER),)),
                 )
+            if variable.keeps_address:
+                self._step_apart(variable)
             if not variable.steps_free:
                 uses = ((variable.name, POINTER),) + (
                     ((variable.stride, POINTER),) if variable.stride else ()
@@ -169,6 +171,16 @@ class Accesses:
                     self.emitter.code.add(
                         latch, MachineInstruction(Op.MOVE, line, None, POINTER, ((variable.name, POINTER),))
                     )
+
+    def _step_apart(self, variable: InductionVariable) -> None:
+        """Keep the address from before the step."""
+        assert variable.stepping is not None
+        label, _, _ = variable.stepping
+        walking = ((variable.name, POINTER),)
+        self.emitter.code.add(label, MachineInstruction(Op.MOVE, variable.line, None, POINTER, walking))
+        self.emitter.code.add(
+            label, MachineInstruction(Op.ALU, variable.line, variable.name, POINTER, walking)
+        )
 
     def _is_wanted_behind(self, variable: InductionVariable) -> bool:
         """Whether a counter that the addresses of `variable` are made of, or its next value, is wanted behind the loop."""

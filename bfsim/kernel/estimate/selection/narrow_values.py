@@ -10,6 +10,7 @@ from bfsim.kernel.estimate.induction_variables.induction_variables import (
     InductionVariables,
 )
 from bfsim.kernel.estimate.memory.predictive_commoning import ALONG
+from bfsim.kernel.estimate.scheduling.expansion import Expansion
 from bfsim.kernel.estimate.selection.folding import NARROW, Folding
 from bfsim.kernel.estimate.selection.loop_counters import LoopCounters
 from bfsim.kernel.estimate.selection.narrow_trees import is_cut_tree
@@ -157,20 +158,28 @@ class NarrowValues:
             load.bits not in NARROW
             or variable is None
             or not variable.steps_free
+            or variable.keeps_address
             or variable.accesses[0][1] is not load
         ):
             return False
         users = self.folding.users(load.result or "")
-        if len(variable.accesses) < 2 or len(users) != 1 or users[0].opcode != "zext":
+        if len(variable.accesses) < 2 or len(users) != 1 or not self._is_extension(users[0]):
             return False
         label = variable.accesses[0][0]
-        rows = self.flow.blocks[label].instructions
-        ends = {id(user) for user in self.folding.users(users[0].result or "")}
-        if load not in rows or len(ends) > 1:
-            return False  # what is loaded comes from where several ways meet, or is extended at once [tree-ssa-ter.cc]
-        between = rows[rows.index(load) + 1 :]
-        first_use = next((number for number, each in enumerate(between) if id(each) in ends), len(between))
-        return any(each is access for each in between[:first_use] for _, access, _ in variable.accesses)
+        if load not in self.flow.blocks[label].instructions:
+            return False  # what is loaded comes from where several ways meet
+        rows = Expansion(self.flow, label, stepping=load).order()
+        if users[0] not in rows:
+            return False
+        between = rows[rows.index(load) + 1 : rows.index(users[0])]
+        return any(each is access for each in between for _, access, _ in variable.accesses)
+
+    def _is_extension(self, each: Instruction) -> bool:
+        """Whether a conversion is an operation: where only 16 bits are wanted, that of a half-word is none."""
+        return each.opcode == "zext" or (each.opcode == "sext" and not self._is_cut(each))
+
+    def _is_cut(self, each: Instruction) -> bool:
+        return all(self.in_narrow_tree(user) for user in self.folding.users(each.result or ""))
 
     def _is_stepped_between(self, load: Instruction, variable: InductionVariable | None) -> bool:
         """Whether a pointer that a counter is computed from is stepped between a load and the extension [modified_between_p in combine.cc]."""

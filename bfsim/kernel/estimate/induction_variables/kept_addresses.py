@@ -1,0 +1,78 @@
+"""Where GCC steps a pointer that accesses share, and whether an iteration keeps what it was before.
+
+The step is right behind the access that comes first in the order of their distances [split_address_groups and add_autoinc_candidates in
+tree-ssa-loop-ivopts.cc of GCC 12], and both are one post-increment where that can be. Loads are made where their values are wanted,
+though (`expansion`), behind the step: then it is a sum of its own, and where other accesses come before, a copy of the pointer serves
+them all, which keeps what it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
+from bfsim.kernel.estimate.scheduling.expansion import Expansion
+from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.ir.text import Instruction, arms_of, is_number
+from bfsim.kernel.ir.widths import BYTE
+
+
+class Access(NamedTuple):
+    """An access by the pointer of an induction variable: its block, and how many bytes from the pointer."""
+
+    label: str
+    instruction: Instruction
+    offset: int
+
+
+def stepping_access(accesses: Sequence[Access], loop: Loop, evolution: ScalarEvolution) -> Access:
+    """Return the access behind which the pointer of all of them is stepped.
+
+    That at the lowest address is, as far as GCC can see: where more than the array is unknown of an address, a distance that is negative
+    counts as a large one, that of bytes with what the counter starts with, that of wider elements always, as C's subscripts are unsigned
+    there before they are multiplied. Accesses that far away are a group apart, whose first is stepped at if more distances are 0 then.
+    """
+    start, is_fixed = _start(accesses[0].instruction, loop, evolution)
+
+    def is_far(access: Access) -> bool:
+        whole = access.offset + start if access.instruction.bits == BYTE else access.offset
+        return whole < 0 and not is_fixed
+
+    groups = [each for each in accesses if not is_far(each)], [each for each in accesses if is_far(each)]
+    firsts = [min(each, key=lambda access: access.offset) for each in groups if each]
+    step = evolution.increment(accesses[0].instruction.operands[-1], loop)
+    return min(firsts, key=lambda first: _distances(accesses, first, step.constant if step else 0))
+
+
+def _distances(accesses: Sequence[Access], stepping: Access, step: int) -> int:
+    """Return how many of the accesses are not right where the pointer is that is stepped behind one of them."""
+    behind = [False, *(each is stepping for each in accesses)]
+    places = [stepping.offset + step * any(behind[: number + 1]) for number in range(len(accesses))]
+    return sum(each.offset != place for each, place in zip(accesses, places, strict=True))
+
+
+def _start(access: Instruction, loop: Loop, evolution: ScalarEvolution) -> tuple[int, bool]:
+    """Return the bytes that counters which start with constants add to a first address, and whether nothing else but the array does."""
+    start, others, flow = 0, 0, evolution.flow
+    for name, times in evolution.affine(access.operands[-1]).terms:
+        each = flow.instruction(name)
+        is_counter = each is not None and each.opcode == "phi" and flow.defined[name][0] == loop.header
+        first = arms_of(each).get(flow.entering(loop), "") if each is not None and is_counter else ""
+        if is_number(first):
+            start += int(first) * times
+        else:
+            others += 1
+    return start, others <= 1
+
+
+def keeps_address(accesses: Sequence[Access], stepping: Access, flow: ControlFlow) -> bool:
+    """Whether a copy of the pointer of some accesses serves those up to the one behind which it is stepped."""
+    label, load, _ = stepping
+    rows = flow.blocks[label].instructions
+    if load.opcode != "load" or load not in rows:
+        return False
+    place, expansion = rows.index(load), Expansion(flow, label)
+    before = [each for where, each, _ in accesses if where == label and each in rows[:place]]
+    loads = [each for each in (*before, load) if each.opcode == "load"]
+    return bool(before) and any(expansion.place(each) > place for each in loads)
