@@ -15,6 +15,7 @@ from bfsim.kernel.estimate.arithmetic.remainders import with_remainders
 from bfsim.kernel.estimate.arithmetic.saturations import without_saturations
 from bfsim.kernel.estimate.arithmetic.shifted_products import with_shifted_products
 from bfsim.kernel.estimate.arithmetic.strength_reduction import with_reduced_strength
+from bfsim.kernel.estimate.arithmetic.subtractions import with_subtractions
 from bfsim.kernel.estimate.arithmetic.summed_indices import with_summed_indices
 from bfsim.kernel.estimate.choices.adjacent_numbers import with_adjacent_numbers
 from bfsim.kernel.estimate.choices.extremes import with_extremes
@@ -69,6 +70,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     widen_extremes,
     without_lagging,
     factor_sums,
+    with_subtractions,
     with_common_factors,
     split_tests,
     split_loads,

@@ -205,12 +205,13 @@ class Moves:
                     move = MachineInstruction(
                         Op.MOVE, instruction.line, copy, bank, ((name, RegisterBank.ANY),)
                     )
-                    if place == label:
+                    is_there = (copy, bank) in instruction.uses[:position]
+                    if place == label and not is_there:
                         block.insert(
                             self._behind_definition(block, name) if bank is RegisterBank.DATA else len(block),
                             move,
                         )
-                    elif not any(each.result == copy for each in self.code.of[place]):
+                    elif place != label and not any(each.result == copy for each in self.code.of[place]):
                         self.code.add(place, move)
                     instruction.uses = (
                         *instruction.uses[:position],
