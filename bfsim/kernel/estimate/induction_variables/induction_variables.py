@@ -6,7 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.induction_variables.kept_addresses import Access, keeps_address, stepping_access
+from bfsim.kernel.estimate.induction_variables.kept_addresses import (
+    Access,
+    distances,
+    keeps_address,
+    stepping_access,
+)
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import Instruction, SourceLine, arms_of, each_arm, is_number
@@ -41,6 +46,15 @@ class InductionVariable:
     distance: tuple[tuple[str, int], ...] = ()
     """The terms of that distance, with factors."""
 
+    def distance_of(self, access: Instruction) -> int:
+        """Return how many bytes an access is from where the pointer is then."""
+        assert self.stepping is not None
+        step = self.increment.constant if self.steps_free else 0
+        found = distances(self.accesses, self.stepping, step)
+        return next(
+            away for away, each in zip(found, self.accesses, strict=True) if each.instruction is access
+        )
+
     @property
     def stride(self) -> str | None:
         """The register that holds the step, if it is no constant."""
@@ -71,7 +85,9 @@ class InductionVariables:
             variable.stepping = stepping_access(variable.accesses, variable.loop, evolution)
             variable.steps_free = self._steps_free(variable)
             keeps = variable.steps_free and profile.applies(Rule.KEPT_ADDRESSES)
-            variable.keeps_address = keeps and keeps_address(variable.accesses, variable.stepping, flow)
+            variable.keeps_address = keeps and keeps_address(
+                variable.accesses, variable.stepping, variable.loop, flow
+            )
             variable.offset_apart = not any(offset == 0 for _, _, offset in variable.accesses)
         indexed = [each for each in self.all if self._is_indexed(each)]
         self.all = [each for each in self.all if each not in indexed]

@@ -17,6 +17,8 @@ from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number
 from bfsim.kernel.ir.widths import BYTE
 
+THREADED = ".reg2mem"  # in the names of what LLVM carries over where jumps were threaded (`jump_threading.known_ways`)
+
 
 class Access(NamedTuple):
     """An access by the pointer of an induction variable: its block, and how many bytes from the pointer."""
@@ -42,14 +44,18 @@ def stepping_access(accesses: Sequence[Access], loop: Loop, evolution: ScalarEvo
     groups = [each for each in accesses if not is_far(each)], [each for each in accesses if is_far(each)]
     firsts = [min(each, key=lambda access: access.offset) for each in groups if each]
     step = evolution.increment(accesses[0].instruction.operands[-1], loop)
-    return min(firsts, key=lambda first: _distances(accesses, first, step.constant if step else 0))
+    return min(
+        firsts, key=lambda first: sum(map(bool, distances(accesses, first, step.constant if step else 0)))
+    )
 
 
-def _distances(accesses: Sequence[Access], stepping: Access, step: int) -> int:
-    """Return how many of the accesses are not right where the pointer is that is stepped behind one of them."""
-    behind = [False, *(each is stepping for each in accesses)]
-    places = [stepping.offset + step * any(behind[: number + 1]) for number in range(len(accesses))]
-    return sum(each.offset != place for each, place in zip(accesses, places, strict=True))
+def distances(accesses: Sequence[Access], stepping: Access, step: int) -> list[int]:
+    """Return how many bytes from a pointer each of its accesses is. `step`: that of the pointer, made right behind one of them."""
+    place = next(number for number, each in enumerate(accesses) if each is stepping)
+    return [
+        each.offset - stepping.offset - (step if number > place else 0)
+        for number, each in enumerate(accesses)
+    ]
 
 
 def _start(access: Instruction, loop: Loop, evolution: ScalarEvolution) -> tuple[int, bool]:
@@ -66,11 +72,18 @@ def _start(access: Instruction, loop: Loop, evolution: ScalarEvolution) -> tuple
     return start, others <= 1
 
 
-def keeps_address(accesses: Sequence[Access], stepping: Access, flow: ControlFlow) -> bool:
+def is_threaded(loop: Loop, flow: ControlFlow) -> bool:
+    """Whether jumps of a loop were threaded behind ivopts, which saw accesses on one side of a test that every iteration makes now."""
+    return any(THREADED in (each.result or "") for each in flow.blocks[loop.header].instructions)
+
+
+def keeps_address(accesses: Sequence[Access], stepping: Access, loop: Loop, flow: ControlFlow) -> bool:
     """Whether a copy of the pointer of some accesses serves those up to the one behind which it is stepped."""
     label, load, _ = stepping
     rows = flow.blocks[label].instructions
     if load.opcode != "load" or load not in rows:
+        return False
+    if is_threaded(loop, flow):
         return False
     place, expansion = rows.index(load), Expansion(flow, label)
     before = [each for where, each, _ in accesses if where == label and each in rows[:place]]

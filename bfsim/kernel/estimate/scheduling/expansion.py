@@ -11,7 +11,14 @@ from collections.abc import Iterator
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction
 
-COMMUTATIVE = {"add", "mul", "and", "or", "xor"}
+COMMUTATIVE = {
+    "add",
+    "mul",
+    "and",
+    "or",
+    "xor",
+    "call",
+}  # what is called and has operations of its own is a minimum or a maximum
 CONVERSIONS = {"zext", "sext", "trunc"}
 FIXED = {"phi", "store", "br", "switch", "ret"}
 

@@ -47,13 +47,20 @@ class Accesses:
 
     def _access_bytes(self, each: Instruction) -> int | None:
         """Bytes have no short form with an offset [PRM]."""
-        pointer = self.flow.instruction(each.operands[-1])
+        if each.bits != operations.BYTE_BITS:
+            return None
+        pointer, variable = (
+            self.flow.instruction(each.operands[-1]),
+            self.context.induction_variables.of.get(id(each)),
+        )
         offset = (
             pointer is not None
             and pointer.opcode == "getelementptr"
             and not pointer.operands[-1].startswith("%")
         )
-        return operations.LONG_FORM_BYTES if offset and each.bits == operations.BYTE_BITS else None
+        if variable is not None:
+            offset = variable.distance_of(each) != 0
+        return operations.LONG_FORM_BYTES if offset else None
 
     def _address(self, each: Instruction) -> str:
         """Return the pointer that an access uses: one that walks along, or one that was computed."""

@@ -9,6 +9,7 @@ from bfsim.kernel.estimate.induction_variables.induction_variables import (
     InductionVariable,
     InductionVariables,
 )
+from bfsim.kernel.estimate.induction_variables.kept_addresses import is_threaded
 from bfsim.kernel.estimate.memory.predictive_commoning import ALONG
 from bfsim.kernel.estimate.scheduling.expansion import Expansion
 from bfsim.kernel.estimate.selection.folding import NARROW, Folding
@@ -159,6 +160,7 @@ class NarrowValues:
             or variable is None
             or not variable.steps_free
             or variable.keeps_address
+            or is_threaded(variable.loop, self.flow)
             or variable.accesses[0][1] is not load
         ):
             return False
