@@ -9,6 +9,7 @@ them all, which keeps what it was.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
@@ -42,11 +43,17 @@ def stepping_access(accesses: Sequence[Access], loop: Loop, evolution: ScalarEvo
         return whole < 0 and not is_fixed
 
     groups = [each for each in accesses if not is_far(each)], [each for each in accesses if is_far(each)]
-    firsts = [min(each, key=lambda access: access.offset) for each in groups if each]
+    firsts = [min(each, key=partial(_rank, loop, evolution.flow)) for each in groups if each]
     step = evolution.increment(accesses[0].instruction.operands[-1], loop)
     return min(
         firsts, key=lambda first: sum(map(bool, distances(accesses, first, step.constant if step else 0)))
     )
+
+
+def _rank(loop: Loop, flow: ControlFlow, access: Access) -> tuple[int, int]:
+    """Return the place of an access in its group: of those to one address, that in the first block, or else in the last one [get_loop_body in cfgloop.cc]."""
+    is_first = access.label == loop.header
+    return access.offset, -len(flow.order) if is_first else -flow.order.index(access.label)
 
 
 def distances(accesses: Sequence[Access], stepping: Access, step: int) -> list[int]:

@@ -19,6 +19,7 @@ from bfsim.kernel.estimate.selection.demanded_values import DemandedValues
 from bfsim.kernel.estimate.selection.folding import Folding
 from bfsim.kernel.estimate.selection.library_divisions import LibraryDivisions
 from bfsim.kernel.estimate.selection.loop_counters import LoopCounters
+from bfsim.kernel.estimate.selection.masked_bytes import EXTENDING
 from bfsim.kernel.estimate.selection.narrow_values import NarrowValues
 from bfsim.kernel.estimate.selection.tail_calls import TailCall, tail_calls
 from bfsim.kernel.ir.control_flow import ControlFlow
@@ -29,7 +30,6 @@ from bfsim.kernel.rules import Rule
 
 BITWISE = ("and", "or", "xor")
 COMPUTING = ("add", "sub", "mul", "or", "xor")
-EXTENDING = (0xFF, 0xFFFF)  # masks that are one instruction, whatever is loaded
 
 
 class Context:
@@ -155,19 +155,13 @@ class Context:
     def _is_extended_late(self, extension: Instruction) -> bool:
         """Whether a bitwise operation is done before its result is extended: of two that are loaded, and a mask that is no extension itself.
 
-        ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12; of numbers that fit, for masks]. What is tested, or an index, is
-        left as it was: such code was nearer so [measured].
+        ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12; of numbers that fit, for masks].
         """
         each = self.flow.instruction(extension.operands[0])
         if each is None or not self.profile.applies(Rule.NARROW_BITS):
             return False
         if each.opcode == "and" and is_number(each.operands[1]):
-            users = self.flow.users.get(extension.result or "", ())
-            is_computed_with = all(
-                user.opcode in COMPUTING and not is_number(user.operands[1]) for user in users
-            )
-            is_mask = int(each.operands[1]) not in EXTENDING and self._is_loaded(each.operands[0])
-            return is_mask and is_computed_with
+            return int(each.operands[1]) not in EXTENDING and self._is_loaded(each.operands[0])
         return each.opcode in BITWISE and all(map(self._is_loaded, each.operands))
 
     def _is_loaded(self, value: str) -> bool:

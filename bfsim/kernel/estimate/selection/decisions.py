@@ -10,6 +10,7 @@ from bfsim.kernel.estimate.conditions.joined_tests import Range
 from bfsim.kernel.estimate.selection.constants import load_constant
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
+from bfsim.kernel.estimate.selection.masked_bytes import is_masked
 from bfsim.kernel.ir.loads_along import goes_along
 from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
 from bfsim.kernel.ir.widths import BYTE, WORD
@@ -27,10 +28,14 @@ class Decisions:
     def __init__(self, emitter: Emitter) -> None:
         self.emitter, self.append = emitter, emitter.append
         self.context, self.flow = emitter.context, emitter.context.flow
+        self._masks_apart = self.context.profile.applies(Rule.NARROW_BITS)
 
     def compare(self, each: Instruction) -> None:
         if self.context.folding.bit_tested(each) is not None:
             masked = self.context.folding.bit_tested(each) or ""
+            made = self.flow.instruction(each.operands[0])
+            if self._masks_apart and made is not None and is_masked(self.flow, made):
+                self.append(Op.ALU, each, None, DATA, (masked, DATA))
             self.append(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
         if (joined := self.context.ranges.get(self.emitter.label)) is not None and _decides(
@@ -51,9 +56,12 @@ class Decisions:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
     def _compared(self, each: Instruction, value: str) -> str:
-        """What is compared of a value: one that goes along is narrow, and so extended each time."""
+        """What is compared of a value: one that goes along is narrow, and so extended each time, and what a mask leaves of a byte is, too."""
         made = self.flow.instruction(value)
-        if made is None or made.bits >= WORD or not goes_along(self.flow, value):
+        if made is None or made.bits >= WORD:
+            return value
+        is_mask = self._masks_apart and is_masked(self.flow, made)
+        if not is_mask and not goes_along(self.flow, value):
             return value
         self.append(Op.EXTEND, each, f"{value}.compared", DATA, (value, DATA))
         return f"{value}.compared"

@@ -112,17 +112,23 @@ def f(a: i16[:], b: i16[:], state: i32[:], o: i16[:], n: i32) -> None:
         o[2 * i + 1] = step(state, 7, a[i], b[2 * i + 1])
 """
 
-CASES = [(IN_RANGE, WAVE, 5878, True), (ANYWHERE, WAVE, 15473, False), (OF_NUMBERS, SHAPED, 2343, True)]
+CASES = [
+    (IN_RANGE, WAVE, 5878, 0.03, True),
+    (ANYWHERE, WAVE, 15473, 0.03, False),
+    (OF_NUMBERS, SHAPED, 2343, 0.08, True),  # without a bundle of a product and a load
+]
 
 
-@pytest.mark.parametrize(("text", "helper", "cycles", "inlined"), CASES, ids=["range", "anything", "number"])
+@pytest.mark.parametrize(
+    ("text", "helper", "cycles", "near", "inlined"), CASES, ids=["range", "anything", "number"]
+)
 def test_arguments_that_answer_tests_make_a_callee_small(
-    text: str, helper: str, cycles: int, inlined: bool, tmp_path: Path
+    text: str, helper: str, cycles: int, near: float, inlined: bool, tmp_path: Path
 ) -> None:
     """A counter goes from one number to another, or a number says which of three ways; the estimates were 196 and 1,033 % above."""
     found = decisions(kernel_of(text, tmp_path, helper).function, GCC_O2)
     assert [each.inlined for each in found] == [inlined] * len(found)
-    check_estimate(text, cycles, 0.03, tmp_path, helper)
+    check_estimate(text, cycles, near, tmp_path, helper)
 
 
 def test_numbers_that_say_which_element_make_a_callee_small(tmp_path: Path) -> None:
