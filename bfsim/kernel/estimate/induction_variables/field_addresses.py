@@ -68,6 +68,8 @@ class FieldAddresses:
         """Whether the index of a record was multiplied by a number in a line before that of the access."""
         element = self.flow.instruction(record)
         product = self.flow.instruction(element.operands[-1]) if element is not None else None
+        if product is not None and product.opcode == "zext":  # of a product that fits into a byte
+            product = self.flow.instruction(product.operands[0])
         return (
             product is not None
             and product.opcode in ("mul", "shl")

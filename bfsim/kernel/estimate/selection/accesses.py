@@ -106,8 +106,19 @@ class Accesses:
             self._field(each)
             return
         nbytes = pointee_nbytes(each)
+        if nbytes > 1 and self._is_masked_byte(index):
+            # the distance is a product of half-words [convert_mult_to_widen in tree-ssa-math-opts.cc]
+            self.append(Op.EXTEND, each, f"{each.result}.index", DATA, (index, DATA))
+            index = f"{each.result}.index"
         op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
         self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
+
+    def _is_masked_byte(self, index: str) -> bool:
+        extension = self.flow.instruction(index)
+        if extension is None or extension.opcode != "zext" or not self.context.is_extended_late(extension):
+            return False
+        made = self.flow.instruction(extension.operands[0])
+        return made is not None and made.opcode == "and"
 
     def _field(self, each: Instruction) -> None:
         """The address of a field, where that is not an offset in the access."""

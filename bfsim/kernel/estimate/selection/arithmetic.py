@@ -10,6 +10,7 @@ from bfsim.kernel.estimate.selection.divisions import Divisions
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.ir.text import Instruction, is_number
+from bfsim.kernel.ir.widths import BYTE
 from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 
@@ -112,6 +113,7 @@ class Arithmetic:
             is_number(right)
             and (plan := multiple(int(right))) is not None
             and (self.context.narrow.in_narrow_tree(each) or not self._short(each))
+            and not self._is_made_narrow(each)
         ):
             value = left
             for number, op in enumerate(plan):
@@ -122,7 +124,7 @@ class Arithmetic:
                 bank = POINTER if op is Op.ADD_SHIFT and not is_sum else ANY
                 self.append(op, each, result, bank, (value, bank), (left, bank))
                 value = result or ""
-        elif self._short(each) or self.context.narrow.in_narrow_tree(each):
+        elif self._short(each) or self._is_made_narrow(each) or self.context.narrow.in_narrow_tree(each):
             for factor in dict.fromkeys((left, right)):
                 if self.context.narrow.extended_for_product(factor):
                     self.append(Op.EXTEND, each, None, DATA, (factor, DATA))
@@ -131,6 +133,11 @@ class Arithmetic:
             self.append(
                 Op.MUL32, each, each.result, DATA, (left, DATA), (right, DATA), overwrites=(left, right)
             )
+
+    def _is_made_narrow(self, each: Instruction) -> bool:
+        """Whether LLVM multiplies bytes where the product fits: it is one of half-words."""
+        users = self.flow.users.get(each.result or "", [])
+        return each.bits == BYTE and bool(users) and all(user.opcode == "zext" for user in users)
 
     def _steps_along(self, each: Instruction) -> bool:
         """A product of a counter: an addition per iteration takes its place (strength reduction)."""

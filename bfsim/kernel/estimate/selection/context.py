@@ -132,7 +132,7 @@ class Context:
             return True
         if each.opcode not in ("sext", "zext") or " i1 " in each.text:
             return False
-        return self._is_clean(each.operands[0]) and not self._is_extended_late(each)
+        return self._is_clean(each.operands[0]) and not self.is_extended_late(each)
 
     def _is_clean(self, narrow: str, depth: int = 8) -> bool:
         """Whether the register of a narrow value holds it extended already: all it is made of was, and nothing overflows."""
@@ -152,12 +152,14 @@ class Context:
             return False
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)
 
-    def _is_extended_late(self, extension: Instruction) -> bool:
+    def is_extended_late(self, extension: Instruction) -> bool:
         """Whether a bitwise operation is done before its result is extended: of two that are loaded, and a mask that is no extension itself.
 
         ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12; of numbers that fit, for masks].
         """
         each = self.flow.instruction(extension.operands[0])
+        if each is not None and each.opcode in ("add", "sub", "mul") and is_number(each.operands[1]):
+            each = self.flow.instruction(each.operands[0])  # LLVM computes with bytes what fits
         if each is None or not self.profile.applies(Rule.NARROW_BITS):
             return False
         if each.opcode == "and" and is_number(each.operands[1]):

@@ -131,6 +131,45 @@ NEIGHBOURS: dict[str, Case] = {
         3027,
         0.02,
     ),
+    "what is nearest, stored on one side of a test": (
+        """def f(a: u8[:], b: u8[:], n: i32, t: i32) -> i32:
+    s = 0
+    for i in range(0, n):
+        if b[i] > t:
+            s = 0
+        elif s < 100:
+            s += 1
+        if s < a[i]:
+            a[i] = s
+    return s""",
+        6048,
+        0.02,
+    ),
+    "what is nearest, downwards": (
+        """def f(a: i32[:], b: i32[:], n: i32, t: i32) -> i32:
+    s = 0
+    for i in range(n - 1, -1, -1):
+        if b[i] > t:
+            s = 0
+        elif s < 100:
+            s += 1
+        if s < a[i]:
+            a[i] = s
+    return s""",
+        6029,
+        0.02,
+    ),
+    "the smaller one, stored on one side of a test": (
+        """def f(a: u8[:], b: u8[:], n: i32, t: i32) -> i32:
+    s = 0
+    for i in range(0, n):
+        x = b[i]
+        if x < a[i]:
+            a[i] = x
+    return s""",
+        4538,
+        0.02,
+    ),
 }
 
 test_filters_by_neighbours_cost_what_gcc_makes_of_them, test_filters_by_neighbours_compute_the_same = (
