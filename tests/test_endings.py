@@ -126,6 +126,17 @@ def test_trouble_elsewhere_is_not_blamed_on_standard_output(tmp_path: Path) -> N
     assert done.stderr == "bfsim: error: the system must allow what bfsim asks of it: Too many open files\n"
 
 
+@pytest.mark.parametrize("option", ["--json run.json", "--firmware red.py:firmware"])
+def test_a_folder_that_was_removed_meanwhile(tmp_path: Path, option: str) -> None:
+    """Another terminal has removed the folder that a command is started in: it was told as a circle of links, or without a place."""
+    (tmp_path / "gone").mkdir()
+    ended = bfsim(f'cd gone && rmdir ../gone && $BFSIM run {option}', cwd=tmp_path)
+    assert ended.returncode == 2
+    assert ended.stderr == (
+        "bfsim: error: the current folder must be there, but was removed; `cd` to another one: No such file or directory\n"
+    )
+
+
 def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     """A traceback ends with a code of its own."""
     program = "import bfsim.cli.boards as boards; from unittest.mock import patch; from bfsim.__main__ import main\n"

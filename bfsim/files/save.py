@@ -97,8 +97,13 @@ def writing(path: Path) -> Iterator[None]:
 
 
 def _resolved(path: Path) -> Path:
-    """Return where a path leads; raise ConfigError for links in a circle and for what is no name."""
+    """Return where a path leads; raise ConfigError for links in a circle and for what is no name.
+
+    Raises FileNotFoundError if the current folder was removed.
+    """
     try:
         return path.resolve()
+    except FileNotFoundError:
+        raise
     except (OSError, RuntimeError, ValueError):
         raise ConfigError(f"{path} must lead to a place, not in a circle of links") from None

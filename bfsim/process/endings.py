@@ -8,6 +8,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from errno import ENOENT
 from io import StringIO, TextIOWrapper
 from typing import Any
 
@@ -67,16 +68,20 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
     except BfsimError as error:
         return _mistake(str(error))
     except OSError as error:
-        what = (
-            f"{error.filename} must be accessible"
-            if error.filename
-            else "the system must allow what bfsim asks of it"
-        )
-        return _mistake(f"{what}: {error.strerror or error}")
+        return _mistake(f"{_subject_of(error)}: {error.strerror or error}")
     except (KeyboardInterrupt, click.Abort) as error:  # which may say where
         click.echo(f"bfsim: interrupted{error}", err=True)
         return interrupted_code()
     return code if isinstance(code, int) else 0
+
+
+def _subject_of(error: OSError) -> str:
+    """Say what must be otherwise, of what the system has refused."""
+    if error.filename:
+        return f"{error.filename} must be accessible"
+    if error.errno == ENOENT:  # only asking for the current folder names none
+        return "the current folder must be there, but was removed; `cd` to another one"
+    return "the system must allow what bfsim asks of it"
 
 
 def _warn(message: Warning | str, category: type[Warning], *_place: Any) -> None:
