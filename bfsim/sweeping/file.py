@@ -87,7 +87,7 @@ def _require_apart(points: Sequence[Point]) -> None:
 
 
 def _points(plain: Mapping[str, Any], folder: Path, scripts: Path) -> Iterator[Point]:
-    if BASELINE_KEY in plain:
+    if isinstance(plain.get(BASELINE_KEY), list):
         raise ConfigError(
             f"it must be a sweep, with [{AXES}] or [[{POINT}]], not a baseline of `bfsim check`"
         )

@@ -62,10 +62,20 @@ def test_names_with_nothing_in_common_go_by_order() -> None:
         pairs_of(lefts, rights[:1], "pictures")
 
 
-def test_names_that_come_twice_tell_nothing() -> None:
-    """1.png and 1.jpg in one folder."""
-    lefts = [Path("a/1.png"), Path("a/1.jpg")]
-    assert pairs_of(lefts, paths("b", 1, 2), "pictures")[0] == list(zip(lefts, paths("b", 1, 2), strict=True))
+def test_names_that_come_twice_are_told() -> None:
+    """1.png and 1.jpg in one folder: by their order, 1.jpg would go with 2.png."""
+    twice, once = [Path("a/1.png"), Path("a/1.jpg")], paths("b", 1, 2)
+    with pytest.raises(RecordingError, match=r"pictures must .*, but a/1\.png and a/1\.jpg both go with b/1\.png"):
+        pairs_of(twice, once, "pictures")
+    with pytest.raises(RecordingError, match=r"a/1\.png and a/1\.jpg both go with b/1\.png"):
+        pairs_of(once, twice, "pictures")
+
+
+def test_names_that_come_twice_without_a_partner_are_alone() -> None:
+    """They hinder no pair."""
+    pairs, alone = pairs_of([Path("a/1.png"), Path("a/1.jpg"), Path("a/2.png")], paths("b", 2), "pictures")
+    assert pairs == [(Path("a/2.png"), Path("b/2.png"))]
+    assert [each.name for each in alone] == ["a/1.png", "a/1.jpg"]
 
 
 @given(st.sets(st.integers(0, 50)), st.sets(st.integers(0, 50)))

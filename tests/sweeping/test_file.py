@@ -112,6 +112,7 @@ def test_a_path_into_a_script_that_is_a_file(tmp_path: Path) -> None:
         ("", "there must be a list in [axes], or a [[point]]"),
         ("axis = {}", "axis must not be there; known are [base], [axes] and [[point]]"),
         ("[[run]]\nname = 'a'", "it must be a sweep, with [axes] or [[point]], not a baseline of `bfsim check`"),
+        ("run.frames = 2\naxes.ldf = ['l2']", "run must not be there; known are [base], [axes] and [[point]]"),
         ("base = 3", "base must be a table of options, not 3"),
         ("axes = []", "axes must be a table of lists, not []"),
         ("point = {}", "point must be a list of tables, [[point]], not {}"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from bfsim.errors import RecordingError
@@ -28,20 +28,35 @@ def pairs_of(lefts: Sequence[Path], rights: Sequence[Path], what: str) -> tuple[
 
     Names without what says the camera are compared: left_03 goes with right_03. Where no two are alike, the pictures
     go together by their order, if there are as many. Raises RecordingError that begins with `what` where that would be a
-    guess.
+    guess, also of which of two pictures a third one goes with.
     """
     of_left, of_right = ({_key(path): path for path in paths} for paths in (lefts, rights))
-    common = [key for key in of_left if key in of_right]
-    if common and len(of_left) == len(lefts) and len(of_right) == len(rights):
-        alone = [path for keys in (of_left, of_right) for key, path in keys.items() if key not in common]
+    common = of_left.keys() & of_right.keys()
+    if common:
+        _require_one_each(lefts, of_left, of_right, what)
+        _require_one_each(rights, of_right, of_left, what)
+        alone = [path for path in (*lefts, *rights) if _key(path) not in common]
         skipped = [Skipped(_name(path), "has no picture of the other camera") for path in alone]
-        return [(of_left[key], of_right[key]) for key in common], skipped
+        return [(path, of_right[key]) for key, path in of_left.items() if key in common], skipped
     if len(lefts) != len(rights):
         raise RecordingError(
             f"{what} must have names that tell the pairs, such as left_01.png and right_01.png, or be as many of either "
             f"camera, to be paired by their order, not {len(lefts)} and {len(rights)}"
         )
     return list(zip(lefts, rights, strict=True)), []
+
+
+def _require_one_each(
+    paths: Sequence[Path], last: Mapping[str, Path], others: Mapping[str, Path], what: str
+) -> None:
+    """Raise RecordingError where two pictures of a camera go with one of the `others`; `last` has the last of each name."""
+    for path in paths:
+        key = _key(path)
+        if last[key] != path and key in others:
+            raise RecordingError(
+                f"{what} must have names that tell the pairs, but {_name(path)} and {_name(last[key])} "
+                f"both go with {_name(others[key])}"
+            )
 
 
 def _key(path: Path) -> str:
