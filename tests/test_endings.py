@@ -130,7 +130,7 @@ def test_trouble_elsewhere_is_not_blamed_on_standard_output(tmp_path: Path) -> N
 def test_a_folder_that_was_removed_meanwhile(tmp_path: Path, option: str) -> None:
     """Another terminal has removed the folder that a command is started in: it was told as a circle of links, or without a place."""
     (tmp_path / "gone").mkdir()
-    ended = bfsim(f'cd gone && rmdir ../gone && $BFSIM run {option}', cwd=tmp_path)
+    ended = bfsim(f"cd gone && rmdir ../gone && $BFSIM run {option}", cwd=tmp_path)
     assert ended.returncode == 2
     assert ended.stderr == (
         "bfsim: error: the current folder must be there, but was removed; `cd` to another one: No such file or directory\n"

@@ -52,6 +52,14 @@ def test_two_folders_in_natural_order(tmp_path: Path) -> None:
         assert (reader.geometry, reader.description) == (geometry, "x")
 
 
+def test_what_a_browser_saves_again_comes_behind_the_first(tmp_path: Path) -> None:
+    """`IMG (1).png` behind `IMG.png`, though a space comes before a dot."""
+    for level, name in enumerate(["IMG", "IMG (1)", "IMG (2)", "IMG (10)"]):
+        save_grey(tmp_path / "one" / f"{name}.png", level)
+    import_recording([tmp_path / "one"], tmp_path / "a.mcap", mono=True)
+    assert [frame.left[0, 1] for frame in frames_of(tmp_path / "a.mcap")] == [0, 1, 2, 3]
+
+
 def test_pictures_of_one_camera_twice_are_told(tmp_path: Path) -> None:
     """Under other names; once they differ in a byte of any frame they are two cameras'."""
     for k in range(2):

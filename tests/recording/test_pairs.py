@@ -65,7 +65,9 @@ def test_names_with_nothing_in_common_go_by_order() -> None:
 def test_names_that_come_twice_are_told() -> None:
     """1.png and 1.jpg in one folder: by their order, 1.jpg would go with 2.png."""
     twice, once = [Path("a/1.png"), Path("a/1.jpg")], paths("b", 1, 2)
-    with pytest.raises(RecordingError, match=r"pictures must .*, but a/1\.png and a/1\.jpg both go with b/1\.png"):
+    with pytest.raises(
+        RecordingError, match=r"pictures must .*, but a/1\.png and a/1\.jpg both go with b/1\.png"
+    ):
         pairs_of(twice, once, "pictures")
     with pytest.raises(RecordingError, match=r"a/1\.png and a/1\.jpg both go with b/1\.png"):
         pairs_of(once, twice, "pictures")

@@ -154,9 +154,10 @@ def _names_of(found: list[Path]) -> str:
     return f": {cut(', '.join(names))}" if names else ""
 
 
-def _natural_key(path: Path) -> list[int | str]:
-    """Return words and numbers in turn: 2 comes before 10."""
-    return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", str(path))]
+def _natural_key(path: Path) -> tuple[list[int | str], str]:
+    """Return words and numbers in turn: 2 comes before 10, and `IMG.jpg` before its copy `IMG (1).jpg`."""
+    parts = re.split(r"(\d+)", str(path.with_suffix("")))
+    return [int(part) if part.isdecimal() else part for part in parts], path.suffix
 
 
 def load_image(path: Path, bits: int | None = None) -> Image.Image:
