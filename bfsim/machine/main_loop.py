@@ -44,3 +44,8 @@ class MainLoop:
     def describe_wait(self) -> str:
         """Say what the core waits for and where in the firmware."""
         return f"core {self._core.name} has ended" if self.is_done else self._parts.tasks.describe_wait()
+
+    @property
+    def forgotten_wait(self) -> str:
+        """Which wait the main loop has never begun, in words; empty if none."""
+        return self._parts.progress.waits.forgotten()

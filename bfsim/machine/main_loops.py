@@ -50,11 +50,13 @@ class MainLoops:
     def check_end(self, frames: int, *, has_more: bool) -> None:
         """Raise an error unless both main loops have ended, with the same `frames`, and with all of them.
 
-        `has_more`: whether the recording has. Raises DeadlockError when the cores block each other.
+        `has_more`: whether the recording has. Raises DeadlockError when the cores block each other, with
+        the wait that was never begun: it may be why.
         """
         if not all(each.is_done for each in self._loops.values()):
-            waits = "; ".join(each.describe_wait() for each in self._loops.values())
-            raise DeadlockError(f"nothing can happen any more: {waits}")
+            waits = [each.describe_wait() for each in self._loops.values()]
+            forgotten = [each.forgotten_wait for each in self._loops.values() if each.forgotten_wait]
+            raise DeadlockError(f"nothing can happen any more: {'; '.join([*waits, *forgotten])}")
         for name, each in self._loops.items():
             if finished := each.pictures.finished:
                 raise FirmwareError(

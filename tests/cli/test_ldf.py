@@ -143,7 +143,7 @@ def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, why: str
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--size", "wide"], "must be width x height, such as 320x240, not 'wide'"),
+        (["--size", "wide"], "must be width x height, such as 320x240, 1 to 9999 each, not 'wide'"),
         (["--size", "0x240"], "must be width x height"),
         (["--size", "9" * 5000 + "x1"], "must be width x height"),
         (["--board", "arduino"], "but there is none; built in are cm-bf561, "),

@@ -154,10 +154,11 @@ def _open_raw(
 ) -> PictureSource:
     with _open(source) as stream:
         size_bytes = stream.seek(0, 2)
-    if size_bytes == 0 or size_bytes % frame_bytes:
+    count, rest = divmod(size_bytes, frame_bytes)
+    if size_bytes == 0 or rest:
         raise RecordingError(
             f"{source}: file must be a whole number of {size[0]}x{size[1]} {name} frames "
-            f"of {frame_bytes} bytes, not {size_bytes} bytes = {size_bytes / frame_bytes:.2f} frames; "
+            f"of {frame_bytes} bytes, not {size_bytes} bytes: {count} frames and {rest} bytes; "
             "is `--size` right?"
         )
 

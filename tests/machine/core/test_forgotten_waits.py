@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from bfsim.api import Core, Frame
-from bfsim.errors import FirmwareError
+from bfsim.errors import DeadlockError, FirmwareError
 from bfsim.linker import parse_ldf
 from bfsim.shipped import LDF_FOLDER
 from tests.machine.kernels import first, spin
@@ -74,6 +74,26 @@ def test_a_wait_that_is_never_begun_is_told_with_its_line(body: Any, name: str, 
         run(every_frame(body))
     told = f"core A: {name}(...) at {place} does nothing: write `yield from` before it; noticed ("
     assert str(caught.value).startswith(told)
+
+
+def waiting(core: Core, frame: Frame) -> Play:
+    """For what the other core never says."""
+    yield from core.wait("go")
+
+
+def posting(core: Core, frame: Frame) -> Play:
+    """So that no next frame is asked for, where it would be noticed."""
+    core.post("go")
+    yield from core.wait("went")
+
+
+def test_cores_that_block_each_other_for_lack_of_it_are_told_so() -> None:
+    """Without `yield from` before a post, the other core waits for ever, and often this one for it."""
+    place = f"{__file__}:{posting.__code__.co_firstlineno + 2}"
+    with pytest.raises(DeadlockError) as caught:
+        run(every_frame(waiting), every_frame(posting))
+    told = f"; core B: post(...) at {place} does nothing: write `yield from` before it"
+    assert str(caught.value).endswith(told)
 
 
 @pytest.mark.parametrize("ldf", ["thesis", "cache"])
