@@ -22,5 +22,7 @@ class Size(click.ParamType[tuple[int, int]]):
             return value
         found = re.fullmatch(r"([1-9][0-9]{0,3})x([1-9][0-9]{0,3})", value)
         if found is None:
-            self.fail(f"must be width x height, such as 320x240, 1 to 9999 each, not {shown(value)}", param, ctx)
+            self.fail(
+                f"must be width x height, such as 320x240, 1 to 9999 each, not {shown(value)}", param, ctx
+            )
         return int(found[1]), int(found[2])
