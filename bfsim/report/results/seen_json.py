@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any, Self
 
+import numpy as np
+
 from bfsim.files.spool import Spool
 from bfsim.report.jsonable import jsonable
 from bfsim.seen import Seen, SeenFrame
@@ -70,8 +72,13 @@ def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     }
     if with_features:
         plain["cameras"] = {each.camera: _features(each) for each in frame.cameras}
-    found: dict[str, Any] = jsonable(plain)
+    found: dict[str, Any] = jsonable(plain, _without_numpy)
     return found
+
+
+def _without_numpy(value: Any) -> object:
+    """Return a number or an array that a view has computed as Python has it."""
+    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
 
 
 def name_of_object(seen: Mapping[str, Any]) -> str:

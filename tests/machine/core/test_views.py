@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from bfsim.api import Buffer, Firmware, FrameSize, Readout, Seen, SeenArrow, SeenMap, SeenText, u8
+from bfsim.api import (
+    Buffer,
+    Firmware,
+    FrameSize,
+    Readout,
+    Seen,
+    SeenArrow,
+    SeenEdges3D,
+    SeenMap,
+    SeenText,
+    u8,
+)
 from bfsim.errors import FirmwareError
+from bfsim.report.results.seen_json import SeenStore
 from bfsim.run import simulate
 from tests.machine.rig import see_all
+from tests.seen_frames import BALL, BLOB, CIRCLE, EDGES, LINES
 
 
 def buffers(size: FrameSize) -> dict[str, Sequence[Buffer]]:
@@ -77,6 +92,26 @@ def numbers(values: Any) -> dict[str, Any]:
     return {"map": SeenMap(name="numbers", values=values)}
 
 
+def blob(**parts: Any) -> dict[str, Any]:
+    """A blob of which some parts are others."""
+    return {"blobs": (replace(BLOB, **parts),)}
+
+
+def circle(**parts: Any) -> dict[str, Any]:
+    """A circle of which some parts are others."""
+    return {"circles": (replace(CIRCLE, **parts),)}
+
+
+def ball(**parts: Any) -> dict[str, Any]:
+    """A ball of which some parts are others."""
+    return {"objects": (replace(BALL, **parts),)}
+
+
+def in_space(places_mm: Any, left_edges: Any) -> dict[str, Any]:
+    """Edges in space of a picture with three edges."""
+    return {"edges": EDGES, "edges_3d": SeenEdges3D(places_mm=places_mm, left_edges=left_edges)}
+
+
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
@@ -93,6 +128,38 @@ def numbers(values: Any) -> dict[str, Any]:
         (arrow(colour=(256, 0, 0)), r"must be red, green and blue, 0 to 255, not \(256, 0, 0\)"),
         (numbers(np.zeros(4)), "map of a view must be a SeenMap with numbers in rows and columns"),
         (numbers(np.zeros((0, 4))), "map of a view must be a SeenMap with numbers in rows and columns"),
+        ({"blobs": BLOB}, "blobs of a view must be a tuple of SeenBlob, not SeenBlob"),
+        ({"blobs": ((1, 2, 3, 4),)}, "blobs of a view must be a tuple of SeenBlob, not"),
+        (blob(left_px="a"), "the left_px of a blob of a view must be a whole number, not 'a'"),
+        (blob(centre_px=None), "the centre_px of a blob of a view must be two numbers, x and y, not None"),
+        (
+            blob(colour="red"),
+            "the colour of a blob of a view must be red, green and blue, 0 to 255, not 'red'",
+        ),
+        (
+            {"lines": (replace(LINES[0], end_px=(1, np.inf)),)},
+            "the end_px of a line of a view must be two numbers",
+        ),
+        (circle(radius_px=-1), "the radius_px of a circle of a view must be 0 or more, not -1"),
+        (circle(radius_px=np.nan), "the radius_px of a circle of a view must be a finite number, not nan"),
+        (circle(tests=None), "the tests of a circle of a view must be a tuple of words, not None"),
+        (ball(place_mm=(1, 2)), "the place_mm of an object of a view must be three numbers, x, y and z, not"),
+        (ball(name="a\nball"), "the name of an object of a view must be words on one line, not"),
+        (ball(camera="middle"), "the camera of an object of a view must be left or right, not 'middle'"),
+        ({"lines_3d": ((1, 2),)}, "lines_3d of a view must be a tuple of SeenLine3D, not"),
+        ({"losses": ((1, 2),)}, "losses of a view must be a tuple of SeenLoss, not"),
+        ({"geometry": (386, 30)}, "geometry of a view must be a SeenGeometry, not"),
+        ({"corner_px": None}, "corner_px of a view must be two whole numbers, x and y, not None"),
+        ({"edges": [(1, 2)]}, "edges of a view must be a SeenEdges, not"),
+        (
+            {"edges": replace(EDGES, x_px=EDGES.x_px[:1])},
+            "x_px, y_px, gradients and directions that are arrays of one length",
+        ),
+        (
+            in_space(np.zeros((1, 2)), np.zeros(1, int)),
+            r"edges_3d of a view must have arrays of shapes \(n, 3\) and \(n\)",
+        ),
+        (in_space(np.zeros((1, 3)), np.array([99])), "must be numbers of its 3 edges, not"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(parts: dict[str, Any], message: str) -> None:
@@ -110,6 +177,27 @@ def test_what_numpy_computes_can_be_drawn() -> None:
     firmware = looking(lambda readout: Seen(camera=readout.camera, picture=picture(), **parts))
     simulate(firmware=firmware, frames=1, on_seen=seen.append)
     assert seen[0].cameras[0].texts == parts["texts"]
+
+
+def test_what_numpy_computes_can_be_written(tmp_path: Path) -> None:
+    """Places of objects as arrays, and numbers of any of its types: the JSON ended in a traceback."""
+    parts = {**ball(place_mm=np.array([0.0, 30, 400]), width_mm=np.float32(43)), **blob(left_px=np.int16(3))}
+    firmware = looking(lambda readout: Seen(camera=readout.camera, picture=picture(), **parts))
+    with SeenStore(with_features=True) as store:
+        simulate(firmware=firmware, frames=1, on_seen=store.add)
+        assert store[0]["objects"][0]["place_mm"] == [0, 30, 400]
+        assert store[0]["cameras"]["left"]["blobs"][0]["left_px"] == 3
+
+
+def test_the_view_is_named_by_its_place() -> None:
+    """It has returned already when its mistake is found: the main loop's line alone would lead nowhere."""
+
+    def view(_readout: Readout) -> Any:
+        return 3
+
+    place = f"{__file__}:{view.__code__.co_firstlineno}"
+    with pytest.raises(FirmwareError, match=f"not 3, as that at {re.escape(place)} returns"):
+        simulate(firmware=looking(view), frames=1, on_seen=lambda _frame: None)
 
 
 def test_a_page_of_firmware_that_shows_nothing_says_so(tmp_path: Path) -> None:

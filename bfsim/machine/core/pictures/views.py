@@ -9,8 +9,39 @@ from typing import Any
 import numpy as np
 
 from bfsim.errors import FirmwareError, shown
+from bfsim.machine.core.pictures.marks import check_fields, is_line_of_words
 from bfsim.machine.core.pictures.readout import Readout
-from bfsim.seen import Seen, SeenArrow, SeenMap, SeenText
+from bfsim.machine.firmware_lines import place_of
+from bfsim.seen import (
+    CAMERAS,
+    Seen,
+    SeenArrow,
+    SeenBlob,
+    SeenCircle,
+    SeenEdges,
+    SeenEdges3D,
+    SeenGeometry,
+    SeenLine,
+    SeenLine3D,
+    SeenLoss,
+    SeenMap,
+    SeenObject,
+    SeenRectangle,
+    SeenText,
+)
+
+_MARKS: dict[str, type] = {
+    "blobs": SeenBlob,
+    "lines": SeenLine,
+    "circles": SeenCircle,
+    "rectangles": SeenRectangle,
+    "losses": SeenLoss,
+    "arrows": SeenArrow,
+    "texts": SeenText,
+    "objects": SeenObject,
+    "lines_3d": SeenLine3D,
+}
+"""Fields of `Seen` that are tuples, and of what."""
 
 
 def seen_by(view: Callable[[Readout], Seen | None], readout: Readout) -> Seen | None:
@@ -18,6 +49,14 @@ def seen_by(view: Callable[[Readout], Seen | None], readout: Readout) -> Seen | 
     seen = view(readout)
     if seen is None:
         return None
+    try:
+        _check(seen, readout)
+    except FirmwareError as error:
+        raise FirmwareError(f"{error}, as that at {place_of(view)} returns") from None
+    return seen
+
+
+def _check(seen: Any, readout: Readout) -> None:
     if not isinstance(seen, Seen):
         raise FirmwareError(f"view must return a bfsim.api.Seen or None, not {shown(seen)}")
     if seen.camera != readout.camera:
@@ -26,18 +65,16 @@ def seen_by(view: Callable[[Readout], Seen | None], readout: Readout) -> Seen | 
             f"not {shown(seen.camera)}"
         )
     _check_picture(seen.picture)
-    for arrow in _all("arrows", seen.arrows, SeenArrow):
-        _check_point("the start_px of an arrow", arrow.start_px)
-        _check_point("the end_px of an arrow", arrow.end_px)
-        _check_colour("the colour of an arrow", arrow.colour)
-        _check_words("the text of an arrow", arrow.text)
-    for text in _all("texts", seen.texts, SeenText):
-        _check_point("the place_px of a text", text.place_px)
-        _check_colour("the colour of a text", text.colour)
-        _check_words("a text", text.text)
+    for name, kind in _MARKS.items():
+        for each in _all(name, getattr(seen, name), kind):
+            check_fields(each)
+    _check_corner(seen.corner_px)
+    if seen.geometry is not None:
+        _require_kind("geometry", seen.geometry, SeenGeometry)
+        check_fields(seen.geometry)
+    _check_edges(seen)
     if seen.map is not None:
         _check_map(seen.map)
-    return seen
 
 
 def _check_picture(picture: Any) -> None:
@@ -57,25 +94,48 @@ def _all(name: str, values: Any, kind: type) -> Any:
     return values
 
 
-def _check_point(what: str, point: Any) -> None:
-    try:
-        x, y = point
-        is_place = bool(np.isfinite(x) and np.isfinite(y))
-    except (TypeError, ValueError):
-        is_place = False
-    if not is_place:
-        raise FirmwareError(f"{what} of a view must be two numbers, x and y, not {shown(point)}")
+def _require_kind(name: str, value: Any, kind: type) -> None:
+    if not isinstance(value, kind):
+        raise FirmwareError(f"{name} of a view must be a {kind.__name__}, not {shown(value)}")
 
 
-def _check_colour(what: str, colour: Any) -> None:
-    is_colour = isinstance(colour, tuple) and len(colour) == 3
-    if not is_colour or not all(isinstance(each, Integral) and 0 <= int(each) <= 255 for each in colour):
-        raise FirmwareError(f"{what} of a view must be red, green and blue, 0 to 255, not {shown(colour)}")
+def _check_corner(corner: Any) -> None:
+    if (
+        not isinstance(corner, tuple)
+        or len(corner) != 2
+        or not all(isinstance(each, Integral) for each in corner)
+    ):
+        raise FirmwareError(f"corner_px of a view must be two whole numbers, x and y, not {shown(corner)}")
 
 
-def _check_words(what: str, words: Any) -> None:
-    if not isinstance(words, str) or "\n" in words or "\r" in words:
-        raise FirmwareError(f"{what} of a view must be words on one line, not {shown(words)}")
+def _check_edges(seen: Seen) -> None:
+    """Check the columns of numbers that edges are: one of each for each edge."""
+    edges, in_space = seen.edges, seen.edges_3d
+    _require_kind("edges", edges, SeenEdges)
+    _require_kind("edges_3d", in_space, SeenEdges3D)
+    count, count_in_space = np.shape(edges.x_px)[:1], np.shape(in_space.left_edges)[:1]
+    columns = (edges.x_px, edges.y_px, edges.gradients, edges.directions)
+    if not all(_is_of_numbers(each, count) for each in columns) or not isinstance(edges.lost, Integral):
+        raise FirmwareError(
+            "edges of a view must have x_px, y_px, gradients and directions that are arrays of one length, "
+            f"and a whole number lost, not {shown(edges)}"
+        )
+    if not (
+        _is_of_numbers(in_space.left_edges, count_in_space)
+        and _is_of_numbers(in_space.places_mm, (*count_in_space, 3))
+    ):
+        raise FirmwareError(
+            f"edges_3d of a view must have arrays of shapes (n, 3) and (n), not {shown(in_space)}"
+        )
+    numbers = in_space.left_edges
+    if seen.camera == CAMERAS["A"] and numbers.size and not 0 <= numbers.min() <= numbers.max() < len(edges):
+        raise FirmwareError(
+            f"left_edges of edges_3d of a view must be numbers of its {len(edges)} edges, not {shown(numbers)}"
+        )
+
+
+def _is_of_numbers(values: Any, shape: tuple[int, ...]) -> bool:
+    return isinstance(values, np.ndarray) and values.shape == shape and values.dtype.kind in "iuf"
 
 
 def _check_map(drawn: Any) -> None:
@@ -83,6 +143,10 @@ def _check_map(drawn: Any) -> None:
     if values is None or values.ndim != 2 or not values.size or values.dtype.kind not in "biuf":
         raise FirmwareError(
             f"the map of a view must be a SeenMap with numbers in rows and columns, not {shown(drawn)}"
+        )
+    if not is_line_of_words(drawn.name):
+        raise FirmwareError(
+            f"the name of the map of a view must be words on one line, not {shown(drawn.name)}"
         )
     for each in (drawn.lowest, drawn.highest):
         if each is not None and not isinstance(each, Real):
