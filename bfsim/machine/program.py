@@ -91,7 +91,7 @@ def _check_rows(rows: Sequence[BudgetRow]) -> None:
 class Firmware:
     """A program for the whole chip.
 
-    `mains`: the main loop of each core of the chip; one without work only asks for the next frame, and has a `camera`, too. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
+    `mains`: the main loop of each core of the chip; one without work only asks for the next frame, and has a `camera`, too. `buffers`: size of the pictures → the buffers of each core, "A" and "B", and under "shared" those of both. `camera`: the buffer of each core
     that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `reference`: what the
     `reference_ms` of the rows are, which must be said where a row has some. `calibration`: what a recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
     `spi`: the script of the user, empty without one → the device at the other end of the SPI; raises a FirmwareError
