@@ -75,7 +75,11 @@ def line_at_work(interruption: KeyboardInterrupt) -> str:
 
 
 def line_of(error: BaseException) -> str:
-    """Return the innermost line of the firmware that `error` came through, as ` (file:line)`; nothing if none."""
-    calls = traceback.extract_tb(error.__traceback__)
+    """Return the innermost line of the firmware that `error` came through, as ` (file:line)`; nothing if none.
+
+    Of a generator that ends by a StopIteration Python makes another error, outside of it.
+    """
+    raised = error.__cause__ if isinstance(error.__cause__, StopIteration) else error
+    calls = traceback.extract_tb(raised.__traceback__)
     places = [f"{each.filename}:{each.lineno}" for each in calls if is_firmware(each.filename)]
     return f" ({places[-1]})" if places else ""

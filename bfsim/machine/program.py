@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -65,6 +65,48 @@ class Calibration:
     geometries: tuple[Geometry, ...] = ()
 
 
+def _is_none_or_called(value: object) -> bool:
+    return value is None or callable(value)
+
+
+def _are_words(values: Iterable[object]) -> bool:
+    return all(isinstance(each, str) for each in values)
+
+
+_PARTS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
+    "mains": (
+        'a dict of the main loops by core, such as {"A": main, "B": main}',
+        lambda value: isinstance(value, Mapping) and all(map(callable, value.values())),
+    ),
+    "buffers": ("a function that takes the size of the pictures", callable),
+    "camera": ("the name of a buffer", lambda value: isinstance(value, str)),
+    "rows": ("a tuple of BudgetRow", lambda value: isinstance(value, (tuple, list))),
+    "reference": ("a Reference or None", lambda value: value is None or isinstance(value, Reference)),
+    "calibration": ("a function or None", _is_none_or_called),
+    "spi": ("a function or None", _is_none_or_called),
+    "uart": ("a function or None", _is_none_or_called),
+    "view": ("a function or None", _is_none_or_called),
+    "colours": ("a function or None", _is_none_or_called),
+    "losses": (
+        "a dict of words by the name of what is published",
+        lambda value: isinstance(value, Mapping) and _are_words(value) and _are_words(value.values()),
+    ),
+    "assumed_geometry": ("words", lambda value: isinstance(value, str)),
+    "write_through": (
+        "a tuple of names of segments",
+        lambda value: isinstance(value, (tuple, list)) and _are_words(value),
+    ),
+}
+"""What each part of a firmware must be; otherwise it fails long after, where nothing tells of it."""
+
+
+def _check_parts(firmware: Firmware) -> None:
+    for name, (words, is_one) in _PARTS.items():
+        value = getattr(firmware, name)
+        if not is_one(value):
+            raise FirmwareError(f"{name} of a firmware must be {words}, not {shown(value)}")
+
+
 def _check_rows(rows: Sequence[BudgetRow]) -> None:
     """Raise FirmwareError for rows that no budget can have: each cycle would be counted twice, or in none."""
     for row in rows:
@@ -124,6 +166,7 @@ class Firmware:
     write_through: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        _check_parts(self)
         _check_rows(self.rows)
         known = [each.stage for each in self.rows if each.reference_ms is not None]
         if known and self.reference is None:

@@ -63,8 +63,8 @@ def _called(firmware: Firmware, size: FrameSize) -> Buffers:
     """Return the buffers of firmware whose code may have mistakes; a mistake is a FirmwareError with its line."""
     try:
         buffers = firmware.buffers(size)
-    except BfsimError:
-        raise
+    except BfsimError as error:
+        raise type(error)(f"{error}{line_of(error)}") from error
     except Exception as error:
         what = f"{type(error).__name__}: {error}{line_of(error)}"
         raise FirmwareError(f"buffers for pictures of {size} failed with {what}") from error

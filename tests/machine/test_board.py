@@ -279,6 +279,98 @@ def test_rows_that_no_budget_can_have_are_refused(rows: Any, message: str) -> No
         firmware(rows=rows)
 
 
+@pytest.mark.parametrize(
+    ("part", "message"),
+    [
+        (
+            {"mains": [see_all, see_all]},
+            'mains of a firmware must be a dict of the main loops by core, such as {"A": main',
+        ),
+        (
+            {"mains": {"A": see_all, "B": None}},
+            "mains of a firmware must be a dict of the main loops by core",
+        ),
+        (
+            {"buffers": {"A": []}},
+            "buffers of a firmware must be a function that takes the size of the pictures, not",
+        ),
+        ({"camera": 3}, "camera of a firmware must be the name of a buffer, not 3"),
+        ({"rows": BudgetRow(stage="Work")}, "rows of a firmware must be a tuple of BudgetRow, not BudgetRow"),
+        ({"reference": 3}, "reference of a firmware must be a Reference or None, not 3"),
+        ({"calibration": 3}, "calibration of a firmware must be a function or None, not 3"),
+        ({"view": 3}, "view of a firmware must be a function or None, not 3"),
+        (
+            {"losses": ["lost"]},
+            "losses of a firmware must be a dict of words by the name of what is published, not",
+        ),
+        ({"assumed_geometry": 3}, "assumed_geometry of a firmware must be words, not 3"),
+        (
+            {"write_through": "MEM_SDRAM"},
+            "write_through of a firmware must be a tuple of names of segments, not",
+        ),
+    ],
+)
+def test_parts_of_another_kind_are_refused(part: dict[str, Any], message: str) -> None:
+    """Where firmware is made, with its line; five of them ended in a traceback later, and others were told without a place."""
+    with pytest.raises(FirmwareError, match=message):
+        replace(firmware(), **part)
+
+
+def test_buffers_that_cannot_be_are_told_with_their_line() -> None:
+    """The name of an element in place of the element."""
+
+    def buffers(_size: FrameSize) -> Any:
+        return {"A": [Buffer("camera", "u8", 8, "sdram_bank0")]}  # type: ignore[arg-type]
+
+    line = buffers.__code__.co_firstlineno + 1
+    with pytest.raises(
+        FirmwareError, match=rf"must have elements of i8 to u32 or f32, not 'u8' \({__file__}:{line}\)"
+    ):
+        board_of(replace(firmware(), buffers=buffers))
+
+
+def test_what_no_remark_can_be() -> None:
+    """No number, and nothing that a terminal obeys: half a character ended the JSON in a traceback."""
+
+    def remark(text: Any) -> BoardRecord:
+        def body(core: Core, frame: Frame) -> Play:
+            core.remark(text)
+            yield from ()
+
+        return run(every_frame(body))
+
+    with pytest.raises(FirmwareError, match=r"a remark must be text, not 3 \("):
+        remark(3)
+    told = remark("two\nlines \x1b[31m \udcff").frames[0].remarks[0]
+    assert told == r"core A two\nlines \x1b[31m \udcff"
+
+
+def test_an_iterator_that_has_ended_is_told_with_its_line() -> None:
+    """Python makes another error of it, which comes from nowhere."""
+
+    def body(core: Core, frame: Frame) -> Play:
+        next(iter(()))
+        yield from ()
+
+    line = body.__code__.co_firstlineno + 1
+    with pytest.raises(FirmwareError, match=rf"StopIteration \({__file__}:{line}\)"):
+        run(every_frame(body))
+
+
+def test_stages_without_rows_are_told_what_is_missing() -> None:
+    """It was said that a stage must be one of nothing."""
+
+    def body(core: Core, frame: Frame) -> Play:
+        with core.stage("Work"):
+            yield from ()
+
+    board = board_of(replace(firmware(), mains=dict.fromkeys("AB", every_frame(body)), rows=()))
+    with pytest.raises(
+        FirmwareError, match="stage must be one of the firmware's rows, which has none, not 'Work'"
+    ):
+        board.run(iter(noise(1)))
+
+
 def test_a_camera_buffer_of_16_bit_elements_holds_the_same_bytes() -> None:
     """DMA fills bytes: 16 elements of 16 bits are a line of 16 pixels."""
     seen = []

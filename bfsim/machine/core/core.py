@@ -169,7 +169,7 @@ class Core:
         return number
 
     def remark(self, text: str) -> None:
-        """Add a sentence about the current frame to the report."""
+        """Add a sentence about the current frame to the report, as one line. Raises FirmwareError for what is no text."""
         self._pictures.remark(text)
 
     def set_camera(self, settings: CameraSettings) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.calls.conflicts import Accesses
@@ -32,7 +32,12 @@ class Stages:
     def check(self, name: str) -> None:
         """Raise FirmwareError unless there is a stage `name`."""
         if name not in self._names:
-            raise FirmwareError(f"stage must be one of {', '.join(self._names)}, not {name!r}")
+            known = (
+                f"one of {', '.join(self._names)}"
+                if self._names
+                else "one of the firmware's rows, which has none"
+            )
+            raise FirmwareError(f"stage must be {known}, not {shown(name)}")
 
     def enter(self, stage: str) -> None:
         """Go over to another stage, and charge the one that ends what conflicts in L1 cost it."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.chip.spec import ChipSpec
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, printable, shown
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.capture import Capture
@@ -98,8 +98,10 @@ class Pictures:
         return any(name.startswith("ppi_words_lost_") for name in self._results)
 
     def remark(self, text: str) -> None:
-        """Add a sentence about the current frame to the report."""
-        self._remarks.append(f"core {self._layouts.core} {text}")
+        """Add a sentence about the current frame to the report, as one line. Raises FirmwareError for what is no text."""
+        if not isinstance(text, str):
+            raise FirmwareError(f"a remark must be text, not {shown(text)}")
+        self._remarks.append(f"core {self._layouts.core} {printable(text)}")
 
     def at(self, rows: int | range | Pixels | None = None, columns: Columns | None = None) -> None:
         """Say what the work from here on is about."""
