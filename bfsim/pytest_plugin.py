@@ -160,7 +160,10 @@ def _sentences(mark: pytest.Mark) -> list[str]:
         )
     rate = [] if min_hz is None else [f"frame_rate >= {_number(min_hz, 'min_hz')} Hz"]
     most = [f'"{stage}".max <= {_number(ms, "stages")} ms' for stage, ms in stages.items()]
-    return [*mark.args, *rate, *most]
+    sentences = [*mark.args, *rate, *most]
+    if not sentences:
+        raise ConfigError(f"@pytest.mark.{MARK} must say a limit, min_hz or stages, for nothing breaks it")
+    return sentences
 
 
 def _number(value: object, what: str) -> str:

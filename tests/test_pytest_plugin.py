@@ -60,6 +60,10 @@ def test_no_sentence(bfsim):
 def test_another_limit(bfsim):
     bfsim(frames=1)
 
+@pytest.mark.frame_budget(stages={})
+def test_no_limit(bfsim):
+    bfsim(frames=1)
+
 @pytest.mark.frame_budget(min_hz=5)
 def test_that_runs_nothing(bfsim):
     pass
@@ -119,7 +123,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "8 failed, 5 passed, 4 errors" in told
+    assert "8 failed, 5 passed, 5 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -138,6 +142,7 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert "@pytest.mark.frame_budget: min_hz must be a number, not 1000" in told
     assert '@pytest.mark.frame_budget: a limit must be a sentence such as "latency <= 200 ms", not 15' in told
     assert "@pytest.mark.frame_budget: max_ms must be min_hz or stages" in told
+    assert "@pytest.mark.frame_budget must say a limit, min_hz or stages, for nothing breaks it" in told
     assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
     assert "limits.toml must be a baseline file, but there is none" in told
     assert "bare.toml: run 'bare' must have limits or a require, but has neither" in told
