@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,41 +20,73 @@ TAG = "bfsim overlay"
 """A remark in each file, by which an earlier overlay is known."""
 
 
-def _images(frames: Sequence[Path]) -> Iterator[Image.Image]:
-    """Yield the pictures, all on paper as large as the largest: firmware may change the size during a run."""
+Frame = Callable[[int], Image.Image]
+"""The number of a picture → the picture."""
+
+
+class _Film(Image.Image):
+    """Pictures as Pillow has those of an animated file: only that which is looked at is in memory."""
+
+    def __init__(self, frame: Frame, count: int) -> None:
+        super().__init__()
+        self.n_frames = count
+        self._frame = frame
+        self._number = -1
+        self.seek(0)
+
+    def seek(self, frame: int) -> None:
+        """Look at a picture."""
+        if frame >= self.n_frames:
+            raise EOFError
+        if frame != self._number:
+            image = self._frame(frame)
+            self.im, self._mode, self._size, self.palette = image.im, image.mode, image.size, image.palette
+            self._number = frame
+
+    def tell(self) -> int:
+        """Return the number of the picture that is looked at."""
+        return self._number
+
+
+def _on_paper(frames: Sequence[Path]) -> Frame:
+    """Return what takes each picture, all on paper as large as the largest: firmware may change the size during a run."""
     sizes = []
     for each in frames:
         with Image.open(each) as image:
             sizes.append(image.size)
     # video has one sample of colour for two by two pixels: no odd row or column
     width, height = (-(-max(size[axis] for size in sizes) // 2) * 2 for axis in (0, 1))
-    for each in frames:
+
+    def frame(number: int) -> Image.Image:
         paper = Image.new("RGB", (width, height), PAPER)
-        with Image.open(each) as image:
+        with Image.open(frames[number]) as image:
             paper.paste(image)
-        yield paper
+        return paper
+
+    return frame
 
 
-def _save_animation(images: Iterator[Image.Image], target: Path, **options: Any) -> None:
-    first, *others = images
-    first.save(target, save_all=True, append_images=others, duration=FRAME_MS, loop=0, **options)
+def _save_animation(frame: Frame, count: int, target: Path, **options: Any) -> None:
+    _Film(frame, count).save(target, save_all=True, duration=FRAME_MS, loop=0, **options)
 
 
 def _encode_gif(frames: Sequence[Path], target: Path) -> None:
     # of Pillow's palettes this one keeps the colours of thin marks
-    few = (
-        image.quantize(method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-        for image in _images(frames)
-    )
-    _save_animation(few, target, format="GIF", comment=TAG)
+    whole = _on_paper(frames)
+
+    def frame(number: int) -> Image.Image:
+        return whole(number).quantize(method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+
+    _save_animation(frame, len(frames), target, format="GIF", comment=TAG)
 
 
 def _encode_webp(frames: Sequence[Path], target: Path) -> None:
-    _save_animation(_images(frames), target, format="WEBP", quality=85, method=2, xmp=TAG.encode())
+    options = {"quality": 85, "method": 2, "xmp": TAG.encode()}
+    _save_animation(_on_paper(frames), len(frames), target, format="WEBP", **options)
 
 
 def _encode_apng(frames: Sequence[Path], target: Path) -> None:
-    _save_animation(_images(frames), target, format="PNG", pnginfo=png_remark())
+    _save_animation(_on_paper(frames), len(frames), target, format="PNG", pnginfo=png_remark())
 
 
 def _encode_mp4(frames: Sequence[Path], target: Path) -> None:
@@ -64,7 +96,7 @@ def _encode_mp4(frames: Sequence[Path], target: Path) -> None:
         container.metadata["comment"] = TAG
         stream = container.add_stream("libx264", rate=1000 // FRAME_MS, options={"crf": "18"})
         stream.pix_fmt = "yuv420p"
-        for image in _images(frames):
+        for image in map(_on_paper(frames), range(len(frames))):
             if not stream.codec_context.is_open:
                 stream.width, stream.height = image.size
             container.mux(stream.encode(av.VideoFrame.from_ndarray(np.asarray(image), format="rgb24")))
