@@ -47,7 +47,7 @@ _path = cache(Path)  # a start asks hundreds of times
 def can_keep() -> bool:
     """Return whether the cache can be written, and be read again."""
     place = _trusted(folder())
-    return place is not None and os.access(place, os.W_OK | os.X_OK)
+    return place is not None and _is_writable(place)
 
 
 def load(name: str) -> bytes | None:
@@ -67,9 +67,9 @@ def load(name: str) -> bytes | None:
 
 
 def save(name: str, body: bytes) -> None:
-    """Keep `body` under `name`. A cache that cannot be written is no error; the next start compiles again."""
+    """Keep `body` under `name`. A cache that cannot be written is no error; the next start compiles again, and that is told."""
     place = _trusted(folder())
-    if place is None:
+    if place is None or not _is_writable(place):
         return
     with suppress(OSError):
         place /= name[:2]
@@ -125,6 +125,20 @@ def _trusted(place: Path) -> Path | None:
         )
         return None
     return place
+
+
+@cache
+def _is_writable(place: Path) -> bool:
+    """Return whether the user can write to the cache's folder; otherwise after a warning."""
+    if os.access(place, os.W_OK | os.X_OK):
+        return True
+    warnings.warn(
+        f"the kernel cache {shown(str(place))} must be writable: every start compiles what is not in it; "
+        "`chmod u+w` makes it so, and BFSIM_CACHE_DIR names another one",
+        BfsimWarning,
+        stacklevel=2,
+    )
+    return False
 
 
 def _stranger(found: os.stat_result) -> str:

@@ -306,6 +306,23 @@ def test_a_folder_that_others_can_write_is_not_used(
     assert not list(folder.iterdir())
 
 
+def test_a_folder_that_cannot_be_written_is_told_of(
+    folder: Path, compiles: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once, and only where there is something new: what is in it is used."""
+    cost_of(import_text(TEXT, tmp_path, "same").f)
+    monkeypatch.setattr("os.access", lambda *_arguments: False)  # root can write everywhere
+    store._is_writable.cache_clear()
+    cost_of(import_text(TEXT, tmp_path, "same").f)
+    assert compiles == ["f"]
+    with pytest.warns(BfsimWarning, match="must be writable: every start compiles what is not in it") as told:
+        store.save("one", b"1")
+        store.save("two", b"2")
+    assert len(told) == 1
+    assert store.load("one") is None
+    assert not store.can_keep()
+
+
 def test_a_new_folder_is_private(folder: Path, tmp_path: Path) -> None:
     """Nobody else writes in it, whatever the user's umask is."""
     before = os.umask(0)
