@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from itertools import accumulate
 
 from PIL import Image, ImageDraw
 
@@ -57,32 +56,48 @@ def _step(text: str) -> int:
     return GLYPH + round(style.font(style.FONT).getlength(text)) + GAP
 
 
-LEGEND_WIDTH = (
-    sum(_step(text) for _, text, _ in ENTRIES)
-    + round(style.font(style.FONT).getlength(TITLE))
-    + BAR
-    + 3 * GAP
-    + 100
-)
+def _scale_width() -> int:
+    """Return how wide the scale of depths is."""
+    return round(style.font(style.FONT).getlength(TITLE)) + BAR + 3 * GAP + 100
+
+
+LEGEND_WIDTH = sum(_step(text) for _, text, _ in ENTRIES) + _scale_width()
+"""Of a whole legend in one row."""
 
 
 @cache
-def legend(scale: DepthScale, layers: frozenset[str]) -> Image.Image:
-    """Return the legend of what is drawn as a strip, as wide for any layers."""
+def legend(scale: DepthScale, layers: frozenset[str], width: int, *, is_empty: bool) -> Image.Image:
+    """Return the legend of what is drawn in `layers`, as many rows as it takes in a `width`; an empty one is as large."""
     font = style.font(style.FONT)
-    middle = style.FOOT // 2
     entries = [(text, draw) for layer, text, draw in ENTRIES if layer in layers]
-    places = [0, *accumulate(_step(text) for text, _ in entries)]
-    large = Image.new("RGB", (LEGEND_WIDTH * style.SMOOTH, style.FOOT * style.SMOOTH), style.PAPER)
-    for x, (_, draw) in zip(places, entries, strict=False):
-        draw(Pen(large, style.SMOOTH, (x, middle)))
+    steps = [_step(text) for text, _ in entries]
+    has_scale = bool(layers & OF_DEPTH)
+    places = _places([*steps, _scale_width()] if has_scale else steps, width)
+    height = (max(y for _, y in places) if places else 0) + style.FOOT // 2
+    large = Image.new("RGB", (width * style.SMOOTH, height * style.SMOOTH), style.PAPER)
+    if is_empty:
+        return large.reduce(style.SMOOTH)
+    for place, (_, draw) in zip(places, entries, strict=False):
+        draw(Pen(large, style.SMOOTH, place))
     strip = large.reduce(style.SMOOTH)
     pen = ImageDraw.Draw(strip)
-    for x, (text, _) in zip(places, entries, strict=False):
-        pen.text((x + GLYPH + 6, middle), text, style.FAINT, font, anchor="lm")
-    if layers & OF_DEPTH:
-        _write_scale(pen, places[-1], middle, scale)
+    for (x, y), (text, _) in zip(places, entries, strict=False):
+        pen.text((x + GLYPH + 6, y), text, style.FAINT, font, anchor="lm")
+    if has_scale:
+        _write_scale(pen, *places[-1], scale)
     return strip
+
+
+def _places(widths: list[int], room: int) -> list[tuple[int, int]]:
+    """Return where entries begin, in rows as wide as there is room, and the middles of these."""
+    places = []
+    x, y = 0, style.FOOT // 2
+    for each in widths:
+        if x and x + each - GAP > room:
+            x, y = 0, y + style.FOOT
+        places.append((x, y))
+        x += each
+    return places
 
 
 def _write_scale(pen: ImageDraw.ImageDraw, x: float, middle: int, scale: DepthScale) -> None:

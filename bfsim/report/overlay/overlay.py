@@ -29,8 +29,8 @@ def overlay_of(
 ) -> Image.Image:
     """Return the sheet of a frame, RGB, with some `layers` drawn: the same size for frames of pictures of one size.
 
-    A picture is about `panel_width` pixels wide, but a slim one at most twice as high; one alone is as wide as the
-    legend. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
+    A picture is about `panel_width` pixels wide, but a slim one at most twice as high; one alone is about as wide as the
+    legend in one row. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
     """
     frame, scale = only(frame, layers), depths_of(frame)
     wanted_px = panel_width if len(frame.cameras) > 1 else LEGEND_WIDTH
@@ -42,10 +42,13 @@ def overlay_of(
     inside = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) - 1)
     inside += above.width + style.MARGIN if above else 0
     inside += (BARS + GAP) * len(heats)
-    width = 2 * style.MARGIN + max(inside, LEGEND_WIDTH)
-    below = heat_legend(heats, width - 2 * style.MARGIN, hottest_us, longest_us) if heats else None
-    height = style.HEAD + highest + style.FOOT + (below.height if below else 0)
-    sheet = Image.new("RGB", (width, height), style.PAPER)
+    # slim pictures have a sheet that is wide enough for words
+    room = inside if inside >= style.PANEL_WIDTH else LEGEND_WIDTH
+    has_marks = any(map(_has_marks, frame.cameras))
+    marks = legend(scale, frozenset(layers), room, is_empty=not has_marks)
+    below = heat_legend(heats, room, hottest_us, longest_us) if heats else None
+    height = style.HEAD + highest + marks.height + (below.height if below else 0)
+    sheet = Image.new("RGB", (room + 2 * style.MARGIN, height), style.PAPER)
     pen = ImageDraw.Draw(sheet)
     left = style.MARGIN
     for seen, (image, labels) in zip(frame.cameras, panels, strict=True):
@@ -60,8 +63,7 @@ def overlay_of(
     if above:
         sheet.paste(above, (left, style.HEAD))
         pen.text((left, style.HEAD // 2), "from above, mm", style.WORDS, style.font(style.FONT), anchor="lm")
-    marks = frozenset(layers) if any(map(_has_marks, frame.cameras)) else frozenset()
-    sheet.paste(legend(scale, marks), (style.MARGIN, style.HEAD + highest))
+    sheet.paste(marks, (style.MARGIN, style.HEAD + highest))
     if below:
         sheet.paste(below, (style.MARGIN, height - below.height))
     return sheet

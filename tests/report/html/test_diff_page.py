@@ -129,6 +129,15 @@ def test_what_is_not_there_has_no_part_of_the_page() -> None:
     assert "section" not in found.names
 
 
+def test_commands_in_its_sentences_are_code() -> None:
+    """They stand between backticks in a terminal."""
+    change = Change(what="code", before="GCC 12.2.0", after="estimated")
+    difference = replace(DIFFERENCE, configuration=(change,))
+    text = "".join(DiffPage(difference, PagedSide("a", None), PagedSide("b", None)).chunks())
+    assert "or with <code>--profile gcc-O2</code>, which estimates" in text
+    assert "`" not in text.partition("<main>")[2]
+
+
 def test_names_are_words_and_no_markup() -> None:
     """Of firmware, lines, numbers, objects and of the runs themselves; the page has no script at all."""
     evil = contribution(ContributionKind.STAGE, EVIL, 5, replace(LINE, name=EVIL, place=EVIL))

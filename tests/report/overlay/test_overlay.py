@@ -86,6 +86,16 @@ def test_the_legend_is_of_what_is_drawn() -> None:
     assert shown_there == [False, True, False]
 
 
+def test_a_legend_that_is_wider_than_the_pictures_has_rows() -> None:
+    """As those of a page: the sheet was as wide as the legend, with nothing beside the pictures, also where it was empty."""
+    marked, bare = (overlay_of(each, LAYERS, 480) for each in (one(lines=made.LINES), one()))
+    assert marked.size == bare.size == (2 * 480 + 3 * style.MARGIN, style.HEAD + 360 + 2 * style.FOOT)
+    first, second = np.asarray(marked)[-2 * style.FOOT :].reshape(2, style.FOOT, -1, 3)
+    assert (first == colours.CIRCLE).all(axis=2).any()
+    assert not (second == colours.CIRCLE).all(axis=2).any()
+    assert (second != style.PAPER).any()
+
+
 def test_without_marks_there_is_nothing_to_explain() -> None:
     """Firmware without a view has none; the sheet is as large."""
     bare = overlay_of(one())
