@@ -137,6 +137,18 @@ def test_a_folder_that_was_removed_meanwhile(tmp_path: Path, option: str) -> Non
     )
 
 
+def test_a_limit_of_addresses_is_told_with_a_way_around_it() -> None:
+    """As of the jobs of a cluster: code that a compiler made has the Blackfin's 4 GB of addresses; that memory was lacking said nothing."""
+    limited = bfsim("ulimit -v 3000000; $BFSIM run --frames 1")
+    assert limited.returncode == 2
+    assert limited.stderr.startswith(
+        "bfsim: error: this system must allow a process 4 GB of addresses, without memory"
+    )
+    assert "`ulimit -v unlimited` does, and `--profile gcc-O2`" in limited.stderr
+    around = bfsim("ulimit -v 3000000; $BFSIM run --frames 1 --profile gcc-O2")
+    assert around.returncode == 0, around.stderr
+
+
 def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     """A traceback ends with a code of its own."""
     program = "import bfsim.cli.boards as boards; from unittest.mock import patch; from bfsim.__main__ import main\n"

@@ -57,7 +57,7 @@ class _Pages:
 class AddressSpace:
     """A reservation of 4 GB and a page of the host's addresses, of which only the memories are backed.
 
-    `origin`: the host's address of address 0.
+    `origin`: the host's address of address 0. Raises ConfigError where the host refuses, as under a limit of addresses.
     """
 
     memories: list[Memory] = field(default_factory=list)
@@ -67,7 +67,13 @@ class AddressSpace:
     def __post_init__(self) -> None:
         # without access from the start, so that the host need not promise 4 GB of memory
         flags = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS
-        self._map = mmap.mmap(-1, SPAN_BYTES + mmap.PAGESIZE, flags=flags, prot=NO_ACCESS)
+        try:
+            self._map = mmap.mmap(-1, SPAN_BYTES + mmap.PAGESIZE, flags=flags, prot=NO_ACCESS)
+        except OSError as error:
+            raise ConfigError(
+                "this system must allow a process 4 GB of addresses, without memory, to run the code that a compiler made of "
+                f"kernels ({error.strerror}); `ulimit -v unlimited` does, and `--profile gcc-O2`, which estimates, needs none"
+            ) from error
         self.origin = np.frombuffer(self._map, np.uint8).ctypes.data
 
     def add(self, base: int, nbytes: int) -> Memory:
