@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from bfsim.api import FrameSize
+from bfsim.cli.options.running import simulated
 from bfsim.machine.board import Fidelity
-from bfsim.process.terminal import progress_bar
+from bfsim.process.terminal import Bar, progress_bar
 from tests.machine.rig import load, noise, see_all
 
 
@@ -31,3 +34,12 @@ def test_the_bar_says_how_far_it_is_and_how_fast() -> None:
         assert task.fields["reached"].startswith("12.3 ms simulated, ")
         assert task.fields["reached"].endswith(" a second")
         assert (task.completed, task.total) == (0, 1)
+
+
+def test_what_takes_long_before_the_first_frame_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A first run compiles half a minute long, and the bar stood at no frame of nobody knows how many."""
+    said: list[str] = []
+    monkeypatch.setattr(Bar, "say", lambda _self, text: said.append(text))
+    simulated(feed="demand", fidelity="fast", frames=1, firmware="tinyphoon")
+    assert said[0] == "compiling new kernels"
+    assert said[-1] == ""

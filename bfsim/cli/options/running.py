@@ -97,10 +97,16 @@ def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
 
     watchers = watchers or Watchers()
     with progress_bar("Simulating frames", unit="ms simulated") as bar:
+        bar.say("compiling new kernels")  # nothing else takes long before the first frame
+
+        def tell(done: int, total: int) -> None:
+            bar.say("")
+            bar(done, total)
+
         done = simulate(
             feed=Feed(feed),
             fidelity=Fidelity(fidelity),
-            progress=bar,
+            progress=tell,
             before=calling(watchers.before),
             on_seen=calling(watchers.seen),
             on_spans=calling(watchers.spans),
