@@ -85,12 +85,8 @@ class _Floor:
 
 def _rings(scale: DepthScale) -> range:
     """Return the distances that are marked, in mm: two to five round ones."""
-    step = next(
-        each
-        for size in (10, 100, 1000, 10**4, 10**5)
-        for each in (size, 2 * size, 5 * size)
-        if 5 * each >= scale.far_mm
-    )
+    size = 10 ** max(1, math.floor(math.log10(scale.far_mm / 5)))
+    step = next(each for each in (size, 2 * size, 5 * size, 10 * size) if 5 * each >= scale.far_mm)
     return range(step, math.ceil(scale.far_mm), step)
 
 

@@ -19,6 +19,7 @@ from bfsim.api import (
     Seen,
     SeenArrow,
     SeenEdges3D,
+    SeenLoss,
     SeenMap,
     SeenText,
     u8,
@@ -27,7 +28,7 @@ from bfsim.errors import FirmwareError
 from bfsim.report.results.seen_json import SeenStore
 from bfsim.run import simulate
 from tests.machine.rig import see_all
-from tests.seen_frames import BALL, BLOB, CIRCLE, EDGES, LINES
+from tests.seen_frames import BALL, BLOB, CIRCLE, EDGES, GEOMETRY, LINES
 
 
 def buffers(size: FrameSize) -> dict[str, Sequence[Buffer]]:
@@ -109,7 +110,8 @@ def ball(**parts: Any) -> dict[str, Any]:
 
 def in_space(places_mm: Any, left_edges: Any) -> dict[str, Any]:
     """Edges in space of a picture with three edges."""
-    return {"edges": EDGES, "edges_3d": SeenEdges3D(places_mm=places_mm, left_edges=left_edges)}
+    edges = replace(EDGES, x_px=EDGES.x_px % 2, y_px=EDGES.y_px % 2)
+    return {"edges": edges, "edges_3d": SeenEdges3D(places_mm=places_mm, left_edges=left_edges)}
 
 
 @pytest.mark.parametrize(
@@ -157,9 +159,33 @@ def in_space(places_mm: Any, left_edges: Any) -> dict[str, Any]:
         ),
         (
             in_space(np.zeros((1, 2)), np.zeros(1, int)),
-            r"edges_3d of a view must have arrays of shapes \(n, 3\) and \(n\)",
+            r"edges_3d of a view must have arrays of shapes \(n, 3\), of finite numbers, and \(n\), of whole ones",
         ),
-        (in_space(np.zeros((1, 3)), np.array([99])), "must be numbers of its 3 edges, not"),
+        (
+            in_space(np.zeros((1, 3)), np.array([99])),
+            "left_edges of edges_3d of a view must be 0 to 2, not 99 to 99",
+        ),
+        ({"edges": replace(EDGES, x_px=EDGES.x_px + 2)}, "x_px of edges of a view must be 0 to 1, not"),
+        ({"edges": replace(EDGES, y_px=EDGES.y_px + 0.5)}, "arrays of one length of whole numbers"),
+        (in_space(np.full((1, 3), np.inf), np.zeros(1, int)), "of finite numbers"),
+        (blob(right_px=3), "the right_px of a blob of a view must be its left_px, 30, or more, not 3"),
+        (
+            {"losses": (SeenLoss(what="edges", top_px=3, bottom_px=1, share=0.5),)},
+            "the bottom_px of a loss of a view",
+        ),
+        (
+            {"losses": (SeenLoss(what="edges", top_px=1, bottom_px=3, share=50.0),)},
+            "share of a loss of a view must be 0 to 1",
+        ),
+        (
+            {"geometry": replace(GEOMETRY, focal_px=0)},
+            "the focal_px of the geometry of a view must be above 0, not 0",
+        ),
+        (ball(name="\udcff"), "the name of an object of a view must be words on one line, not"),
+        (
+            {"map": SeenMap(name="m", values=np.eye(2), lowest=np.nan)},
+            "lowest and highest of a map must be finite numbers",
+        ),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(parts: dict[str, Any], message: str) -> None:

@@ -28,6 +28,7 @@ from bfsim.seen import (
     colours,
 )
 from bfsim.seen.heat import COLOURS, SHARE
+from bfsim.seen.in_space import no_edges_3d
 from bfsim.seen.pictures import rgb_of
 from tests import seen_frames as made
 
@@ -252,6 +253,15 @@ def test_pictures_of_any_size_are_drawn(size: tuple[int, int]) -> None:
     sheet = overlay_of(made.frame(0, seen, replace(seen, camera="right")))
     assert sheet.width >= 2 * size[0]
     assert sheet.height <= max(2 * style.PANEL_WIDTH, size[1]) + style.HEAD + style.FOOT
+
+
+@pytest.mark.parametrize("far_mm", [150, 2_500_000, 2_600_000, 1e8])
+def test_places_of_any_distance_are_drawn(far_mm: float) -> None:
+    """As of objects with next to no disparity: those of more than 2.5 km ended in a traceback."""
+    ball = replace(made.BALL, place_mm=(0, 0, far_mm))
+    left = made.left(objects=(ball,), lines_3d=(), edges_3d=no_edges_3d())
+    sheet = overlay_of(made.frame(0, left, Seen(camera="right", picture=made.grey())))
+    assert sheet.width > sheet.height
 
 
 def test_one_camera_alone_is_drawn_too() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from math import isfinite
@@ -44,10 +45,19 @@ NOUNS: Mapping[type, str] = {
 """What is checked here, and what a message calls it."""
 
 _RULES: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
+    "focal_px": ("above 0", lambda value: value > 0),
     "radius_px": ("0 or more", lambda value: value >= 0),
+    "share": ("0 to 1", lambda value: 0 <= value <= 1),
     "camera": (" or ".join(CAMERAS.values()), lambda value: value in CAMERAS.values()),
 }
 """What a field must be besides, by its name."""
+
+_ORDERED = (("left_px", "right_px"), ("top_px", "bottom_px"))
+"""Borders, of which the second one does not come first."""
+
+
+_NO_WORDS = re.compile("[\n\r\ud800-\udfff]")
+"""Lines that end, and halves of characters, which no file takes."""
 
 
 def check_fields(mark: Any) -> None:
@@ -59,14 +69,21 @@ def check_fields(mark: Any) -> None:
         if not is_one(value):
             what = noun if noun.endswith(f" {name}") else f"the {name} of {noun}"
             raise FirmwareError(f"{what} of a view must be {words}, not {shown(value)}")
+    for first, last in _ORDERED:
+        if hasattr(mark, last) and getattr(mark, last) < getattr(mark, first, getattr(mark, last)):
+            least = getattr(mark, first)
+            raise FirmwareError(
+                f"the {last} of {noun} of a view must be its {first}, {least}, or more, not {getattr(mark, last)}"
+            )
 
 
 def is_line_of_words(value: Any) -> bool:
     """Whether a value is text that can be drawn and listed."""
-    return isinstance(value, str) and "\n" not in value and "\r" not in value
+    return isinstance(value, str) and not _NO_WORDS.search(value)
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether a value is a number that can be drawn."""
     return isinstance(value, Real) and isfinite(value)
 
 
@@ -100,12 +117,12 @@ def _is_named_numbers(value: Any) -> bool:
 
 _KINDS: Mapping[Any, tuple[str, Callable[[Any], bool]]] = {
     int: ("a whole number", _is_whole),
-    float: ("a finite number", _is_number),
+    float: ("a finite number", is_number),
     bool: ("True or False", _is_truth),
     str: ("words on one line", is_line_of_words),
     Solid: ("a Solid", lambda value: isinstance(value, Solid)),
-    Point: ("two numbers, x and y", _are(2, _is_number)),
-    PointMm: ("three numbers, x, y and z", _are(3, _is_number)),
+    Point: ("two numbers, x and y", _are(2, is_number)),
+    PointMm: ("three numbers, x, y and z", _are(3, is_number)),
     Colour: ("red, green and blue, 0 to 255", _is_colour),
     tuple[str, ...]: ("a tuple of words", _are(None, is_line_of_words)),
     tuple[int, ...]: ("a tuple of whole numbers", _are(None, _is_whole)),

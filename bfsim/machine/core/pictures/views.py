@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, shown
-from bfsim.machine.core.pictures.marks import check_fields, is_line_of_words
+from bfsim.machine.core.pictures.marks import check_fields, is_line_of_words, is_number
 from bfsim.machine.core.pictures.readout import Readout
 from bfsim.machine.firmware_lines import place_of
 from bfsim.seen import (
@@ -115,27 +116,35 @@ def _check_edges(seen: Seen) -> None:
     _require_kind("edges_3d", in_space, SeenEdges3D)
     count, count_in_space = np.shape(edges.x_px)[:1], np.shape(in_space.left_edges)[:1]
     columns = (edges.x_px, edges.y_px, edges.gradients, edges.directions)
-    if not all(_is_of_numbers(each, count) for each in columns) or not isinstance(edges.lost, Integral):
+    if not all(_are_numbers(each, count, "iu") for each in columns) or not isinstance(edges.lost, Integral):
         raise FirmwareError(
-            "edges of a view must have x_px, y_px, gradients and directions that are arrays of one length, "
+            "edges of a view must have x_px, y_px, gradients and directions that are arrays of one length of whole numbers, "
             f"and a whole number lost, not {shown(edges)}"
         )
     if not (
-        _is_of_numbers(in_space.left_edges, count_in_space)
-        and _is_of_numbers(in_space.places_mm, (*count_in_space, 3))
+        _are_numbers(in_space.left_edges, count_in_space, "iu")
+        and _are_numbers(in_space.places_mm, (*count_in_space, 3), "iuf")
     ):
         raise FirmwareError(
-            f"edges_3d of a view must have arrays of shapes (n, 3) and (n), not {shown(in_space)}"
+            "edges_3d of a view must have arrays of shapes (n, 3), of finite numbers, and (n), of whole ones, "
+            f"not {shown(in_space)}"
         )
-    numbers = in_space.left_edges
-    if seen.camera == CAMERAS["A"] and numbers.size and not 0 <= numbers.min() <= numbers.max() < len(edges):
+    _require_within("x_px of edges", edges.x_px, seen.width_px)
+    _require_within("y_px of edges", edges.y_px, seen.height_px)
+    if seen.camera == CAMERAS["A"]:
+        _require_within("left_edges of edges_3d", in_space.left_edges, len(edges))
+
+
+def _are_numbers(values: Any, shape: tuple[int, ...], kinds: str) -> bool:
+    is_array = isinstance(values, np.ndarray) and values.shape == shape and values.dtype.kind in kinds
+    return is_array and bool(np.isfinite(values).all())
+
+
+def _require_within(what: str, numbers: NDArray[Any], count: int) -> None:
+    if numbers.size and not 0 <= numbers.min() <= numbers.max() < count:
         raise FirmwareError(
-            f"left_edges of edges_3d of a view must be numbers of its {len(edges)} edges, not {shown(numbers)}"
+            f"{what} of a view must be 0 to {count - 1}, not {numbers.min()} to {numbers.max()}"
         )
-
-
-def _is_of_numbers(values: Any, shape: tuple[int, ...]) -> bool:
-    return isinstance(values, np.ndarray) and values.shape == shape and values.dtype.kind in "iuf"
 
 
 def _check_map(drawn: Any) -> None:
@@ -149,5 +158,5 @@ def _check_map(drawn: Any) -> None:
             f"the name of the map of a view must be words on one line, not {shown(drawn.name)}"
         )
     for each in (drawn.lowest, drawn.highest):
-        if each is not None and not isinstance(each, Real):
-            raise FirmwareError(f"lowest and highest of a map must be numbers, not {shown(each)}")
+        if each is not None and not is_number(each):
+            raise FirmwareError(f"lowest and highest of a map must be finite numbers, not {shown(each)}")
