@@ -162,6 +162,31 @@ def test_video_of_a_turned_camera_is_upright(tmp_path: Path, degrees: int, corne
     assert luma[corner] == luma.max() > 200
 
 
+def test_damaged_pictures_of_a_video_are_skipped_and_listed(tmp_path: Path) -> None:
+    """The decoder makes up a part of them: a card that was pulled out too early, say. The others keep their place."""
+    av = pytest.importorskip("av", reason="needs the optional extra: video")
+    path = tmp_path / "a.avi"
+    with av.open(path, "w") as container:
+        stream = container.add_stream("mpeg4", rate=25, options={"g": "1"})
+        stream.width, stream.height, stream.pix_fmt = 320, 240, "yuv420p"
+        for seed in range(3):
+            container.mux(
+                stream.encode(av.VideoFrame.from_ndarray(noise((360, 320), seed), format="yuv420p"))
+            )
+        container.mux(stream.encode())
+    with av.open(path) as container:
+        packets = [(each.pos, each.size) for each in container.demux(video=0) if each.size]
+    begin, nbytes = packets[1]
+    content = bytearray(path.read_bytes())
+    content[begin + nbytes // 2 : begin + nbytes // 2 + 2000] = bytes(2000)
+    path.write_bytes(content)
+    made = import_recording([path], tmp_path / "a.mcap", mono=True)
+    assert made.frame_count == 2
+    assert [(each.name, each.reason) for each in made.skipped] == [
+        (f"{path} 1", "the video is damaged there")
+    ]
+
+
 def test_a_file_with_sound_alone_is_no_video(tmp_path: Path) -> None:
     """The error says what is in it."""
     av = pytest.importorskip("av", reason="needs the optional extra: video")

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importing.sources import PictureSource
+from bfsim.recording.importing.sources import PictureSource, Skipped
 from bfsim.recording.planes import YuvPlanes
 
 LARGEST_JITTER_S = Fraction(1, 1000)
@@ -30,7 +30,7 @@ def open_video(source: str) -> PictureSource:
             each.pts * stream.time_base for each in container.demux(stream) if each.pts is not None
         )
         jitter_s = max(stream.time_base, LARGEST_JITTER_S)
-        first = next(_pictures(source, []), None)
+        first = next((each for each in _pictures(source, []) if isinstance(each, YuvPlanes)), None)
     if first is None:
         raise RecordingError(f"{source}: video must have at least one frame that can be decoded, not none")
     own = PictureSource(
@@ -53,8 +53,11 @@ def open_video(source: str) -> PictureSource:
     )
 
 
-def _pictures(source: str, times_ns: list[int]) -> Iterator[YuvPlanes]:
-    """Yield the pictures; `times_ns` then says when each of them was taken, from the first one on."""
+def _pictures(source: str, times_ns: list[int]) -> Iterator[YuvPlanes | Skipped]:
+    """Yield the pictures; `times_ns` then says when each of them was taken, from the first one on.
+
+    Of one that is damaged the decoder makes up a part: where it says so, it is skipped.
+    """
     size, ticks = None, list[int]()
     times_ns.clear()
     with _stream_of(source) as (container, stream):
@@ -72,7 +75,7 @@ def _pictures(source: str, times_ns: list[int]) -> Iterator[YuvPlanes]:
             tick = 0 if frame.pts is None else frame.pts
             ticks.append(max(tick, ticks[-1] + 1) if ticks else tick)  # time stamps rise
             times_ns.append(round((ticks[-1] - ticks[0]) * stream.time_base * 1_000_000_000))
-            yield picture
+            yield Skipped(f"{source} {index}", "the video is damaged there") if frame.is_corrupt else picture
 
 
 @contextmanager
