@@ -68,7 +68,7 @@ def read_kernel(python: Callable[..., Any]) -> Function:
     source = KernelSource(code.co_filename, code.co_firstlineno, file.text_from(code.co_firstlineno))
     if not source.text:
         raise KernelError(f"{python!r} must be a function in a file, so that its source can be read")
-    symbol = re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII)
+    symbol = re.sub(r"\W|^(?=\d)", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII)
     is_static = file.is_static(python.__name__, code.co_firstlineno)
     outer = _meant(source.text, python.__globals__)
 

@@ -398,3 +398,13 @@ def test_two_kernels_of_one_name_cannot_be_linked(import_kernels: ImportText) ->
         KernelError, match=r"it needs two different kernels named step, .*:\d+ and .*:\d+; rename one"
     ):
         import_kernels(text)
+
+
+def test_a_file_may_begin_with_a_digit(tmp_path: Path) -> None:
+    """As `2024_line.py`: code has no names that do, and the run ended in an error of LLVM."""
+    helper = "@kernel\ndef half(x: i32) -> i32:\n    return x >> 1\n\n\n"
+    f = import_text(
+        f"{helper}@kernel\ndef f(x: i32) -> i32:\n    return half(x) + 1\n", tmp_path, "2024_line"
+    ).f
+    assert f(6) == 4
+    assert f.cost(6, profile="gcc-O2") > 0
