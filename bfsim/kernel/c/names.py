@@ -59,10 +59,18 @@ KEYWORDS = [
     "void",
     "volatile",
     "while",
-    "asm",
+    "asm",  # of GNU C, as the next one
+    "typeof",
+    "alignas",  # of C23, to which compilers go over
+    "alignof",
     "bool",
-    "true",
+    "constexpr",
     "false",
+    "nullptr",
+    "static_assert",
+    "thread_local",
+    "true",
+    "typeof_unqual",
     "main",
     "labs",
     "fabs",
@@ -70,6 +78,7 @@ KEYWORDS = [
     "sqrt",
     "sqrtf",
     "NULL",
+    "errno",
 ]
 RESERVED = frozenset((*KEYWORDS, *OPERATORS))
 TYPE_NAME = re.compile(r"u?int(_\w+)?\d+_t|U?INT\w*_(MIN|MAX|C)")

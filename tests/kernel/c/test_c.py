@@ -175,6 +175,15 @@ def test_a_name_of_the_c_library_is_left_to_it() -> None:
     assert list(c_program([c_kernels.free.function]).names.values()) == ["free_"]
 
 
+@pytest.mark.parametrize("name", ["typeof", "asm", "nullptr", "constexpr", "alignas", "errno"])
+def test_names_of_gnu_c_and_of_c23_are_left_to_them(name: str, tmp_path: Path) -> None:
+    """The first one ended a run where GCC is on the PATH, and `errno` is a variable of the library, which took other cycles."""
+    text = f"from bfsim.api import i32, kernel\n\n\n@kernel\ndef {name}({name}: i32) -> i32:\n    return 2 * {name}\n"
+    program = c_program([getattr(import_text(text, tmp_path, "own"), name).function])
+    assert list(program.names.values()) == [f"{name}_"]
+    assert f"int32_t {name}_(int32_t {name}_)" in program.files["own.c"].replace(f"{name}__", f"{name}_")
+
+
 GNU = ("y1", "gamma", "random", "select", "uint", "drem")
 """What the headers of the library declare beyond C99."""
 GNU_MACROS = ("unix", "linux", "M_PI", "NAN", "RAND_MAX", "signgam")
