@@ -13,7 +13,7 @@ from bfsim.errors import FirmwareError, shown
 from bfsim.machine.buffers import Buffers, FrameSize
 from bfsim.machine.peripherals.device import MakeDevice, Script
 from bfsim.seen import PictureColours, Seen
-from bfsim.trace import REST, BudgetRow, Reference
+from bfsim.trace import NO_STAGES, REST, BudgetRow, Reference
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core
@@ -119,6 +119,10 @@ def _check_rows(rows: Sequence[BudgetRow]) -> None:
             )
         if stage == REST:
             raise FirmwareError(f"the stage of a row must not be {REST}, which is what no stage has")
+        if stage in NO_STAGES:
+            raise FirmwareError(
+                f"the stage of a row must not be {stage}, which `bfsim check` calls something else; {stage.capitalize()} will do"
+            )
     whole = [each.stage for each in rows if each.within is None]
     for number, row in enumerate(rows):
         if any(row.stage == each.stage for each in rows[:number]):

@@ -6,13 +6,14 @@ issue + stall + idle = elapsed. What `explain` finds in a kernel stands in `expl
 
 from __future__ import annotations
 
-from bfsim.trace.frames import REST, CoreFrame, FrameRecord, OwnerCost, StageCost, StallReason
+from bfsim.trace.frames import NO_STAGES, REST, CoreFrame, FrameRecord, OwnerCost, StageCost, StallReason
 from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
 from bfsim.trace.kernels import AccessRecord, KernelRecord, LineCost, PathRecord
 from bfsim.trace.later import Later
 from bfsim.trace.run import BoardRecord, BudgetRow, Identity, Reference, RunRecord, RunWarning, WarningKind
 
 __all__ = [
+    "NO_STAGES",
     "REST",
     "AccessRecord",
     "BoardRecord",

@@ -9,6 +9,11 @@ from enum import StrEnum
 REST = "(the rest)"
 """The row of everything that a core does outside of a stage."""
 
+NO_STAGES = frozenset(
+    {"frame_rate", "missed", "latency", "frame", "memory", "results", "objects", "distance_mm"}
+)
+"""What limits of `bfsim check` begin with that are of no stage: a stage of such a name would be taken for that."""
+
 
 class StallReason(StrEnum):
     """Why a core did not retire work although it had work to do."""

@@ -267,6 +267,10 @@ def test_numbers_of_a_reference_need_a_word_about_it() -> None:
             (BudgetRow(stage="a"), BudgetRow(stage="b", within="a"), BudgetRow(stage="c", within="b")),
             "c must be within another row, which is in none itself, not within 'b'",
         ),
+        *(
+            ((BudgetRow(stage=each),), f"must not be {each}, which `bfsim check` calls something else; [A-Z]")
+            for each in ("frame", "memory", "results")
+        ),
         ((BudgetRow(stage=" "),), "must be a name on one line without quotes, not ' '"),
         ((BudgetRow(stage="a\nb"),), r"must be a name on one line without quotes, not 'a\\nb'"),
         ((BudgetRow(stage='"a"'),), "must be a name on one line without quotes, not '\"a\"'"),

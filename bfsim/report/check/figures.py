@@ -80,8 +80,7 @@ def is_of_a_stage(name: Name) -> bool:
 def figures_of(result: Result) -> dict[Name, Figure]:
     """Return every figure of a run of at least one frame.
 
-    A stage is there for each core, and without a core as the longer of them in each frame. A stage that is called like
-    another figure, such as `frame`, is there by its cores alone.
+    A stage is there for each core, and without a core as the longer of them in each frame.
     """
     run = result.run
     figures: dict[Name, Figure] = {
@@ -90,7 +89,7 @@ def figures_of(result: Result) -> dict[Name, Figure]:
         LATENCY: _figure(LATENCY, *(latency_cclk(frame) for frame in run.frames)),
         FRAME: _figure(FRAME, *(max(busy_cclk(core.stages) for core in frame.cores) for frame in run.frames)),
     }
-    figures |= {name: _figure(name, *values) for name, values in _stages(run) if name not in figures}
+    figures |= {name: _figure(name, *values) for name, values in _stages(run)}
     for memory in run.memories:
         name = (MEMORY, memory.memory)
         figures[name] = Figure(values=(memory.used_bytes,), unit=Unit.BYTES, whole=memory.nbytes)

@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 from bfsim.errors import ConfigError
 from bfsim.report.check.baseline import Case
 from bfsim.report.check.baseline_file import read_baseline, update_command
-from bfsim.report.check.figures import Figure, Unit
+from bfsim.report.check.figures import COUNTS, MEMORY, OF_THE_RUN, Figure, Unit
 from bfsim.report.check.requirement import counts_text, limit_text
 from bfsim.report.check.requirement_reading import parse_requirement
 from bfsim.report.check.update import write_cases
+from bfsim.trace import NO_STAGES
 
 
 @pytest.mark.parametrize(
@@ -199,3 +200,8 @@ def test_missing_file_is_told_how_to_make_one(tmp_path: Path) -> None:
         ConfigError, match=r"none\.toml must be a baseline file, but there is none: .* --update"
     ):
         read_baseline(tmp_path / "none.toml")
+
+
+def test_no_stage_is_called_like_another_figure() -> None:
+    """Cycles of a stage `memory` were limits in bytes, those of `results` had to be the same to the cycle, and `frame` could not be kept."""
+    assert {MEMORY, *COUNTS, *(name for (name,) in OF_THE_RUN)} == NO_STAGES
