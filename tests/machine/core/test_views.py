@@ -147,6 +147,7 @@ def in_space(places_mm: Any, left_edges: Any) -> dict[str, Any]:
         (circle(tests=None), "the tests of a circle of a view must be a tuple of words, not None"),
         (ball(place_mm=(1, 2)), "the place_mm of an object of a view must be three numbers, x, y and z, not"),
         (ball(name="a\nball"), "the name of an object of a view must be words on one line, not"),
+        (ball(name='a "ball"'), "the name of an object of a view must be words without double quotes"),
         (ball(camera="middle"), "the camera of an object of a view must be left or right, not 'middle'"),
         ({"lines_3d": ((1, 2),)}, "lines_3d of a view must be a tuple of SeenLine3D, not"),
         ({"losses": ((1, 2),)}, "losses of a view must be a tuple of SeenLoss, not"),

@@ -45,6 +45,7 @@ NOUNS: Mapping[type, str] = {
 """What is checked here, and what a message calls it."""
 
 _RULES: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
+    "name": ("words without double quotes, for limits name it between these", lambda value: '"' not in value),
     "focal_px": ("above 0", lambda value: value > 0),
     "radius_px": ("0 or more", lambda value: value >= 0),
     "share": ("0 to 1", lambda value: 0 <= value <= 1),
