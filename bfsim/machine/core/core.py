@@ -41,11 +41,9 @@ class Core:
         # attributes of an object by their names, which takes it four times as long
         self.run = parts.tasks.run
         self._waits = parts.progress.waits
-        self._tasks, self._pictures, self._layouts = (
-            parts.tasks,
-            parts.pictures,
-            parts.layouts,
-        )  # firmware asks for these most
+        # firmware asks for these most
+        self._tasks, self._pictures, self._layouts = parts.tasks, parts.pictures, parts.layouts
+        self._arrays = parts.layouts.arrays
         if not parts.clock.timeline:
             self.at = idle()  # type: ignore[method-assign]  # nobody looks, and firmware says it all the time
         self.name = parts.name
@@ -82,10 +80,7 @@ class Core:
 
     def array(self, name: str) -> Row:
         """Return the only row of the buffer called `name`."""
-        rows = self._layouts.rows(name)
-        if len(rows) != 1:
-            raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
-        return rows[0]
+        return self._arrays[name]
 
     def has_buffer(self, name: str) -> bool:
         """Whether there is a buffer called `name`: some come only with the tables of a recording."""

@@ -14,6 +14,20 @@ MOST_PARTS = 1 << 10
 """Parts of pictures that are remembered: one round what moves is another one in each frame."""
 
 
+class _Arrays(dict[str, Row]):
+    """The rows of buffers that have only one, by name, as they were first asked for."""
+
+    def __init__(self, rows: Callable[[str], Rows]) -> None:
+        self._rows = rows
+
+    def __missing__(self, name: str) -> Row:
+        rows = self._rows(name)
+        if len(rows) != 1:
+            raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
+        self[name] = rows[0]
+        return rows[0]
+
+
 class Layouts:
     """One layout for each size of pictures that was used; the first is that of the placed buffers."""
 
@@ -37,6 +51,8 @@ class Layouts:
         self._overlays: dict[tuple[Row, Row, Number, int], Rows] = {}
         self._parts: dict[tuple[Rows, int, int], Rows] = {}
         self._cut_rows: dict[tuple[Row, int, int], Row] = {}
+        self.arrays: dict[str, Row] = _Arrays(self.rows)
+        """The only row of each buffer that has one: firmware asks for these all the time."""
         self.use(size)
 
     def use(self, size: FrameSize) -> None:
@@ -47,6 +63,7 @@ class Layouts:
             }
         self._size = size
         self._buffers = self._layouts[size]
+        self.arrays.clear()
 
     def _laid_out(self, buffer: Buffer, size: FrameSize) -> Rows:
         """Return the rows of a buffer declared for `size` in the memory of the placed one."""
