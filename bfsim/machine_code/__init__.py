@@ -135,8 +135,8 @@ def loaded(code: bytes) -> llvm.ExecutionEngine:
     return engine
 
 
-METH_FASTCALL, METH_KEYWORDS = 0x80, 0x02
-"""CPython: a function gets its `self`, and the address of its arguments and their number; and the names of some of them."""
+METH_FASTCALL, METH_KEYWORDS, METH_NOARGS = 0x80, 0x02, 0x04
+"""CPython: a function gets its `self`, and the address of its arguments and their number; and the names of some of them; or has none."""
 
 
 class _Method(ctypes.Structure):

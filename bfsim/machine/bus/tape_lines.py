@@ -7,12 +7,14 @@ DONE, DEPTH and, from LATEST on, copies.
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from typing import Any
 
-from bfsim.kernel.native.entries import native, native_entry, words_at
+from bfsim.kernel.native.entries import NativeEntry, native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.tape import Tape, write
+from bfsim.machine_code.answers import answering
 from bfsim.machine_code.built_in import built_in
 
 (COUNT, ACCOUNT, REASON, SET_UP_CCLK, SET_UP_WRITES, SET_UP_READS) = range(6)
@@ -140,12 +142,25 @@ def ring_words(depth: int, copies: int) -> ctypes.Array[ctypes.c_int64]:
 
 
 class NotedLines:
-    """What notes lines of rings on a tape: each function as above, a built-in one, told where the words of the lines are and what is left then."""
+    """What notes lines of rings on a tape: each function as above, a built-in one, told where the words of the lines are and what is left then.
+
+    Firmware is answered by functions of their own (`answering`).
+    """
 
     def __init__(self, tape: Tape) -> None:
+        self._tape = tape.at
         self.program = built_in(note_program.address(), 1, *tape.at)
         self.copy = built_in(note_copy.address(), 2, *tape.at)
         self.wait = built_in(note_wait.address(), 2, *tape.at)
         self.fetch = built_in(note_fetch.address(), 2, *tape.at)
         self.row = built_in(note_row.address(), 2, *tape.at)
         self.send = built_in(note_send.address(), 2, *tape.at)
+
+    def answering(
+        self, note: NativeEntry, lines: int, ring: int, answers: tuple[object, ...], other: Callable[[], Any]
+    ) -> Callable[[], Any]:
+        """Return a function that has `note` do what it does with the words at two addresses, those of lines and of their ring.
+
+        It returns the answer whose number that returns, or what `other` does where that is NONE.
+        """
+        return answering(note.address(), (*self._tape, lines, ring), answers, other)

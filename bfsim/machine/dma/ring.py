@@ -10,12 +10,13 @@ from ctypes import addressof
 from typing import Any
 
 from bfsim.errors import FirmwareError
-from bfsim.machine.bus.tape_lines import DONE, LATEST, ring_words
+from bfsim.machine.bus.tape_lines import DONE, LATEST, note_fetch, note_row, note_send, ring_words
 from bfsim.machine.core.progress.line_copies import NO_COPY, Copy, Lines
 from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
+from bfsim.machine_code.answers import over
 from bfsim.trace import StallReason
 
 EMPTY, FULL = StallReason.RING_EMPTY, StallReason.RING_FULL
@@ -38,19 +39,13 @@ def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
         )
 
 
-def _in_step(_lines: int, _ring: int) -> int:
-    """Note nothing: the core never runs ahead."""
-    return NO_COPY
-
-
-class InputRing:
-    """Lines of a picture, first to last, one line ahead of the core."""
+class _TakenLines:
+    """The lines of an input ring, taken by Python: one that is not planned yet, or step by step."""
 
     def __init__(
         self, progress: Progress, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
         on_line: Callable[[int, int], None],
     ) -> None:  # fmt: skip
-        """`on_line`: called with the number of each line that is taken, and with how many there are."""
         _check(rows, image)
         self._progress = progress
         self._rows = rows
@@ -61,23 +56,14 @@ class InputRing:
         self._lines = progress.copies(Lines(stream, tuple(image), used, self._owner, EMPTY))
         self._words = ring_words(self._depth, 1)
         self._at = addressof(self._words)
-        self._fetch = self._lines.ahead.fetch if self._lines.ahead else _in_step
         self._coming: Copy = NO_COPY  # the next line, where that is not among the words
 
     def line(self) -> Generator[Any, Any, Row]:
-        """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        row = self._fetch(self._lines.at, self._at)
-        if row >= 0:
-            return self._rows[row]
-        return (yield from self._planned())
-
-    def _planned(self) -> Generator[Any, Any, Row]:
-        """Do that for the first time, or step by step."""
-        number = self._words[DONE]
-        if self._progress.runs_ahead:
+        """Wait for the next line and return its row."""
+        number, ahead = self._words[DONE], self._lines.ahead
+        if ahead and self._progress.runs_ahead:
             self._lines.plan(number, number + 1)
-            row = self._fetch(self._lines.at, self._at)
-            if row >= 0:
+            if (row := ahead.fetch(self._lines.at, self._at)) >= 0:
                 return self._rows[row]
         return (yield from self._waited_for(number))
 
@@ -110,7 +96,14 @@ class InputRing:
             yield from progress.wait_transfer(copy, EMPTY, self._owner)
         return self._rows[number % self._depth]
 
-    def __getitem__(self, number: int) -> Row:
+    def at_once(self) -> Callable[[], Generator[Any, Any, Row]]:
+        """Return what takes a line by machine code, as long as that can."""
+        if self._lines.ahead is None:
+            return self.line
+        rows = tuple(map(over, self._rows))
+        return self._lines.ahead.answering(note_fetch, self._lines.at, self._at, rows, self.line)
+
+    def present(self, number: int) -> Row:
         """Return the row of line `number`, which must still be in the ring."""
         taken = self._words[DONE]
         if not taken - self._depth < number < taken or number < 0:
@@ -121,8 +114,31 @@ class InputRing:
         return self._rows[number % self._depth]
 
 
-class OutputRing:
-    """Finished lines on their way to a picture in memory."""
+class InputRing:
+    """Lines of a picture, first to last, one line ahead of the core."""
+
+    line: Callable[[], Generator[Any, Any, Row]]
+    """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
+
+    def __init__(
+        self, progress: Progress, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
+        on_line: Callable[[int, int], None],
+    ) -> None:  # fmt: skip
+        """`on_line`: called with the number of each line that is taken, and with how many there are."""
+        self._taken = _TakenLines(progress, stream, image, rows, on_line)
+        self.line = self._taken.line
+
+    def hurry(self) -> None:
+        """Take lines by machine code from now on: nobody looks any more whether each wait is begun."""
+        self.line = self._taken.at_once()
+
+    def __getitem__(self, number: int) -> Row:
+        """Return the row of line `number`, which must still be in the ring."""
+        return self._taken.present(number)
+
+
+class _SentLines:
+    """The lines of an output ring, sent by Python."""
 
     def __init__(
         self, progress: Progress, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]
@@ -137,17 +153,21 @@ class OutputRing:
         self._lines = progress.copies(Lines(stream, used, tuple(image), self._owner, FULL))
         self._words = ring_words(self._depth, self._depth)
         self._at = addressof(self._words)
-        self._free = self._lines.ahead.row if self._lines.ahead else _in_step
-        self._sent = self._lines.ahead.send if self._lines.ahead else _in_step
         self._copies: dict[int, Copy] = {}  # of lines that rows had last, where that is not among the words
-        self._waits = progress.waits
+
+    def at_once(self) -> tuple[Callable[[], Generator[Any, Any, Row]], Callable[[], None]]:
+        """Return what waits for a free row, and what sends it, by machine code, as long as that can."""
+        if self._lines.ahead is None:
+            return self.row, self.send
+        answering, where = self._lines.ahead.answering, (self._lines.at, self._at)
+        rows, nothing = tuple(map(over, self._rows)), (None,) * self._depth
+        return answering(note_row, *where, rows, self.row), answering(note_send, *where, nothing, self.send)
 
     def row(self) -> Generator[Any, Any, Row]:
-        """Wait until a row is free and return it, to be written and then sent."""
-        row = self._free(self._lines.at, self._at)
-        if row >= 0:
+        """Wait until a row is free and return it."""
+        number, ahead = self._words[DONE], self._lines.ahead
+        if ahead and (row := ahead.row(self._lines.at, self._at)) >= 0:
             return self._rows[row]
-        number = self._words[DONE]
         if number >= self._depth and self._must_wait(copy := self._copy(number)):
             yield from self._progress.wait_transfer(copy, FULL, self._owner)
         return self._rows[number % self._depth]
@@ -158,13 +178,11 @@ class OutputRing:
         return self._copies.get(row, self._words[LATEST + row])
 
     def send(self) -> None:
-        """Start the DMA of the row that was written, to the next line of the picture."""
-        if self._sent(self._lines.at, self._at) >= 0:
-            return
-        progress, number = self._progress, self._words[DONE]
-        if progress.runs_ahead:
+        """Start the DMA of the row that was written."""
+        progress, number, ahead = self._progress, self._words[DONE], self._lines.ahead
+        if ahead and progress.runs_ahead:
             self._lines.plan(number)
-            if self._sent(self._lines.at, self._at) >= 0:
+            if ahead.send(self._lines.at, self._at) >= 0:
                 return
         if number == self._height:
             raise FirmwareError(
@@ -181,7 +199,6 @@ class OutputRing:
         on_their_way = [each for each in self._copies.values() if not self._progress.has(each)]
         self._progress.clock.tell_level(self._owner, len(on_their_way))
 
-    @awaited
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
         sent = self._words[DONE]
@@ -191,3 +208,28 @@ class OutputRing:
     def _must_wait(self, copy: Copy) -> bool:
         """Whether a core that needs a copy done must wait for it, or may be interrupted there."""
         return self._progress.interrupts.can_come or not self._lines.goes_on(copy)
+
+
+class OutputRing:
+    """Finished lines on their way to a picture in memory."""
+
+    row: Callable[[], Generator[Any, Any, Row]]
+    """Wait until a row is free and return it, to be written and then sent."""
+    send: Callable[[], None]
+    """Start the DMA of the row that was written, to the next line of the picture."""
+
+    def __init__(
+        self, progress: Progress, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]
+    ) -> None:
+        self._sent = _SentLines(progress, stream, rows, image)
+        self._waits = progress.waits
+        self.row, self.send = self._sent.row, self._sent.send
+
+    def hurry(self) -> None:
+        """Have lines sent by machine code from now on: nobody looks any more whether each wait is begun."""
+        self.row, self.send = self._sent.at_once()
+
+    @awaited
+    def flush(self) -> Generator[Any, Any, None]:
+        """Wait until every line that was sent has arrived."""
+        yield from self._sent.flush()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 import pytest
@@ -118,16 +119,16 @@ def test_a_stage_without_with_is_told() -> None:
 
 
 def test_many_lines_are_looked_at_in_the_first_picture_alone() -> None:
-    """Later ones cost no time for it."""
-    waits = []
+    """Later ones cost no time for it: machine code is what firmware calls."""
+    hurry = []
 
     def body(core: Core, frame: Frame) -> Play:
         ring = core.input_ring(frame.rows, "in_ring")
-        waits.append("line" in vars(ring))
+        hurry.append(inspect.isbuiltin(ring.line))
         yield from ring.line()
 
     run(every_frame(body), frames=3)
-    assert waits == [True, False, False]
+    assert hurry == [False, True, True]
 
 
 def test_a_wait_that_is_never_begun_is_told_at_the_end_of_all() -> None:

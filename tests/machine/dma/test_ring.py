@@ -297,10 +297,11 @@ def test_rings_never_hold_more_than_they_have_rows(turns: list[int]) -> None:
         for number in range(frame.height):
             source, target = (yield from ring.line()), (yield from out.row())
             yield core.run(spin, turns[number % len(turns)])
+            sent = out._sent
             on_their_way = [
-                each for each in out._copies.values() if each.end is None or each.end > core.now_ticks
+                each for each in sent._copies.values() if each.end is None or each.end > core.now_ticks
             ]
-            assert len(on_their_way) < out._depth
+            assert len(on_their_way) < sent._depth
             for valid in range(max(0, number - 1), number + 1):
                 assert np.array_equal(ring[valid].array, frame.rows[valid].array)
             yield core.run(copy, source, target)

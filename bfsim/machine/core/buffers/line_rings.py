@@ -70,10 +70,12 @@ class LineRings:
         )
 
     def _noted(self, ring: Ring, method: str) -> Ring:
-        """Have each wait that `method` of a ring makes noted, while all are."""
+        """Have each wait that `method` of a ring makes noted, while all are; then rings may hurry."""
         waits = self._progress.waits
         if waits.are_all_noted:
             setattr(ring, method, waits.noting(getattr(ring, method)))
+        elif isinstance(ring, InputRing | OutputRing):
+            ring.hurry()
         return ring
 
     def _is_cached(self, image: Sequence[Row]) -> bool:
