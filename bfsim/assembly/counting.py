@@ -46,8 +46,7 @@ class _Caller:
         """Return how often each event was counted."""
         counters = self.compiled.subroutine.translated.counted.counters
         found: Tally[CountedEvent] = Tally()
-        for number, count in zip(self.compiled.order.tolist(), self.totals.tolist(), strict=False):
-            counter = counters[number]
+        for counter, count in zip(counters, self.totals.tolist(), strict=False):
             found[CountedEvent(counter.block.start, counter.taken, counter.along)] += count
         return found
 

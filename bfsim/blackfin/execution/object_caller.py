@@ -1,4 +1,4 @@
-"""The native function that runs a subroutine for `caller`: arguments are handed over, memory is copied in and out, counts are added up.
+"""The native function that runs a subroutine for `caller`: arguments are handed over, memory is copied in and out.
 
 It is told all that it needs in words of 64 bits: HEAD of them, and then PART_WORDS of each part of memory that is copied.
 """
@@ -18,12 +18,11 @@ from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 from bfsim.machine_code.native_code import native_code
 
 (
-    RUN, CODE, MEMORY, STATE, COUNTS, COUNTED,  # what runs native code, the code, its memory, registers and counts, and how many these are
-    TOTALS, ORDER, TOTALLED,  # where counts are added, in which order, and how many
+    RUN, CODE, MEMORY, STATE, TOTALS,  # what runs native code, the code, its memory and registers, and where its counts are added
     ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of its stack; numbers of its arguments, and of copied parts
     TRACE,  # where accesses are reported to (`tracing`)
-) = range(14)  # fmt: skip
-HEAD = 14
+) = range(10)  # fmt: skip
+HEAD = 10
 PART_WORDS = 4
 """Its address here, that of its copy, how many bytes, and how many of them are copied back."""
 ENTRY = "bfsim_run_object"
@@ -69,8 +68,7 @@ def _changed() -> str:
 FIELDS = "".join(
     field(name, number, kind)
     for name, number, kind in (
-        ("run", RUN, "ptr"), ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("counts", COUNTS, "ptr"),
-        ("counted", COUNTED, "i64"), ("totals", TOTALS, "ptr"), ("order", ORDER, "ptr"), ("totalled", TOTALLED, "i64"),
+        ("run", RUN, "ptr"), ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("totals", TOTALS, "ptr"),
         ("address", ADDRESS, "i64"), ("top", TOP, "i64"), ("words", WORDS, "i64"), ("parts", PARTS, "i64"), ("trace", TRACE, "i64"),
     )
 )  # fmt: skip
@@ -80,16 +78,6 @@ HAND_OVER = """\
   %low = trunc i64 %value to i32
   %place = getelementptr i32, ptr %stack, i64 %word
   store i32 %low, ptr %place
-"""
-ADD_UP = """\
-  %number.at = getelementptr i64, ptr %order, i64 %total
-  %number = load i64, ptr %number.at
-  %count.at = getelementptr i64, ptr %counts, i64 %number
-  %count = load i64, ptr %count.at
-  %total.at = getelementptr i64, ptr %totals, i64 %total
-  %old = load i64, ptr %total.at
-  %new = add i64 %old, %count
-  store i64 %new, ptr %total.at
 """
 START = "".join(
     _set(register, value)
@@ -122,7 +110,6 @@ LEAVE = f"""\
 """
 MODULE = f"""
 declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
-declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
 
 define i64 @{ENTRY}(ptr %block, ptr %handed, ptr %cost) {{
 {FIELDS}\
@@ -132,9 +119,7 @@ define i64 @{ENTRY}(ptr %block, ptr %handed, ptr %cost) {{
 {loop("brought", "%parts", _copy("brought", back=False), "start")}\
 {_registers()}\
 {START}\
-  %nbytes = mul i64 %counted, 8
-  call void @llvm.memset.p0.i64(ptr %counts, i8 0, i64 %nbytes, i1 false)
-  %event = call i32 %run(ptr %code, ptr %memory, ptr %state, ptr %counts)
+  %event = call i32 %run(ptr %code, ptr %memory, ptr %state, ptr %totals)
   %pc = load i64, ptr %set.PC
   %is_outside = icmp eq i64 %pc, {OUTSIDE}
   %is_left = icmp eq i32 %event, {int(Event.UNKNOWN_TARGET)}
@@ -150,8 +135,7 @@ stopped:
   %event.left = sub i64 {FAILED}, %event.wide
   ret i64 %event.left
 fetch:
-{loop("fetched", "%parts", _copy("fetched", back=True), "add_up")}\
-{loop("total", "%totalled", ADD_UP, "done")}\
+{loop("fetched", "%parts", _copy("fetched", back=True), "done")}\
 {LEAVE}\
 }}
 """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,26 +18,18 @@ from bfsim.machine_code.calling import Called, Log, Taken, bound_call
 from bfsim.machine_code.left import Left
 
 
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """Where the counts of a call are added: to each of `totals` the count of the translated code whose number is in `order`."""
-
-    totals: NDArray[np.int64]
-    order: NDArray[np.int64]
-
-
 def subroutine_call(
     subroutine: Subroutine,
     arguments: Sequence[int | Taken],
     given: int,
     parts: Sequence[Placed],
-    counts: Counts,
+    totals: NDArray[np.int64],
     left: Left,
     trace: int = 0,
     log: Log | None = None,
     kept: object = None,
 ) -> Callable[..., Any]:
-    """Return a subroutine bound to its memory, to be called with `given` arguments of Python's.
+    """Return a subroutine bound to its memory, to be called with `given` arguments of Python's. Its counts are added to `totals`.
 
     `arguments`: what it takes in 32 bits each: what is always the same, or is taken. `trace`: the address of the block that accesses are
     reported through, if they are, and `log` where they are logged. `kept`: what else must live as long as it does, such as the memory of
@@ -51,11 +42,7 @@ def subroutine_call(
         w.CODE: translated.entry,
         w.MEMORY: subroutine.processor.space.origin,
         w.STATE: state.slots.ctypes.data,
-        w.COUNTS: translated.counts.ctypes.data,
-        w.COUNTED: len(translated.counts),
-        w.TOTALS: counts.totals.ctypes.data,
-        w.ORDER: counts.order.ctypes.data,
-        w.TOTALLED: len(counts.order),
+        w.TOTALS: totals.ctypes.data,
         w.ADDRESS: subroutine.address,
         w.TOP: STACK + STACK_BYTES - WORD_BYTES * len(handed),
         w.WORDS: len(handed),
@@ -66,5 +53,5 @@ def subroutine_call(
     for each in parts:
         words += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
     data = (ctypes.c_int64 * len(words))(*words)
-    called = Called(w.object_caller(), ctypes.addressof(data), (data, subroutine, counts, kept))
+    called = Called(w.object_caller(), ctypes.addressof(data), (data, subroutine, totals, kept))
     return bound_call(called, handed, given, left, log)

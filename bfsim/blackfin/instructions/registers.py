@@ -39,9 +39,8 @@ STATE = (
     *(*_PLAIN, "CYCLES_OFFSET", "CYCLES2"),
 )
 """The registers as native code has them, each in 64 bits of the state. PC: where to start, and where it was left. CLOCK: all cycles
-so far; WAITED: those of all counts that instructions waited; CYCLES_OFFSET: what CYCLES is less than CLOCK while it counts, and CYCLES itself while it does not (SYSCFG has the switch).
-FUEL: how many
-blocks may still be run. ARGUMENT: of the event that it was left for. TRACE: where accesses are reported to (`tracing`).
+so far; WAITED: those that instructions have waited since native code was entered; CYCLES_OFFSET: what CYCLES is less than CLOCK while it
+counts, and CYCLES itself while it does not (SYSCFG has the switch). FUEL: how many blocks may still be run. ARGUMENT: of the event that it was left for. TRACE: where accesses are reported to (`tracing`).
 FROM: the instruction that has gone to a computed address which the code does not have, where it is held to be right (`translate`)."""
 SLOTS = {name: slot for slot, name in enumerate(STATE)}
 

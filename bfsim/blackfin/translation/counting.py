@@ -37,7 +37,8 @@ class Counting:
             function.module, "clock", [each.cclk + each.stall_cclk for each in self._counters]
         )
         self._waited = self._sum(function.module, "waited", [each.stall_cclk for each in self._counters])
-        self._base = ir.IRBuilder(function.entry).alloca(I64)
+        entry = ir.IRBuilder(function.entry)
+        self._cclk_before, self._waited_before = entry.alloca(I64), entry.alloca(I64)
 
     def _sum(self, module: ir.Module, name: str, factors: Iterable[int]) -> ir.Function:
         """Return the function that adds up all counts, each times its factor."""
@@ -82,19 +83,21 @@ class Counting:
     def clock(self, builder: ir.IRBuilder) -> Value:
         """Add up the cycles of all that was executed: those before this call, and those of the counts; a function adds up these."""
         counted = builder.call(self._clock, [self._counts])
-        return Value(builder, builder.add(builder.load(self._base), counted))
+        return Value(builder, builder.add(builder.load(self._cclk_before), counted))
 
     def begin(self, builder: ir.IRBuilder, clock: ir.Value) -> None:
-        """Take note of the cycles before this call."""
-        builder.store(builder.sub(clock, builder.call(self._clock, [self._counts])), self._base)
+        """Take note of the cycles before this call, less those of earlier counts, and of the waits of these."""
+        builder.store(builder.sub(clock, builder.call(self._clock, [self._counts])), self._cclk_before)
+        builder.store(builder.call(self._waited, [self._counts]), self._waited_before)
 
     def work_out(self, builder: ir.IRBuilder) -> None:
         """Store the counts that follow from others."""
         work_out(builder, self._counts, self._implied.values(), self._numbers)
 
     def waited(self, builder: ir.IRBuilder) -> ir.Value:
-        """Return the cycles of waits in all that was executed."""
-        return builder.call(self._waited, [self._counts])
+        """Return the cycles of waits in this call."""
+        waited = builder.call(self._waited, [self._counts])
+        return builder.sub(waited, builder.load(self._waited_before))
 
     def _add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
         add(builder, self._counts, number, amount)

@@ -83,7 +83,7 @@ class Program:
     arrays: tuple[str, ...]
     """The kernel's array parameters."""
     together: bool = False
-    """Whether the calls of a routine are counted together, whatever path they come by."""
+    """Whether the calls of a routine are counted together, whatever path they come by, by counters in the order of the costs."""
     paths: tuple[CallPath, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -109,9 +109,19 @@ class Program:
         }
 
     @cached_property
+    def counted(self) -> tuple[tuple[int, CallPath, Counter], ...]:
+        """Every counter with its number and the path that it counts, path by path."""
+        given = {id(each): number for number, each in enumerate(self.costs.counters)}
+        return tuple(
+            (given[id(each)] if self.together else number, path, each)
+            for path in self.paths
+            for number, each in enumerate(self.own[path.routines[-1]], path.first.counter)
+        )
+
+    @cached_property
     def counters(self) -> tuple[Counter, ...]:
-        """What is counted, path by path."""
-        return tuple(each for path in self.paths for each in self.own[path.routines[-1]])
+        """What is counted, in the order of the numbers."""
+        return self.costs.counters if self.together else tuple(counter for _, _, counter in self.counted)
 
     @cached_property
     def sites(self) -> tuple[Site, ...]:
@@ -122,7 +132,7 @@ class Program:
     def routine_costs(self) -> RoutineCosts:
         """Whose calls and cycles each counter counts."""
         rows: dict[tuple[int, str], list[int]] = {}
-        for number, counter in enumerate(self.counters):
+        for number, _, counter in self.counted:
             for each in counter.enters:
                 rows.setdefault((number, each.symbol), [0, 0, 0])[0] += 1
             for place, issue_cclk, stall_cclk in counter.line_cclk:
@@ -142,16 +152,18 @@ class Program:
     @cached_property
     def accesses(self) -> tuple[CountedAccesses, ...]:
         """What the events of its counters access in its arrays."""
+        sites = {
+            (path.first, site): number
+            for path in self.paths
+            for number, site in enumerate(self.own_sites[path.routines[-1]], path.first.site)
+        }
         found: dict[tuple[int, int, str, int], int] = {}
-        for path in self.paths:
-            routine, first = path.routines[-1], path.first
-            sites = {each: first.site + number for number, each in enumerate(self.own_sites[routine])}
-            for number, counter in enumerate(self.own[routine], first.counter):
-                for each in counter.accesses:
-                    if each.is_counted and each.array in path.arrays:
-                        site = sites[Site(each.line, each.array)]
-                        key = (number, site, path.arrays[each.array], each.among)
-                        found[key] = found.get(key, 0) + 1
+        for number, path, counter in self.counted:
+            for each in counter.accesses:
+                if each.is_counted and each.array in path.arrays:
+                    site = sites[path.first, Site(each.line, each.array)]
+                    key = (number, site, path.arrays[each.array], each.among)
+                    found[key] = found.get(key, 0) + 1
         return tuple(CountedAccesses(*key, accesses) for key, accesses in found.items())
 
     def call_offsets(self, routine: str) -> tuple[Offset, ...]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from bfsim.blackfin.control_flow.convention import STACK, STACK_BYTES
 from bfsim.blackfin.execution.guard import catch_always
-from bfsim.blackfin.execution.object_calls import Counts, subroutine_call
+from bfsim.blackfin.execution.object_calls import subroutine_call
 from bfsim.blackfin.execution.placed import Placed, placed
 from bfsim.blackfin.execution.subroutines import Subroutine
 from bfsim.blackfin.instructions.event import Event
@@ -65,7 +65,7 @@ class ObjectCall:
             _arguments(function, arrays, addresses),
             len(function.parameters),
             parts,
-            Counts(totals[: len(code.order)], code.order),
+            totals,
             left_by(function, access_trace, check, partial(_refuse, code.subroutine)),
             ctypes.addressof(trace) if trace else 0,
             log_of(access_trace) if access_trace else None,

@@ -30,10 +30,9 @@ NO_ARRAY = ""
 
 
 class _Counted(NamedTuple):
-    """How a kernel's object code is counted, of each counter its number in the code, and which functions the instructions are of."""
+    """How a kernel's object code is counted, and which functions the instructions are of."""
 
     tables: RunTables
-    order: NDArray[np.int64]
     symbols: tuple[str, ...]
 
 
@@ -52,8 +51,6 @@ class CompiledObject:
     tables: RunTables
     functions: tuple[Function, ...]
     places: Places
-    order: NDArray[np.int64]
-    """Of each counter of the program, the number of the translated code's counter."""
 
     @cached_property
     def program(self) -> Program:
@@ -62,7 +59,7 @@ class CompiledObject:
 
     @property
     def counters(self) -> tuple[Counter, ...]:
-        """What is counted, in the order of the totals."""
+        """What is counted, in the order of the totals, which is that of the translated code's counters."""
         return self.program.counters
 
     def may_write(self, array: str) -> bool:
@@ -115,28 +112,23 @@ def compiled_object(
 
     if key not in _COUNTED:
         _COUNTED[key] = _counted(keys.object_key(*about, f"tables {of_what}"), program)
-    tables, order, symbols = _COUNTED[key]
+    tables, symbols = _COUNTED[key]
     if traced:
         subroutine.processor.tracing = Tracing(_site_of(program, places), WRITE)
     functions = tuple(map(places.function_called, symbols))
-    return CompiledObject(function, subroutine, program, tables, functions, places, order)
+    return CompiledObject(function, subroutine, program, tables, functions, places)
 
 
 def _counted(key: str, program: Callable[[], Program]) -> _Counted:
     """Return what the cache on disk keeps under a key of a program, or what is made of it now."""
 
     def made() -> tuple[Any, ...]:
-        costs, counters = program().costs, program().counters
-        numbers = {id(each): number for number, each in enumerate(costs.counters)}
+        costs = program().costs
         lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
-        return (
-            asdict(tables_of(program())),
-            [numbers[id(each)] for each in counters],
-            [*costs.calls, *sorted(lines)],
-        )
+        return asdict(tables_of(program())), [*costs.calls, *sorted(lines)]
 
-    tables, order, symbols = store.kept(key, made)
-    return _Counted(RunTables(**tables), np.array(order, np.int64), tuple(symbols))
+    tables, symbols = store.kept(key, made)
+    return _Counted(RunTables(**tables), tuple(symbols))
 
 
 def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:

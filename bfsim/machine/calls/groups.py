@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel, Work
-from bfsim.kernel.costs.call_paths import CallPath
-from bfsim.kernel.costs.counters import Counter
 from bfsim.kernel.host_code.jit import CompiledKernel
 from bfsim.kernel.ir.text import SourceLine
 from bfsim.machine.bus.state import NO_BUFFER
@@ -56,15 +54,6 @@ class CallGroup:
     first_site: int
     subbanks: list[set[int]]
     fetches: Fetches | None = None
-
-    def counted(self) -> Iterator[tuple[int, CallPath, Counter]]:
-        """Yield every counter with its number and the path that it counts."""
-        program = self.code.program
-        for path in program.paths:
-            yield from (
-                (number, path, counter)
-                for number, counter in enumerate(program.own[path.routines[-1]], path.first.counter)
-            )
 
     @property
     def site_count(self) -> int:

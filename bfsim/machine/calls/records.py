@@ -192,7 +192,7 @@ class _Sums:
         is_object = _is_object(group)
         kernel_of = cache(partial(self._kernel, group))
         executions: dict[tuple[Offset, SourceLine], int] = {}
-        for number, path, counter in group.counted():
+        for number, path, counter in program.counted:
             events = totals[number]
             for each in counter.enters:
                 kernel_of(each.symbol).calls += events
