@@ -48,6 +48,18 @@ def test_buffers_of_a_smaller_size_lie_at_the_beginning_of_the_full_ones() -> No
     in_frame(body, more=(TABLE,))
 
 
+def test_the_only_row_of_a_buffer_is_that_of_the_present_size() -> None:
+    """Firmware may have asked for it before, in either size."""
+
+    def body(core: Core, frame: Frame) -> None:
+        for size in (SIZE, HALF, HALF, SIZE, HALF):
+            core.use_size(size)
+            assert core.array("single_row").nbytes == 2 * size.width_px
+            assert core.array("single_row") is core.array("single_row") is core.rows("single_row")[0]
+
+    in_frame(body)
+
+
 def test_a_larger_size_is_refused() -> None:
     """There is nothing behind a buffer."""
     large = FrameSize(SIZE.width_px, SIZE.height_px + 1)

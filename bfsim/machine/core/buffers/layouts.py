@@ -53,16 +53,17 @@ class Layouts:
         self._cut_rows: dict[tuple[Row, int, int], Row] = {}
         self.arrays: dict[str, Row] = _Arrays(self.rows)
         """The only row of each buffer that has one: firmware asks for these all the time."""
-        self.use(size)
+        self._size, self._buffers = size, placed
 
     def use(self, size: FrameSize) -> None:
         """Give out the buffers for pictures of `size` from now on. Raises FirmwareError where they find no room."""
+        if size == self._size:
+            return
         if size not in self._layouts:
             self._layouts[size] = {
                 each.name: self._laid_out(each, size) for each in self._declared(size).values()
             }
-        self._size = size
-        self._buffers = self._layouts[size]
+        self._size, self._buffers = size, self._layouts[size]
         self.arrays.clear()
 
     def _laid_out(self, buffer: Buffer, size: FrameSize) -> Rows:
