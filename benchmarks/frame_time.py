@@ -40,7 +40,7 @@ from bfsim.shipped import DEFAULT_LDFS, FIRMWARE, RECORDING
 INTERVAL_S = 0.001
 SIMULATOR = Path(bfsim.__file__).parent
 KERNELS, WEAVE = "calls of kernels, as far as Python makes them", "buses, machine code and Python"
-MAIN_LOOPS = "main loops and stages of the firmware, and calls of kernels"
+MAIN_LOOPS = "main loops and stages of the firmware, calls of kernels, and lines of rings"
 PARTS = {
     Path(tinyphoon.__file__).parent: MAIN_LOOPS,
     SIMULATOR / "kernel": KERNELS,
@@ -48,7 +48,7 @@ PARTS = {
     SIMULATOR / "machine" / "calls": KERNELS,
     SIMULATOR / "machine" / "core" / "tasks" / "tasks.py": KERNELS,
     SIMULATOR / "machine" / "bus": WEAVE,
-    SIMULATOR / "machine" / "dma": "rings and DMA",
+    SIMULATOR / "machine" / "dma": "rings and DMA, as far as Python makes them",
     SIMULATOR / "machine" / "core": "clocks of the cores, and what runs ahead",
     SIMULATOR / "machine": "the rest of the machine",
     Path(simpy.__file__).parent: "SimPy",
