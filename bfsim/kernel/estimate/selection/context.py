@@ -162,6 +162,9 @@ class Context:
             each = self.flow.instruction(each.operands[0])  # LLVM computes with bytes what fits
         if each is None or not self.profile.applies(Rule.NARROW_BITS):
             return False
+        users = self.flow.users.get(extension.result or "", [])
+        if users and all(user.opcode in BITWISE and is_number(user.operands[1]) for user in users):
+            return False  # so is what they are masked with again
         if each.opcode == "and" and is_number(each.operands[1]):
             return int(each.operands[1]) not in EXTENDING and self._is_loaded(each.operands[0])
         return each.opcode in BITWISE and all(map(self._is_loaded, each.operands))

@@ -28,6 +28,7 @@ class Decisions:
     def __init__(self, emitter: Emitter) -> None:
         self.emitter, self.append = emitter, emitter.append
         self.context, self.flow = emitter.context, emitter.context.flow
+        self._extended = set[str]()
         self._masks_apart = self.context.profile.applies(Rule.NARROW_BITS)
 
     def compare(self, each: Instruction) -> None:
@@ -56,14 +57,16 @@ class Decisions:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
     def _compared(self, each: Instruction, value: str) -> str:
-        """What is compared of a value: one that goes along is narrow, and so extended each time, and what a mask leaves of a byte is, too."""
+        """What is compared of a value: one that goes along is narrow, and so extended each time, and what a mask leaves of a byte is once."""
         made = self.flow.instruction(value)
         if made is None or made.bits >= WORD:
             return value
         is_mask = self._masks_apart and is_masked(self.flow, made)
         if not is_mask and not goes_along(self.flow, value):
             return value
-        self.append(Op.EXTEND, each, f"{value}.compared", DATA, (value, DATA))
+        if not is_mask or value not in self._extended:
+            self.append(Op.EXTEND, each, f"{value}.compared", DATA, (value, DATA))
+            self._extended.add(value)
         return f"{value}.compared"
 
     def _in_range(self, each: Instruction, tested: Range) -> None:
