@@ -94,6 +94,7 @@ class RegisterClasses:
         for web, value in self.values.items():
             if value.is_between:
                 self.webs.bank[web] = DATA
+        self._place_bounds()
         room = _Room(self.webs)
         gains = {web: self.costs[web][DATA] - self.costs[web][POINTER] for web in self.behind}
         for web in sorted(gains, key=lambda web: (-gains[web], web)):
@@ -106,6 +107,15 @@ class RegisterClasses:
                 and {self.webs.bank[other] for other in self.behind[web]} == {POINTER}
             ):
                 self._to_pointers(web, room)
+
+    def _place_bounds(self) -> None:
+        """Put each number that is loaded to be compared into the bank of what it is compared with."""
+        for label in self.flow.order:
+            for instruction in self.code.of[label]:
+                if instruction.op is Op.COMPARE and len(instruction.uses) == 2:
+                    (compared, _), (bound, _) = instruction.uses
+                    if bound.endswith(".bound") and self.webs.find(compared) in self.webs.bank:
+                        self.webs.bank[self.webs.find(bound)] = self.webs.bank[self.webs.find(compared)]
 
     def _second_pass(self, instruction: MachineInstruction, weight: int) -> None:
         """Add what an operation costs its values in each bank, in moves; note what is behind those of a chain."""
