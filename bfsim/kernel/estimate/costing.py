@@ -20,6 +20,7 @@ from bfsim.kernel.estimate import optimised as optimising
 from bfsim.kernel.estimate.inlining.inlining import inlined_calls
 from bfsim.kernel.estimate.jump_threading.first_iterations import with_first_iterations
 from bfsim.kernel.estimate.jump_threading.kept_bounds import with_kept_bounds
+from bfsim.kernel.estimate.jump_threading.known_entries import with_known_entries
 from bfsim.kernel.estimate.jump_threading.skipped_iterations import with_skipped_iterations
 from bfsim.kernel.estimate.jump_threading.threaded_choices import with_threaded_choices
 from bfsim.kernel.estimate.jump_threading.threaded_hints import with_threaded_hints
@@ -101,7 +102,7 @@ def _threaded(text: str, profile: CompilerProfile) -> str:
     """Thread jumps behind all other passes."""
     if profile.applies(Rule.KEPT_BOUNDS):
         text = with_kept_bounds(text)
-    return with_first_iterations(text) if profile.applies(Rule.FIRST_ITERATIONS) else text
+    return with_known_entries(with_first_iterations(text)) if profile.applies(Rule.FIRST_ITERATIONS) else text
 
 
 def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:

@@ -27,6 +27,9 @@ from bfsim.kernel.ir.text import (
 )
 from bfsim.kernel.ir.writing import with_names, write_module
 
+SKIPPED = ".skipped"
+"""Ends the label of the block in which the counter is set on."""
+
 HOLDS: dict[str, Callable[[int, int], bool]] = {
     "ne": ne,
     "slt": lt,
@@ -150,7 +153,7 @@ def _there(flow: ControlFlow, loop: Loop, label: str, phi: Instruction) -> str:
 
 def _set_on(flow: ControlFlow, routine: Routine, loop: Loop, skip: _Skip) -> Routine:
     name = skip.counter.result or ""
-    now, setting = f"{name}.on", f"{skip.header}.skipped"
+    now, setting = f"{name}.on", f"{skip.header}{SKIPPED}"
     line, location = skip.counter.line, skip.counter.location
     jump = Instruction(None, "br", f"br label %{skip.goes_on}", (), line, location=location)
     tests = skip.tests[:1] if skip.is_one_test else skip.tests

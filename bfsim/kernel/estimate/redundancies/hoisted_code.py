@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow
 from bfsim.kernel.ir.text import Instruction, Routine, renamed
 from bfsim.kernel.ir.value_numbers import FLAGS, ValueNumbers
 
-BEFORE_TESTS = ".hoisted"
-"""Ending of the names of what was moved."""
 HOISTED = ("add", "sub", "mul", "shl", "lshr", "ashr", "and", "or", "xor")
 
 

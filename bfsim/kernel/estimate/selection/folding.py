@@ -6,8 +6,7 @@ from functools import cached_property
 
 from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
 from bfsim.kernel.estimate.arithmetic.remainders import quotient_of_rest
-from bfsim.kernel.estimate.redundancies.hoisted_code import BEFORE_TESTS
-from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow
 from bfsim.kernel.ir.text import Instruction, is_number, predicate
 from bfsim.kernel.operations import ADDRESS_SHIFTS
 from bfsim.kernel.profile import CompilerProfile

@@ -40,6 +40,9 @@ CASES = {
         0.02,
         "if i == 0 or i == n - 1:\n    o[i] = a[i]\nelse:\n    o[i] = (a[i - 1] + 2 * a[i] + a[i + 1]) >> 2",
     ),
+    "wide borders": _case(
+        6967, 0.01, "if i < 2 or i >= n - 2:\n    o[i] = 0\nelse:\n    o[i] = (a[i - 2] + a[i + 2]) >> 1"
+    ),
     "a flag": _case(
         4258,
         0.11,
