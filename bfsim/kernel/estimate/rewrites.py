@@ -43,6 +43,7 @@ from bfsim.kernel.estimate.memory.sunk_stores import with_sunk_stores
 from bfsim.kernel.estimate.redundancies.carried_values import carry_over
 from bfsim.kernel.estimate.redundancies.chosen_loads import with_chosen_loads
 from bfsim.kernel.estimate.redundancies.hoisted_code import with_hoisted_code
+from bfsim.kernel.estimate.redundancies.hoisted_loads import with_hoisted_loads
 from bfsim.kernel.estimate.redundancies.partial_redundancies import without_partial_redundancies
 from bfsim.kernel.estimate.redundancies.redundant_loads import without_redundant_loads
 from bfsim.kernel.estimate.redundancies.repeated_loads import without_repeated_loads
@@ -78,6 +79,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_chosen_loads,
     without_partial_redundancies,
     with_hoisted_code,
+    with_hoisted_loads,
     copy_headers,
     copy_breaks,
     with_preheaders,
@@ -101,6 +103,7 @@ SWITCHES = {
     split_loads: Rule.MERGED_LOADS,
     without_partial_redundancies: Rule.PARTIAL_REDUNDANCIES,
     with_hoisted_code: Rule.CODE_HOISTING,
+    with_hoisted_loads: Rule.COMMON_LOADS,
     with_chosen_loads: Rule.CARRIED_LOADS,
     without_redundant_loads: Rule.CARRIED_LOADS,
     with_early_loads: Rule.SINKING,

@@ -13,7 +13,7 @@ from bfsim.kernel.estimate.induction_variables.kept_addresses import (
     stepping_access,
 )
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, Increment, ScalarEvolution
-from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.ir.control_flow import EITHER, ControlFlow, Loop
 from bfsim.kernel.ir.text import Instruction, SourceLine, arms_of, each_arm, is_number
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -249,20 +249,6 @@ class InductionVariables:
         arms = arms_of(each)
         return arms[self.flow.entering(loop)]
 
-    def _hoisted(self, label: str, variable: InductionVariable) -> str:
-        """The block of a test, when both its sides load the same element first thing: it is loaded before the test."""
-        before = self.flow.predecessors[label]
-        if len(before) != 1 or not self.profile.applies(Rule.COMMON_LOADS):
-            return label
-        sides = set(self.flow.blocks[before[0]].successors)
-        alike = {
-            (where, offset)
-            for where, each, offset in variable.accesses
-            if each.opcode == "load" and where in sides
-        }
-        both = len(sides) == 2 and len(alike) == 2 and len({offset for _, offset in alike}) == 1
-        return before[0] if both and len({where for where, _ in alike}) == 2 else label
-
     def _steps_free(self, variable: InductionVariable) -> bool:
         """A post-increment: the step is the width of an access that is made in every iteration.
 
@@ -271,7 +257,7 @@ class InductionVariables:
         [add_autoinc_candidates in tree-ssa-loop-ivopts.cc].
         """
         step = variable.increment.constant
-        labels = {self._hoisted(label, variable) for label, _, _ in variable.accesses}
+        labels = {label for label, _, _ in variable.accesses}
         if variable.increment.symbolic:
             return False
         if len(labels) == 1 and self.flow.every_iteration(next(iter(labels)), variable.loop):
@@ -286,4 +272,5 @@ class InductionVariables:
 
 def is_merged_pointer(each: Instruction) -> bool:
     """Whether a phi merges addresses, not a pointer that the loop carries."""
-    return each.opcode == "phi" and each.text.startswith("phi ptr") and each.result not in each.operands
+    is_choice = each.opcode == "phi" and each.text.startswith("phi ptr") and each.result not in each.operands
+    return is_choice and not (each.result or "").endswith(EITHER)
