@@ -13,9 +13,7 @@ from dataclasses import dataclass, replace
 from bfsim.kernel.estimate.choices.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.estimate.choices.known_values import KnownValues
 from bfsim.kernel.estimate.conditions.number_tests import CONVERSIONS
-from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
-from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
-from bfsim.kernel.ir.control_flow import ControlFlow
+from bfsim.kernel.ir.control_flow import EITHER, ControlFlow
 from bfsim.kernel.ir.edges import come_to_from, going_to, put_between
 from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, arms_of, is_number, phi_of, renamed
 from bfsim.kernel.ir.unused import without_unused
@@ -68,8 +66,11 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
         return None
     if any(flow.blocks[each].terminator.opcode != "br" for each in before):
         return None
+    in_loop = (
+        flow.innermost(label) is not None
+    )  # what a loop has loaded goes along with it to there (`carried_values`)
     for each in block.instructions:
-        is_operation = each.opcode in NEUTRAL or (_is_address(each) and not _is_stepped(flow, label, each))
+        is_operation = each.opcode in NEUTRAL or (in_loop and _is_address(each))
         if is_operation and any(_root(flow, operand) in choices for operand in each.operands):
             found = _redundancy(flow, block, each)
             if found is not None:
@@ -118,18 +119,6 @@ def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) ->
 def _is_address(each: Instruction) -> bool:
     """Whether it is the address of an element, which for element 0 is the array itself."""
     return each.opcode == "getelementptr" and len(each.operands) == 2
-
-
-def _is_stepped(flow: ControlFlow, label: str, address: Instruction) -> bool:
-    """Whether the index that is chosen is a counter of the loop on some way, so that its address walks, or was chosen by a loop before."""
-    loop, chosen = flow.innermost(label), flow.instruction(address.operands[1])
-    if loop is None:
-        return True  # what a loop has loaded there goes along with it (`carried_values`)
-    if chosen is None or chosen.opcode != "phi":
-        return False
-    evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
-    gains = (evolution.increment(each, loop) for each in chosen.operands if not is_number(each))
-    return any(gain is not None and gain.moves for gain in gains)
 
 
 def _loops(flow: ControlFlow, label: str) -> set[str]:
@@ -200,6 +189,8 @@ def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
     absorbed = ABSORBING.get(opcode)
     if absorbed in (left, right):
         return absorbed
+    if is_number(left) and is_number(right) and opcode == "add":
+        return str(int(left) + int(right))
     if is_number(left) and is_number(right):
         return None  # another number, which takes a register there: to add it behind, as it was, is nearer to GCC's code
     sides = [(left, right), (right, left)] if opcode in COMMUTATIVE else [(left, right)]
@@ -237,9 +228,16 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
         values[home] = rows[-1].result or ""
     kind = _type_of(found.operation)
     arms = ((value, source) for source, value in values.items())
-    phi = phi_of(found.operation.result or "", kind, arms, found.operation)
+    name = found.operation.result or ""
+    chosen = f"{name}{EITHER}" if kind == "ptr" else name
+    phi = phi_of(chosen, kind, arms, found.operation)
     rest = [each for each in blocks[label].instructions if each is not found.operation]
     blocks[label] = replace(blocks[label], instructions=(phi, *rest))
+    if chosen != name:
+        for each in blocks.values():
+            blocks[each.label] = replace(
+                each, instructions=tuple(renamed(row, {name: chosen}) for row in each.instructions)
+            )
     for source in found.values:
         _without_empty(blocks, flow, source, label)
     return without_unused(replace(routine, blocks=tuple(blocks.values())), ("phi", *CONVERSIONS))

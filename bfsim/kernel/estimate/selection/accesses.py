@@ -8,8 +8,8 @@ from bfsim.kernel import operations
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
-from bfsim.kernel.ir.control_flow import pointee_nbytes
-from bfsim.kernel.ir.text import Instruction
+from bfsim.kernel.ir.control_flow import EITHER, pointee_nbytes
+from bfsim.kernel.ir.text import Instruction, is_number
 from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 
@@ -26,6 +26,8 @@ class Accesses:
         self.context, self.flow = emitter.context, emitter.context.flow
         self.beside: dict[str, list[str]] = {}
         """Blocks in which the pointer of a variable is computed from its neighbour's."""
+        self.ahead: dict[str, str] = {}
+        """Pointers whose next value is computed before the end of an iteration, for one side of a test wants it, and its name there."""
 
     def load(self, each: Instruction) -> None:
         bank = ANY if each.bits == 32 else DATA
@@ -105,11 +107,21 @@ class Accesses:
         if not index.startswith("%"):
             self._field(each)
             return
+        walking = self._walking(each)
+        if walking is not None:
+            self.ahead[walking.name] = each.result or ""
+            self.append(Op.ALU, each, each.result, POINTER, (walking.name, POINTER))
+            return
         nbytes = pointee_nbytes(each)
         if nbytes > 1 and self._is_masked_byte(index):
             # the distance is a product of half-words [convert_mult_to_widen in tree-ssa-math-opts.cc]
             self.append(Op.EXTEND, each, f"{each.result}.index", DATA, (index, DATA))
             index = f"{each.result}.index"
+        if nbytes > 1 and (scaled := self._scaled_index(each)):
+            self.append(
+                Op.ALU, each, each.result, POINTER, (self.context.base(base), POINTER), (scaled, POINTER)
+            )
+            return
         op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
         self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
 
@@ -119,6 +131,58 @@ class Accesses:
             return False
         made = self.flow.instruction(extension.operands[0])
         return made is not None and made.opcode == "and"
+
+    def _scaled_index(self, each: Instruction) -> str:
+        """Compute an index in bytes where that of the next element, which one side of a test chooses, is made of it; its name.
+
+        [gimple-ssa-strength-reduction.cc: a product of a sum is one of what it is the sum of, and a number]
+        """
+        index = each.operands[-1]
+        for user in self.flow.users.get(index, ()):
+            if (
+                user.opcode == "add"
+                and is_number(user.operands[1])
+                and self._is_chosen(user.result or "", each)
+            ):
+                self.append(Op.SHIFT, each, f"{index}.bytes", POINTER, (index, POINTER))
+                return f"{index}.bytes"
+        made = self.flow.instruction(index)
+        if (
+            made is not None
+            and made.opcode == "add"
+            and is_number(made.operands[1])
+            and self._is_chosen(index, each)
+        ):
+            basis = f"{made.operands[0]}.bytes"
+            if any(row.result == basis for rows in self.emitter.code.of.values() for row in rows):
+                self.append(Op.ALU, each, f"{index}.bytes", POINTER, (basis, POINTER))
+                return f"{index}.bytes"
+        return ""
+
+    def _is_chosen(self, index: str, like: Instruction) -> bool:
+        """Whether the address of an element of the same size is one that one side of a test chooses."""
+        return any(
+            user.opcode == "getelementptr"
+            and pointee_nbytes(user) == pointee_nbytes(like)
+            and any(
+                (each.result or "").endswith(EITHER) for each in self.flow.users.get(user.result or "", ())
+            )
+            for user in self.flow.users.get(index, ())
+        )
+
+    def _walking(self, each: Instruction) -> InductionVariable | None:
+        """The pointer whose next value is the address that one side of a test chooses [one_pre_gcse_pass in gcse.cc]."""
+        if not any(
+            (user.result or "").endswith(EITHER) for user in self.flow.users.get(each.result or "", ())
+        ):
+            return None
+        at = self.context.evolution.affine(each.result or "")
+        for variable in self.context.induction_variables.all:
+            inside = variable.loop in self.flow.loops_of(self.emitter.label) and variable.steps_free
+            first = self.context.evolution.affine(variable.accesses[0][1].operands[-1])
+            if inside and first.terms == at.terms and at.constant == variable.increment.constant:
+                return variable
+        return None
 
     def _field(self, each: Instruction) -> None:
         """The address of a field, where that is not an offset in the access."""
@@ -172,9 +236,18 @@ class Accesses:
                     entering,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, ((variable.name, POINTER),)),
                 )
+<<<<<<< HEAD
             if variable.keeps_address:
                 self._step_apart(variable)
             if not variable.steps_free:
+=======
+            if variable.name in self.ahead:
+                following = ((self.ahead[variable.name], POINTER),)
+                self.emitter.code.add(
+                    latch, MachineInstruction(Op.MOVE, line, variable.name, POINTER, following)
+                )
+            elif not variable.steps_free:
+>>>>>>> 6d44474a (estimate: a choice of the next element or the first one is one of addresses, computed from the pointer or the index there is (rings -40 to -47 -> -5 to -14 %))
                 uses = ((variable.name, POINTER),) + (
                     ((variable.stride, POINTER),) if variable.stride else ()
                 )
