@@ -53,7 +53,15 @@ def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> CarriedValue |
     if each.opcode == "load" and any(_may_write(other, each) for other in before):
         return None
     following = _there(flow, each, arms_of(index)[loop.latch], loop.latch, loop.blocks)
-    return CarriedValue(loop, each, index, following) if following is not None else None
+    if following is None or (each.opcode != "load" and _first(flow, loop, each, index) is None):
+        return None  # what looks like an induction variable is made for none but a load [insert_into_preds_of_block]
+    return CarriedValue(loop, each, index, following)
+
+
+def _first(flow: ControlFlow, loop: Loop, each: Instruction, index: Instruction) -> str | None:
+    """What `each` gives in the first iteration, if that has been computed before the loop."""
+    entering = flow.entering(loop)
+    return _there(flow, each, arms_of(index)[entering], entering, frozenset(flow.blocks))
 
 
 def _address(flow: ControlFlow, each: Instruction) -> Instruction | None:
@@ -113,7 +121,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: CarriedValue) -> Routin
     """Put a phi in the place of a load or an address, and make it before the loop unless it is there."""
     loop, each = carried.loop, carried.each
     entering = flow.entering(loop)
-    first = _there(flow, each, arms_of(carried.index)[entering], entering, frozenset(flow.blocks))
+    first = _first(flow, loop, each, carried.index)
     made: list[Instruction] = []
     if first is None:
         if len(set(flow.blocks[entering].successors)) > 1:  # the loop need not be entered
