@@ -57,8 +57,7 @@ class _OptimisedLowering:
         self.blocks = CodeBlocks(self.flow, landing, copies, self.crossed, dict(self._threaded()))
         ways_back = frozenset(self._way_back(loop) for loop in self._counted())
         self.layout = ordered(self.blocks, self.context.likelihood, self._nbytes, ways_back)
-        copied = frozenset(target for _, target in self.layout.copied)
-        self.hardware = HardwareLoops(self.context, self.code, self.allocation, copied)
+        self.hardware = HardwareLoops(self.context, self.code, self.allocation, self.layout)
         self.hardware.reorder(self.layout)
         self.branches = BranchCosts(self.blocks, self.layout, self.context.likelihood, copies)
 

@@ -13,13 +13,11 @@ from bfsim.kernel.rules import Rule
 
 
 class HardwareLoops:
-    """Those of one routine, by their headers in `all`. `copied`: blocks that stand in the code more than once."""
+    """Those of one routine, by their headers in `all`."""
 
-    def __init__(
-        self, context: Context, code: MachineCode, allocation: Allocation, copied: frozenset[str]
-    ) -> None:
+    def __init__(self, context: Context, code: MachineCode, allocation: Allocation, layout: Layout) -> None:
         self.context, self.flow, self.code, self.allocation = context, context.flow, code, allocation
-        self.copied = copied
+        self.order, self.copied = tuple(layout.order), frozenset(layout.copied)
         self.all = {loop.header for loop in self.flow.loops if self._is_one(loop)}
 
     def _is_one(self, loop: Loop) -> bool:
@@ -32,7 +30,7 @@ class HardwareLoops:
         if self.flow.is_split(loop):
             return False
         end = self.flow.ending(loop)
-        if end in self.copied:
+        if self._copied_from(end):
             return False  # its copies end loops of their own, and all count with one register ["uses iterator" in hw-doloop.cc]
         if end != loop.latch and not self._begins_behind_end(loop):
             return False
@@ -50,20 +48,44 @@ class HardwareLoops:
     def _begins_behind_end(self, loop: Loop) -> bool:
         """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it.
 
-        Where the first block was copied to where it is entered [copy_bb_p in bb-reorder.cc], nothing is moved.
+        Where the first block was copied [copy_bb_p in bb-reorder.cc], nothing is moved, unless the copy stands behind that block: then both are one.
         """
         is_next = loop.latch in self.flow.blocks[self.flow.ending(loop)].successors
         is_all = not loop.header.endswith(SECOND)  # of a test with several parts each would have to be moved
-        return is_next and is_all and loop.header not in self.copied and not self._is_one_block(loop)
+        copied, jumps = self._copied_from(loop.header), len(set(self.flow.blocks[loop.latch].successors)) == 1
+        is_whole = not copied or (copied == {loop.latch} and jumps and self._goes_before(loop) is not None)
+        return is_next and is_all and is_whole and not self._is_one_block(loop)
+
+    def _copied_from(self, label: str) -> set[str]:
+        """The blocks behind which there are copies of a block."""
+        return {source for source, target in self.copied if target == label}
+
+    def _goes_before(self, loop: Loop) -> str | None:
+        """The block before which a loop's last block goes with its copy of the first one: one that the copy leads to and that stands before the loop's end."""
+        before = self.order[: self.order.index(self.flow.ending(loop)) + 1]
+        return next((way for way in self.flow.blocks[loop.header].successors if way in before), None)
 
     def reorder(self, layout: Layout) -> None:
         """Move what is behind the test that counts before the first block of its loop, in the order of the blocks in the code."""
         for loop in self.flow.loops:
             begins = loop.latch != self.flow.ending(loop) and not self.flow.is_split(loop)
-            if loop.header in self.all and begins and {loop.latch, loop.header} <= {*layout.order}:
+            if not (loop.header in self.all and begins and {loop.latch, loop.header} <= {*layout.order}):
+                continue
+            if (loop.latch, loop.header) in layout.copied:
+                self._begin_with_copy(loop, layout)
+            else:
                 layout.order.remove(loop.latch)
                 layout.order.insert(layout.order.index(loop.header), loop.latch)
                 layout.copied = {each for each in layout.copied if each[0] != loop.latch}
+
+    def _begin_with_copy(self, loop: Loop, layout: Layout) -> None:
+        """Move the last block with what was copied behind it. That is the loop's now; what is left of the first block is where the loop is entered."""
+        goal, entering = self._goes_before(loop), self.flow.entering(loop)
+        assert goal is not None
+        layout.order = [each for each in layout.order if each not in (loop.latch, loop.header)]
+        place = layout.order.index(goal)
+        layout.order[place:place] = [loop.latch, loop.header]
+        layout.copied = (layout.copied - {(loop.latch, loop.header)}) | {(entering, loop.header)}
 
     def begins_with_copies(self, loop: Loop) -> bool:
         """Whether values are copied from iteration to iteration in a block of its own.
@@ -88,7 +110,7 @@ class HardwareLoops:
         """Whether the last instruction of a hardware loop would be a branch ["bad last insn; replace with nop" in hwloop_optimize]."""
         (before,) = [*self.flow.predecessors[loop.latch]][:1]
         return (
-            not self.code.of[loop.latch]
+            not self.code.of[self.flow.ending(loop)]
             and before != loop.latch
             and len(set(self.flow.blocks[before].successors)) > 1
             and before not in self.context.if_conversion.by_label
