@@ -30,7 +30,7 @@ def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instru
     variable = flow.instruction(test.operands[0]) if test.opcode == "icmp" else None
     if variable is None or variable.opcode != "phi" or not is_number(test.operands[1]):
         return test
-    for each in map(flow.instruction, variable.operands):
+    for each in map(flow.instruction, _next_values(flow, variable)):
         if each is None or each.operands[:1] != (variable.result,) or not _is_before(flow, each, block, test):
             continue
         number = _number(predicate(test), int(test.operands[1]), each)
@@ -39,6 +39,13 @@ def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instru
             text = f"icmp {predicate(test)} i32 {name}, {number}"
             return written(test.result or "", text, (name, str(number)), test)
     return test
+
+
+def _next_values(flow: ControlFlow, variable: Instruction) -> list[str]:
+    """What a variable may become: also one that goes on with another one's value, as a counter does behind an iteration that is skipped."""
+    merged = (flow.instruction(each) for each in variable.operands)
+    others = (each for each in merged if each is not None and each.opcode == "phi" and each is not variable)
+    return [*variable.operands, *(value for each in others for value in each.operands)]
 
 
 def _is_before(flow: ControlFlow, one: Instruction, block: BasicBlock, other: Instruction) -> bool:
