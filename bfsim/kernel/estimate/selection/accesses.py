@@ -236,18 +236,14 @@ class Accesses:
                     entering,
                     MachineInstruction(Op.ALU, line, variable.name, POINTER, ((variable.name, POINTER),)),
                 )
-<<<<<<< HEAD
             if variable.keeps_address:
                 self._step_apart(variable)
-            if not variable.steps_free:
-=======
             if variable.name in self.ahead:
                 following = ((self.ahead[variable.name], POINTER),)
                 self.emitter.code.add(
                     latch, MachineInstruction(Op.MOVE, line, variable.name, POINTER, following)
                 )
             elif not variable.steps_free:
->>>>>>> 6d44474a (estimate: a choice of the next element or the first one is one of addresses, computed from the pointer or the index there is (rings -40 to -47 -> -5 to -14 %))
                 uses = ((variable.name, POINTER),) + (
                     ((variable.stride, POINTER),) if variable.stride else ()
                 )
