@@ -46,7 +46,7 @@ class Decisions:
                 self._in_range(each, joined)
             return
         left, right = (self._compared(each, value) for value in each.operands[:2])
-        if is_number(right) and _is_near(predicate(each), int(right)):
+        if is_number(right) and _is_near(predicate(each), _unsigned(each, int(right))):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif is_number(right) and self.context.profile.applies(Rule.COMPARED):
             self.emitter.code.add(
@@ -179,6 +179,12 @@ class Decisions:
 
 def _decides(branch: Instruction, test: Instruction) -> bool:
     return branch.operands[:1] == (test.result,)
+
+
+def _unsigned(test: Instruction, bound: int) -> int:
+    """Return what an equal byte is compared with: LLVM writes 255 as -1. [assumed] of unsigned ones, as those of pictures are."""
+    is_byte = test.text.split()[2] == f"i{BYTE}" and predicate(test) in ("eq", "ne")
+    return bound % (1 << BYTE) if is_byte else bound
 
 
 def _is_near(relation: str, bound: int) -> bool:
