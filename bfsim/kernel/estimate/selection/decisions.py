@@ -11,6 +11,7 @@ from bfsim.kernel.estimate.selection.constants import load_constant
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
 from bfsim.kernel.estimate.selection.masked_bytes import is_masked
+from bfsim.kernel.ir.control_flow import BEFORE_TESTS
 from bfsim.kernel.ir.loads_along import goes_along
 from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
 from bfsim.kernel.ir.widths import BYTE, WORD
@@ -56,13 +57,16 @@ class Decisions:
         else:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
+    def _is_hoisted(self, value: str) -> bool:
+        return value.endswith(BEFORE_TESTS) and self.flow.defined[value][0] != self.emitter.label
+
     def _compared(self, each: Instruction, value: str) -> str:
-        """What is compared of a value: one that goes along is narrow, and so extended each time, and what a mask leaves of a byte is once."""
+        """What is compared of a value: one that goes along, or was loaded before a test, is extended each time, what a mask leaves of a byte once."""
         made = self.flow.instruction(value)
         if made is None or made.bits >= WORD:
             return value
         is_mask = self._masks_apart and is_masked(self.flow, made)
-        if not is_mask and not goes_along(self.flow, value):
+        if not (is_mask or goes_along(self.flow, value) or self._is_hoisted(value)):
             return value
         if not is_mask or value not in self._extended:
             self.append(Op.EXTEND, each, f"{value}.compared", DATA, (value, DATA))
