@@ -260,8 +260,16 @@ class _OptimisedLowering:
             if self.context.is_kept(block):
                 cost.charges.append(charge(Op.CC_MOVE, line))
                 cost.nbytes += COSTS[Op.CC_MOVE].nbytes
+            if self._is_of_flag(block):
+                cost.charges.append(charge(Op.BIT_TEST, line))
+                cost.nbytes += COSTS[Op.BIT_TEST].nbytes
             sides = self._branch(label, line)
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
+
+    def _is_of_flag(self, block: BasicBlock) -> bool:
+        """Whether a branch tests a flag that a register keeps, such as one that the iteration before has set."""
+        flag = self.flow.instruction(block.terminator.operands[0])
+        return flag is not None and flag.opcode == "phi" and not self.context.conversions_of(flag)
 
     def _second_part(self, label: str, line: SourceLine) -> tuple[list[Charge], ...]:
         """What it costs more if the second part of a test does not hold after all: the branch was before."""

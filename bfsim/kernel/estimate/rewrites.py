@@ -22,6 +22,7 @@ from bfsim.kernel.estimate.choices.extremes import with_extremes
 from bfsim.kernel.estimate.choices.known_values import with_known_values
 from bfsim.kernel.estimate.choices.narrow_sums import with_narrow_sums
 from bfsim.kernel.estimate.choices.restored_values import with_restored_values
+from bfsim.kernel.estimate.choices.same_truths import with_same_truths
 from bfsim.kernel.estimate.choices.sides_apart import with_sides_apart
 from bfsim.kernel.estimate.choices.sides_of_tests import with_operations_on_sides
 from bfsim.kernel.estimate.choices.wide_extremes import widen_extremes
@@ -60,6 +61,7 @@ from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_restored_values,
+    with_same_truths,
     with_tests_of_next_values,
     with_operations_on_sides,
     with_shifted_products,

@@ -175,7 +175,7 @@ class IfConversion:
     ) -> ConvertedIf | None:
         work = [each for arm in arms for each in self._work(arm)]
         test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
-        is_flag = not work and {yes, no} == {"1", "0"}
+        is_flag = not work and {yes, no} in ({"1", "0"}, {"true", "false"})
         if test is not None and is_flag and (test.opcode == "icmp" or (test.opcode, test.bits) == ("xor", 1)):
             return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
         if test is None or test.opcode != "icmp":

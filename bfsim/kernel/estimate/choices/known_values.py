@@ -15,6 +15,7 @@ from bfsim.kernel.ir.text import Instruction, Routine, arms_of, each_arm, is_num
 
 FLAG = {"0": "1", "1": "0"}
 """What a flag is where it is not the one."""
+TRUTHS = ("true", "false")
 
 
 def with_known_values(routine: Routine) -> Routine:
@@ -34,8 +35,8 @@ class KnownValues:
     flow: ControlFlow
 
     def chosen(self, home: str, each: Instruction) -> Instruction:
-        """Return an instruction of block `home`; if it is a choice of words, from variables."""
-        if not each.text.startswith("phi i32 "):
+        """Return an instruction of block `home`; if it is a choice of words or truths, from variables."""
+        if not each.text.startswith(("phi i32 ", "phi i1 ")):
             return each
         arms = [
             (value if self._is_computed(each, label, home) else self._variable(value, label, home), label)
@@ -50,7 +51,7 @@ class KnownValues:
     def _is_computed(self, choice: Instruction, label: str, home: str) -> bool:
         """Whether a choice between numbers was computed before [tree-ssa-phiopt.cc]: `1 if test else 0`, or by a test that chooses nothing else."""
         is_expression = (choice.result or "").startswith(f"%{CHOSEN}")
-        if is_expression and all(is_number(value) for value, _ in each_arm(choice)):
+        if is_expression and all(_is_constant(value) for value, _ in each_arm(choice)):
             return True
         phis = [each for each in self.flow.blocks[home].instructions if each.opcode == "phi"]
         return any(
@@ -58,11 +59,11 @@ class KnownValues:
             and self.flow.tested(label) == self.flow.tested(other)
             and all(arms_of(phi)[label] == arms_of(phi)[other] for phi in phis if phi is not choice)
             for value, other in each_arm(choice)
-            if is_number(value)
+            if _is_constant(value)
         )
 
     def _variable(self, value: str, label: str, home: str) -> str:
-        if not is_number(value):
+        if not _is_constant(value):
             return value
         equal = (name for name, number in self._found_out(label, home) if number == value)
         return next(equal, value)
@@ -81,7 +82,11 @@ class KnownValues:
         ending = self.flow.blocks[label].terminator
         test = self.flow.instruction(ending.operands[0]) if ending.operands else None
         ways = self.flow.blocks[label].successors
-        if ending.opcode != "br" or test is None or test.opcode != "icmp" or len(set(ways)) != 2:
+        if ending.opcode != "br" or test is None or len(set(ways)) != 2:
+            return
+        if test.opcode == "phi":
+            yield ending.operands[0], TRUTHS[ways.index(way)]
+        if test.opcode != "icmp":
             return
         name, number = test.operands
         if predicate(test) not in ("eq", "ne") or not self._is_word(name, test) or not is_number(number):
@@ -104,3 +109,7 @@ class KnownValues:
         if made is None or made.opcode != "phi":
             return made is not None and made.opcode == "zext" and " i1 " in made.text
         return all(self._is_flag(value, seen | {name}) for value, _ in each_arm(made))
+
+
+def _is_constant(value: str) -> bool:
+    return is_number(value) or value in TRUTHS

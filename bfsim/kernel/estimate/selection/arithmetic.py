@@ -158,7 +158,9 @@ class Arithmetic:
         return all(self.context.folding.is_short(operand) for operand in each.operands[:2])
 
     def extend(self, each: Instruction) -> None:
+        if self.context.is_alias(each):
+            return
         if " i1 " in each.text:
             self.append(Op.CC_MOVE, each, each.result, DATA)
-        elif not self.context.is_alias(each):
+        else:
             self.append(Op.EXTEND, each, each.result, DATA, (each.operands[0], DATA))

@@ -127,9 +127,12 @@ class Context:
         return phi.result or "" if is_alone else f"{phi.result}.converted.{conversion.label}"
 
     def is_alias(self, each: Instruction) -> bool:
-        """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""
+        """Whether an instruction only renames a register: widening what a load has extended already or a flag that is kept, or narrowing."""
         if each.opcode in ("trunc", "freeze") or (each.opcode == "lshr" and each.bits == PAIR):
             return True
+        if each.opcode == "zext" and " i1 " in each.text:
+            flag = self.flow.instruction(each.operands[0])
+            return flag is not None and flag.opcode == "phi"
         if each.opcode not in ("sext", "zext") or " i1 " in each.text:
             return False
         return self._is_clean(each.operands[0]) and not self.is_extended_late(each)
