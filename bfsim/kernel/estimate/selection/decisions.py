@@ -36,7 +36,12 @@ class Decisions:
         if self.context.folding.bit_tested(each) is not None:
             masked = self.context.folding.bit_tested(each) or ""
             made = self.flow.instruction(each.operands[0])
-            if self._masks_apart and made is not None and is_masked(self.flow, made):
+            if (
+                self._masks_apart
+                and made is not None
+                and is_masked(self.flow, made)
+                and self._decides_way(each)
+            ):
                 self.append(Op.ALU, each, None, DATA, (masked, DATA))
             self.append(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
@@ -59,6 +64,15 @@ class Decisions:
 
     def _is_hoisted(self, value: str) -> bool:
         return value.endswith(BEFORE_TESTS) and self.flow.defined[value][0] != self.emitter.label
+
+    def _decides_way(self, test: Instruction) -> bool:
+        """Whether a test decides where to go: what it only gives, or chooses between numbers, is a bit that is shifted."""
+        ways = [
+            block.successors
+            for block in self.flow.blocks.values()
+            if block.terminator.operands[:1] == (test.result,)
+        ]
+        return any(not any(way.startswith("chosen") for way in each) for each in ways)
 
     def _compared(self, each: Instruction, value: str) -> str:
         """What is compared of a value: one that goes along, or was loaded before a test, is extended each time, what a mask leaves of a byte once."""
