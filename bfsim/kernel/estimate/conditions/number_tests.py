@@ -52,8 +52,11 @@ def chains(flow: ControlFlow, begins: Callable[[BasicBlock], bool]) -> list[list
 
 
 def is_alone(block: BasicBlock) -> bool:
-    """Whether a block does nothing but test."""
-    return all(each.opcode in CONVERSIONS for each in block.instructions[:-2])
+    """Whether a block does nothing but test, what a number is added to, too."""
+    return all(
+        each.opcode in CONVERSIONS or (each.opcode == "add" and is_number(each.operands[1]))
+        for each in block.instructions[:-2]
+    )
 
 
 def come_alike(flow: ControlFlow, label: str, before: Iterable[str]) -> bool:
@@ -90,7 +93,18 @@ def _test(flow: ControlFlow, block: BasicBlock) -> NumberTest | None:
         return None
     hit, other = block.successors if predicate(test) == "eq" else reversed(block.successors)
     bits = int(test.text.split()[-3].removeprefix("i"))
-    number = int(test.operands[1])
-    return NumberTest(
-        block.label, test.operands[0], bits, number % (1 << bits) if bits < WORD else number, hit, other
-    )
+    value, number = test.operands[0], int(test.operands[1])
+    value, bits, number = _of_sum(flow, value, number) or (value, bits, number)
+    return NumberTest(block.label, value, bits, number % (1 << bits) if bits < WORD else number, hit, other)
+
+
+def _of_sum(flow: ControlFlow, value: str, number: int) -> tuple[str, int, int] | None:
+    """Return the narrow value, its bits, and its number, where what is tested is the sum of it and a number [init_range_entry in tree-ssa-reassoc.cc]."""
+    total = flow.instruction(value)
+    if total is None or total.opcode != "add" or total.bits != WORD or not is_number(total.operands[1]):
+        return None
+    word = flow.instruction(total.operands[0])
+    if word is None or word.opcode != "zext":
+        return None
+    bits, own = int(word.text.split()[-4].removeprefix("i")), number - int(total.operands[1])
+    return (word.operands[0], bits, own) if 0 <= own < 1 << bits else None

@@ -20,7 +20,7 @@ from bfsim.kernel.ir.widths import WORD, widest
 
 FEWEST = 3  # tests that a mask replaces [the threshold in optimize_range_tests_to_bit_test]
 SMALL_BITS = 5  # of the number of a bit of a word
-HIT = (2, 1)  # as likely a bit of the mask is set: what three even tests have been guessed together
+HIT = (1, 1)  # as likely a bit of the mask is set, and not: what was guessed of the single tests is lost
 
 
 @dataclass(frozen=True, slots=True)

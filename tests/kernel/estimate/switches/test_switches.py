@@ -132,14 +132,14 @@ CASES = {
     "low numbers": (
         IN_A_LOOP.format("a[i] & 31", ANY_OF.format("c == 2 or c == 7 or c == 12 or c == 17")),
         4529,
-        0.17,
+        0.04,
     ),
     "neighbours": (IN_A_LOOP.format("a[i]", ANY_OF.format("c == 88 or c == 89 or c == 90")), 3804, 0.01),
     "a bit apart": (IN_A_LOOP.format("a[i]", ANY_OF.format("c == 69 or c == 101")), 4208, 0.01),
     "both sides of 0": (
         IN_A_LOOP.format("(a[i] & 15) - 6", ANY_OF.format("c == -6 or c == 1 or c == 4 or c == 8")),
         4926,
-        0.58,
+        0.03,
     ),
     "-1 and 1": (IN_A_LOOP.format("(a[i] & 3) - 1", ANY_OF.format("c == -1 or c == 1")), 4319, 0.1),
     "neighbours first": (
