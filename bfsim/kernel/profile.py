@@ -48,8 +48,12 @@ class MemoryRoutine:
             self.cclk
             + nbytes * self.byte_cclk
             + (self.words_cclk if nbytes >= self.words_from else 0)
-            + nbytes // MEMORY_BLOCK_BYTES * self.block_cclk
+            + self.blocks_of(nbytes)
         )
+
+    def blocks_of(self, nbytes: int) -> int:
+        """Return what the whole blocks of a piece take."""
+        return nbytes // MEMORY_BLOCK_BYTES * self.block_cclk
 
 
 MEMORY_BLOCK_BYTES = 16

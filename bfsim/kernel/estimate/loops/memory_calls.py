@@ -7,11 +7,11 @@ stores write what is loaded a fixed distance away in the same array, where nothi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bfsim.kernel.estimate.loops.scalar_evolution import Increment, ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction
+from bfsim.kernel.ir.text import Instruction, is_number
 from bfsim.kernel.ir.widths import BYTE
 from bfsim.kernel.profile import Library, MemoryRoutine
 
@@ -34,6 +34,8 @@ class MemoryCall:
     routine: MemoryRoutine
     iterations: int | None
     """None where only the loop knows."""
+    nest: Loop | None = None
+    """The loop around, where one call fills what all its iterations fill side by side."""
 
     @property
     def nbytes(self) -> int:
@@ -46,10 +48,15 @@ class MemoryCall:
         return None if self.iterations is None else self.iterations * self.nbytes
 
     @property
+    def place(self) -> Loop:
+        """The loop before which the call is."""
+        return self.nest or self.loop
+
+    @property
     def is_inline(self) -> bool:
         """Whether stores of bytes are in place of the call."""
         most = MOST_CLEARED if self.store.operands[0] == "0" else MOST_SET
-        return self.load is None and self.total is not None and self.total <= most
+        return self.load is None and self.nest is None and self.total is not None and self.total <= most
 
 
 def memory_calls(
@@ -78,7 +85,38 @@ class _Finder:
             if routine is None:
                 return []
             calls.append(MemoryCall(loop, number, store, load, routine, self._evolution.iterations(loop)))
+        if len(calls) == 1 and self._is_perfect(calls[0]):
+            return [replace(calls[0], nest=self._flow.around(loop))]
         return [] if loads else calls
+
+    def _is_perfect(self, call: MemoryCall) -> bool:
+        """Whether the loop around does nothing but fill, and one iteration right behind the other [compute_access_range, of perfect nests]."""
+        around = self._flow.around(call.loop)
+        if (
+            around is None
+            or call.load is not None
+            or call.total is None
+            or not self._evolution.is_counted(around)
+        ):
+            return False
+        rows = (each for label in around.blocks for each in self._flow.blocks[label].instructions)
+        alone = all(each is call.store or each.opcode not in ("load", "store", "call") for each in rows)
+        side_by_side = self._step_around(call, around) in (call.total, -call.total)
+        return alone and side_by_side and len(self._flow.exits(around)) == 1
+
+    def _step_around(self, call: MemoryCall, around: Loop) -> int | None:
+        """Return how many bytes further each iteration of the loop around begins, if that is always as many."""
+        total = 0
+        for name, times in self._evolution.affine(call.store.operands[1]).terms:
+            if self._flow.defined.get(name, ("",))[0] == call.loop.header:
+                fixed = is_number(self._evolution.first(name, call.loop) or "")
+                step = Increment() if fixed else None
+            else:
+                step = self._evolution.increment(name, around)
+            if step is None or step.symbolic:
+                return None
+            total += times * step.constant
+        return total
 
     def _is_allowed(self, each: Instruction, loop: Loop) -> bool:
         """Whether a statement may be in the loop: what does not change in it is computed before it."""

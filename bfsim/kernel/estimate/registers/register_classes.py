@@ -57,6 +57,16 @@ class RegisterClasses:
         for label in self.flow.order:
             for instruction in self.code.of[label]:
                 self._note(instruction, int(webs.frequency[label] * 1000) + 1)
+        for label in self.flow.order:
+            for instruction in filter(self.is_sum, self.code.of[label]):
+                self._note_bytes(instruction)
+
+    def _note_bytes(self, instruction: MachineInstruction) -> None:
+        """What adds up bytes or half-words is best in a data register, as they are."""
+        names = [self.webs.find(name) for name, _ in instruction.uses if not name.startswith("#")]
+        total = self.webs.find(instruction.result or "")
+        if total in names and any(self.values[name].strict[DATA] for name in names):
+            self.values[total].is_plain = True
 
     def is_sum(self, instruction: MachineInstruction) -> bool:
         """Whether an instruction adds two values that may be in either bank."""

@@ -43,7 +43,7 @@ class Calls:
     def memory(self, call: MemoryCall) -> None:
         """Call memset or memmove instead of iterating; of an unknown length, the loop's counters tell (`memory_lengths`)."""
         each, root = call.store, self.context.flow.root
-        self.emitter.label = self.context.flow.entering(call.loop)
+        self.emitter.label = self.context.flow.entering(call.place)
         if call.is_inline:
             self.append(Op.MOVE, each, None, POINTER, (root(each.operands[1]), ANY))
             self.append(Op.ALU, each, None, POINTER)  # a pointer of its own that walks, and a step
@@ -56,7 +56,12 @@ class Calls:
             self.append(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
         self.append(self._op(each), each, None, DATA)
         cclk = call.routine.cclk if call.total is None else call.routine.of(call.total)
+        if call.nest is not None:
+            cclk = call.routine.cclk + call.routine.words_cclk
         self.append(Op.LIBRARY, each, None, DATA, cclk=cclk, nbytes=0)
+        if call.nest is not None:  # and what one iteration of the loop around adds
+            self.emitter.label = self.context.flow.entering(call.loop)
+            self.append(Op.LIBRARY, each, None, DATA, cclk=call.routine.blocks_of(call.total or 0), nbytes=0)
 
     def library(self, each: Instruction, routine: LibraryRoutine, name: str) -> None:
         """What a routine of the run-time library takes."""

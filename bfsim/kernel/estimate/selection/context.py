@@ -68,9 +68,10 @@ class Context:
             self.induction_variables,
             self.divisions,
             frozenset(
-                header
+                self.flow.entering(call.nest) if call.nest else header
                 for header, calls in self.memory_calls.items()
-                if not all(each.is_inline for each in calls)
+                for call in calls
+                if not call.is_inline
             ),
             self.likelihood.frequency,
         )

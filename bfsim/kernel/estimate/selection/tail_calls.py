@@ -40,7 +40,7 @@ def tail_calls(
         (way,) = {*flow.blocks[header].successors} - {header}
         empty = len(flow.blocks[way].instructions) == 1
         end = _returning(flow, way, None)
-        if len(calls) == 1 and not calls[0].is_inline and empty and end is not None:
+        if len(calls) == 1 and not calls[0].is_inline and not calls[0].nest and empty and end is not None:
             found[flow.entering(calls[0].loop)] = TailCall(calls[0].store, end)
     for label, block in flow.blocks.items():
         call = block.instructions[-2] if len(block.instructions) > 1 else None

@@ -86,6 +86,14 @@ def test_what_is_tested_in_a_first_iteration_alone_leaves_a_fill_as_it_is(tmp_pa
 
 
 OF_THE_LIBRARY: dict[str, Case] = {
+    "a picture at once": (
+        """def f(a: u8[:], n: i32) -> None:
+    for y in range(12):
+        for x in range(16):
+            a[y * 16 + x] = 0""",
+        176,
+        0.13,
+    ),
     "a delay line": (
         """def f(a: i16[:], b: i16[:], c: i16[:], n: i32) -> None:
     for i in range(n):
