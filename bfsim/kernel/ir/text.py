@@ -24,6 +24,8 @@ NO_HINT = (1 << 20, 1)
 """Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
 LEAVES = (11, 189)
 """Weights of a branch whose first side leaves one of two loops that begin with the same test [PRED_LOOP_EXIT in predict.def of GCC 12, of two exits]."""
+COMMUTATIVE = ("add", "mul", "and", "or", "xor")
+"""Operations whose operands may change places."""
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
            "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
 """Relations by those of the same two values the other way round."""

@@ -13,8 +13,8 @@ from functools import partial
 from typing import NamedTuple
 
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
-from bfsim.kernel.estimate.scheduling.expansion import Expansion
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
+from bfsim.kernel.ir.expansion import Expansion
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number
 from bfsim.kernel.ir.widths import BYTE
 

@@ -15,7 +15,16 @@ from bfsim.kernel.estimate.choices.known_values import KnownValues
 from bfsim.kernel.estimate.conditions.number_tests import CONVERSIONS
 from bfsim.kernel.ir.control_flow import EITHER, ControlFlow
 from bfsim.kernel.ir.edges import come_to_from, going_to, put_between
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, arms_of, is_number, phi_of, renamed
+from bfsim.kernel.ir.text import (
+    COMMUTATIVE,
+    BasicBlock,
+    Instruction,
+    Routine,
+    arms_of,
+    is_number,
+    phi_of,
+    renamed,
+)
 from bfsim.kernel.ir.unused import without_unused
 from bfsim.kernel.profile import GCC_O2
 
@@ -23,7 +32,6 @@ NEUTRAL = {
     "add": "0", "sub": "0", "or": "0", "xor": "0", "shl": "0", "lshr": "0", "ashr": "0", "mul": "1", "and": "-1",
 }  # fmt: skip
 """On the right of these nothing is changed."""
-COMMUTATIVE = ("add", "or", "xor", "mul", "and")
 ABSORBING = {"mul": "0", "and": "0"}
 """With these nothing else counts."""
 SHIFTS = ("shl", "lshr", "ashr")

@@ -3,6 +3,7 @@
 So a whole expression is computed where its value is needed, of two operands that may change places the longer one first
 [reorder_operands in cfgexpand.cc], and of a store the address before the value [expand_assignment in expr.cc]. That decides how many
 registers are taken at once. Nothing waits for a store or a call that it must be done before, and a load not for its own store, which may be to the same place.
+What asks for the order of statements before there are operations is `ir/expansion.py`.
 """
 
 from __future__ import annotations
@@ -12,18 +13,11 @@ from collections.abc import Iterator
 
 from bfsim.kernel.estimate.selection.context import Context
 from bfsim.kernel.estimate.selection.machine_code import MachineCode, MachineInstruction
+from bfsim.kernel.ir.expansion import EITHER_WAY
 from bfsim.kernel.operations import BARRIERS, LOADS, STORES, Op
 
 COMPUTING = {Op.ALU, Op.DSP_ALU, Op.SHIFT, Op.ADD_SHIFT, Op.MUL16, Op.MUL32, Op.EXTEND}
 WAITING = {*LOADS, *COMPUTING, Op.MOVE, Op.IMM, Op.IMM32}
-EITHER_WAY = (
-    "add",
-    "mul",
-    "and",
-    "or",
-    "xor",
-    "call",
-)  # what is called and has operations of its own is a minimum or a maximum
 
 
 def order_as_expanded(context: Context, code: MachineCode) -> None:

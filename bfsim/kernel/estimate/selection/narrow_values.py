@@ -11,11 +11,11 @@ from bfsim.kernel.estimate.induction_variables.induction_variables import (
 )
 from bfsim.kernel.estimate.induction_variables.kept_addresses import is_threaded
 from bfsim.kernel.estimate.memory.predictive_commoning import ALONG
-from bfsim.kernel.estimate.scheduling.expansion import Expansion
 from bfsim.kernel.estimate.selection.folding import NARROW, Folding
 from bfsim.kernel.estimate.selection.loop_counters import LoopCounters
 from bfsim.kernel.estimate.selection.narrow_trees import is_cut_tree
 from bfsim.kernel.ir.control_flow import pointee_nbytes
+from bfsim.kernel.ir.expansion import Expansion
 from bfsim.kernel.ir.loads_along import FOLLOWING
 from bfsim.kernel.ir.text import OF_VARIABLE, Instruction, is_number
 from bfsim.kernel.ir.widths import BYTE

@@ -1,7 +1,9 @@
 """Where in its block GCC makes a statement that one other alone wants: together with that one [tree-ssa-ter.cc of GCC 12].
 
 So are loads, unless a store or a call comes between. Of two operands, the first is made first, or that of a sum or product that costs
-more [reorder_operands in cfgexpand.cc].
+more [reorder_operands in cfgexpand.cc]. These are statements of the IR, asked for before there are operations: whether a load comes before
+or behind the step of its pointer decides which operations there are. The operations are put into that order once they are chosen
+(`estimate/registers/expansion_order.py`).
 """
 
 from __future__ import annotations
@@ -9,22 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.text import Instruction
+from bfsim.kernel.ir.text import COMMUTATIVE, Instruction
 
-COMMUTATIVE = {
-    "add",
-    "mul",
-    "and",
-    "or",
-    "xor",
-    "call",
-}  # what is called and has operations of its own is a minimum or a maximum
-CONVERSIONS = {"zext", "sext", "trunc"}
+EITHER_WAY = (*COMMUTATIVE, "call")
+"""Whose operands may change places; what is called and has operations of its own is a minimum or a maximum."""
+FREE = ("zext", "sext", "trunc", "getelementptr")
+"""What costs nothing [estimate_num_insns in tree-inline.cc]."""
 FIXED = {"phi", "store", "br", "switch", "ret"}
 
 
 class Expansion:
-    """That of the block `label`. `stepping`: a load that is made where it stands, since its pointer is stepped right behind it."""
+    """The order of the block `label`. `stepping`: a load that is made where it stands, since its pointer is stepped right behind it."""
 
     def __init__(self, flow: ControlFlow, label: str, stepping: Instruction | None = None) -> None:
         self._flow, self._stepping = flow, stepping
@@ -55,7 +52,7 @@ class Expansion:
 
     def _made(self, each: Instruction) -> Iterator[Instruction]:
         parts = self._parts(each)
-        if each.opcode in COMMUTATIVE and len(parts) == 2 and self._cost(parts[1]) > self._cost(parts[0]):
+        if each.opcode in EITHER_WAY and len(parts) == 2 and self._cost(parts[1]) > self._cost(parts[0]):
             parts.reverse()
         for part in parts:
             yield from self._made(part)
@@ -66,6 +63,4 @@ class Expansion:
         return [one for one in made if one is not None and self._wanting(one) is each]
 
     def _cost(self, each: Instruction) -> int:
-        """As GCC's estimate_num_insns counts: conversions, and addresses, cost nothing."""
-        own = each.opcode not in CONVERSIONS and each.opcode != "getelementptr"
-        return own + sum(map(self._cost, self._parts(each)))
+        return (each.opcode not in FREE) + sum(map(self._cost, self._parts(each)))
