@@ -10,6 +10,9 @@ from llvmlite import ir
 
 from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE
 
+OF_MEMORY = ".reg2mem"
+"""In the names of values that were in memory while ways past tests were made (`register_to_memory`): jumps were threaded there, or tables made."""
+
 
 def parsed(module: ir.Module) -> llvm.ModuleRef:
     """Return an emitted module as LLVM has it.

@@ -2,7 +2,7 @@
 
 The step is right behind the access that comes first in the order of their distances [split_address_groups and add_autoinc_candidates in
 tree-ssa-loop-ivopts.cc of GCC 12], and both are one post-increment where that can be. Loads are made where their values are wanted,
-though (`expansion`), behind the step: then it is a sum of its own, and where other accesses come before, a copy of the pointer serves
+though (`ir/expansion.py`), behind the step: then it is a sum of its own, and where other accesses come before, a copy of the pointer serves
 them all, which keeps what it was.
 """
 
@@ -15,10 +15,9 @@ from typing import NamedTuple
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.expansion import Expansion
+from bfsim.kernel.ir.llvm_passes import OF_MEMORY
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number
 from bfsim.kernel.ir.widths import BYTE
-
-THREADED = ".reg2mem"  # in the names of what LLVM carries over where jumps were threaded (`jump_threading.known_ways`)
 
 
 class Access(NamedTuple):
@@ -32,9 +31,10 @@ class Access(NamedTuple):
 def stepping_access(accesses: Sequence[Access], loop: Loop, evolution: ScalarEvolution) -> Access:
     """Return the access behind which the pointer of all of them is stepped.
 
-    That at the lowest address is, as far as GCC can see: where more than the array is unknown of an address, a distance that is negative
-    counts as a large one, that of bytes with what the counter starts with, that of wider elements always, as C's subscripts are unsigned
-    there before they are multiplied. Accesses that far away are a group apart, whose first is stepped at if more distances are 0 then.
+    That is the one at the lowest address, as far as GCC can tell. Where more than the array is unknown of the addresses, it takes negative
+    distances for large ones: of bytes, if they are so with what the counter starts with; of wider elements always, since C's subscripts are
+    made unsigned before they are multiplied. Accesses which seem that far away are a group of their own. Of the first accesses of both groups,
+    it is the one that leaves more accesses at a distance of 0.
     """
     start, is_fixed = _start(accesses[0].instruction, loop, evolution)
 
@@ -51,7 +51,10 @@ def stepping_access(accesses: Sequence[Access], loop: Loop, evolution: ScalarEvo
 
 
 def _rank(loop: Loop, flow: ControlFlow, access: Access) -> tuple[int, int]:
-    """Return the place of an access in its group: of those to one address, that in the first block, or else in the last one [get_loop_body in cfgloop.cc]."""
+    """Return what accesses of a group are in the order of: their addresses; of those to one, that in the first block is first, or else that in the last one.
+
+    So GCC comes to the blocks [get_loop_body in cfgloop.cc].
+    """
     is_first = access.label == loop.header
     return access.offset, -len(flow.order) if is_first else -flow.order.index(access.label)
 
@@ -81,16 +84,14 @@ def _start(access: Instruction, loop: Loop, evolution: ScalarEvolution) -> tuple
 
 def is_threaded(loop: Loop, flow: ControlFlow) -> bool:
     """Whether jumps of a loop were threaded behind ivopts, which saw accesses on one side of a test that every iteration makes now."""
-    return any(THREADED in (each.result or "") for each in flow.blocks[loop.header].instructions)
+    return any(OF_MEMORY in (each.result or "") for each in flow.blocks[loop.header].instructions)
 
 
 def keeps_address(accesses: Sequence[Access], stepping: Access, loop: Loop, flow: ControlFlow) -> bool:
     """Whether a copy of the pointer of some accesses serves those up to the one behind which it is stepped."""
     label, load, _ = stepping
     rows = flow.blocks[label].instructions
-    if load.opcode != "load" or load not in rows:
-        return False
-    if is_threaded(loop, flow):
+    if load.opcode != "load" or load not in rows or is_threaded(loop, flow):
         return False
     place, expansion = rows.index(load), Expansion(flow, label)
     before = [each for where, each, _ in accesses if where == label and each in rows[:place]]
