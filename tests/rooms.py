@@ -180,9 +180,9 @@ ESTIMATE = _sets(
         "rewrites": (
             "choices conditions loops arithmetic memory switches jump_threading redundancies loop_copies"
         ),
-        "layout": "conditions switches prediction selection registers",
+        "layout": "conditions loops switches prediction selection registers",
         "scheduling": "selection registers",
-        "optimised": "loops selection registers layout scheduling",
+        "optimised": "selection registers layout scheduling",
         "costing": "switches unoptimised jump_threading inlining loop_copies rewrites optimised",
         "estimated": "costing",
     }

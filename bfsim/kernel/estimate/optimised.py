@@ -6,16 +6,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from bfsim.kernel import operations
-from bfsim.kernel.costs.charges import BlockCost, Charge, Test, charge, instead
+from bfsim.kernel.costs.charges import BlockCost, Charge, charge, instead
 from bfsim.kernel.estimate.layout.block_order import ordered
 from bfsim.kernel.estimate.layout.branch_costs import BranchCosts
 from bfsim.kernel.estimate.layout.code_blocks import CodeBlocks, Landing, edge_of
 from bfsim.kernel.estimate.layout.cross_jumps import CrossJumps
 from bfsim.kernel.estimate.layout.frame_costs import FrameCosts
 from bfsim.kernel.estimate.layout.hardware_loops import HardwareLoops
+from bfsim.kernel.estimate.layout.memory_call_costs import add_memory_call
 from bfsim.kernel.estimate.layout.switch_costs import add_switch
-from bfsim.kernel.estimate.loops.memory_calls import MemoryCall
-from bfsim.kernel.estimate.loops.memory_lengths import block_ends, words_begin
 from bfsim.kernel.estimate.registers.registers import allocate
 from bfsim.kernel.estimate.scheduling.bundles import bundled
 from bfsim.kernel.estimate.scheduling.schedule import Issue, issues
@@ -122,27 +121,11 @@ class _OptimisedLowering:
         others = cost.charges[:before] + cost.charges[before + len(instructions) :]
         cost.accesses = [each.access for each in instructions if each.access is not None]
         for call in self.context.memory_calls.get(block.label, ()):
-            self._memory_call(call, cost)
+            add_memory_call(cost, call)
         cost.nbytes = sum(each.code_bytes for each in instructions) + sum(
             COSTS[each.op].nbytes for each in others
         )
         return cost
-
-    def _memory_call(self, call: MemoryCall, cost: BlockCost) -> None:
-        """What a routine of the library accesses, and what it takes for the length that there is."""
-        if call.load is not None:
-            cost.accesses += [call.load, call.store]
-        elif call.is_inline:
-            cost.accesses.append(call.store)
-        else:
-            cost.fills.append(call.store)
-        if call.iterations is not None:
-            return
-        line, routine = call.store.line, call.routine
-        if routine.byte_cclk:
-            cost.charges.append(Charge(Op.LIBRARY, line, call.nbytes * routine.byte_cclk))
-        parts = (words_begin(call), routine.words_cclk), (block_ends(call), routine.block_cclk)
-        cost.tests += [Test(value, None, (Charge(Op.LIBRARY, line, cclk),)) for value, cclk in parts if cclk]
 
     def _issues(self, label: str) -> list[Issue]:
         instructions = self.code.of[label]
@@ -257,19 +240,13 @@ class _OptimisedLowering:
         elif self.context.jump_threading.decides(block.terminator) or self.flow.is_overflow_guard(block):
             sides = tuple(self.branches.on(label, way, line) for way in block.successors)
         else:
-            if self.context.is_kept(block):
-                cost.charges.append(charge(Op.CC_MOVE, line))
-                cost.nbytes += COSTS[Op.CC_MOVE].nbytes
-            if self._is_of_flag(block):
-                cost.charges.append(charge(Op.BIT_TEST, line))
-                cost.nbytes += COSTS[Op.BIT_TEST].nbytes
+            to_cc = [Op.CC_MOVE] * self.context.is_kept(block) + [Op.BIT_TEST] * self.context.tests_flag(
+                block
+            )
+            cost.charges += [charge(each, line) for each in to_cc]
+            cost.nbytes += sum(COSTS[each].nbytes for each in to_cc)
             sides = self._branch(label, line)
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
-
-    def _is_of_flag(self, block: BasicBlock) -> bool:
-        """Whether a branch tests a flag that a register keeps, such as one that the iteration before has set."""
-        flag = self.flow.instruction(block.terminator.operands[0])
-        return flag is not None and flag.opcode == "phi" and not self.context.conversions_of(flag)
 
     def _second_part(self, label: str, line: SourceLine) -> tuple[list[Charge], ...]:
         """What it costs more if the second part of a test does not hold after all: the branch was before."""

@@ -14,7 +14,7 @@ from bfsim.kernel.estimate.loops.memory_calls import MemoryCall, memory_calls
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.preheaders import with_preheader
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, phi_of
+from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, phi_of, written
 from bfsim.kernel.profile import MEMORY_BLOCK_BYTES, Library
 
 
@@ -42,23 +42,22 @@ def count_memory_calls(routine: Routine, library: Library) -> Routine:
 def _counting(block: BasicBlock, before: str, calls: list[MemoryCall]) -> BasicBlock:
     turn, next_turn = (f"%{block.label}.{each}" for each in ("turn", "next.turn"))
     *rows, end = block.instructions
-    one = replace(end, hint="", weights=())
     added = [
-        phi_of(turn, "i32", [("0", before), (next_turn, block.label)], one),
+        phi_of(turn, "i32", [("0", before), (next_turn, block.label)], end),
         *rows,
-        _made(one, next_turn, f"add nuw i32 {turn}, 1", turn, "1"),
-        *(each for call in calls for each in _conditions(call, turn, one)),
+        written(next_turn, f"add nuw i32 {turn}, 1", (turn, "1"), end),
+        *(each for call in calls for each in _conditions(call, turn, end)),
         end,
     ]
     return replace(block, instructions=tuple(added))
 
 
-def _conditions(call: MemoryCall, turn: str, one: Instruction) -> Iterator[Instruction]:
+def _conditions(call: MemoryCall, turn: str, at: Instruction) -> Iterator[Instruction]:
     part, per_block = f"{_named(call)}.part", MEMORY_BLOCK_BYTES // call.nbytes
     first, last = call.routine.words_from // call.nbytes - 1, str(per_block - 1)
-    yield _made(one, words_begin(call), f"icmp eq i32 {turn}, {first}", turn)
-    yield _made(one, part, f"and i32 {turn}, {last}", turn, last)
-    yield _made(one, block_ends(call), f"icmp eq i32 {part}, {last}", part, last)
+    yield written(words_begin(call), f"icmp eq i32 {turn}, {first}", (turn, str(first)), at)
+    yield written(part, f"and i32 {turn}, {last}", (turn, last), at)
+    yield written(block_ends(call), f"icmp eq i32 {part}, {last}", (part, last), at)
 
 
 def _with_preheaders(routine: Routine, library: Library) -> Routine:
@@ -76,7 +75,3 @@ def _calls(flow: ControlFlow, library: Library) -> dict[str, list[MemoryCall]]:
 
 def _named(call: MemoryCall) -> str:
     return f"%{call.loop.header}.call.{call.number}"
-
-
-def _made(like: Instruction, result: str, text: str, *operands: str) -> Instruction:
-    return replace(like, result=result, opcode=text.split(maxsplit=1)[0], text=text, operands=operands)
