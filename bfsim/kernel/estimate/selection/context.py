@@ -19,17 +19,14 @@ from bfsim.kernel.estimate.selection.demanded_values import DemandedValues
 from bfsim.kernel.estimate.selection.folding import Folding
 from bfsim.kernel.estimate.selection.library_divisions import LibraryDivisions
 from bfsim.kernel.estimate.selection.loop_counters import LoopCounters
-from bfsim.kernel.estimate.selection.masked_bytes import EXTENDING
+from bfsim.kernel.estimate.selection.narrow_bits import is_joined_before
 from bfsim.kernel.estimate.selection.narrow_values import NarrowValues
 from bfsim.kernel.estimate.selection.tail_calls import TailCall, tail_calls
 from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, each_arm, is_number
+from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, each_arm
 from bfsim.kernel.ir.widths import PAIR, widest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
-
-BITWISE = ("and", "or", "xor")
-COMPUTING = ("add", "sub", "mul", "or", "xor")
 
 
 class Context:
@@ -104,6 +101,11 @@ class Context:
             hoisted and self.profile.applies(Rule.GUARDS) and block.label not in self.if_conversion.by_label
         )
 
+    def tests_flag(self, block: BasicBlock) -> bool:
+        """Whether the branch at the end of a block tests a flag that a register has, 0 or 1, such as one that the iteration before has set."""
+        flag = self.flow.instruction(block.terminator.operands[0])
+        return flag is not None and flag.opcode == "phi" and not self.conversions_of(flag)
+
     @cached_property
     def _conversions_by_phi(self) -> dict[str, list[ConvertedIf]]:
         found: dict[str, list[ConvertedIf]] = {}
@@ -128,7 +130,7 @@ class Context:
         return phi.result or "" if is_alone else f"{phi.result}.converted.{conversion.label}"
 
     def is_alias(self, each: Instruction) -> bool:
-        """Whether an instruction only renames a register: widening what a load has extended already or a flag that is kept, or narrowing."""
+        """Whether an instruction only renames a register: widening what a load has extended already, or a flag that a register has, or narrowing."""
         if each.opcode in ("trunc", "freeze") or (each.opcode == "lshr" and each.bits == PAIR):
             return True
         if each.opcode == "zext" and " i1 " in each.text:
@@ -157,28 +159,8 @@ class Context:
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)
 
     def is_extended_late(self, extension: Instruction) -> bool:
-        """Whether a bitwise operation is done before its result is extended: of two that are loaded, and a mask that is no extension itself.
-
-        ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12; of numbers that fit, for masks].
-        """
-        each = self.flow.instruction(extension.operands[0])
-        if each is not None and each.opcode in ("add", "sub", "mul") and is_number(each.operands[1]):
-            each = self.flow.instruction(each.operands[0])  # LLVM computes with bytes what fits
-        if each is None or not self.profile.applies(Rule.NARROW_BITS):
-            return False
-        users = self.flow.users.get(extension.result or "", [])
-        if users and all(user.opcode in BITWISE and is_number(user.operands[1]) for user in users):
-            return False  # so is what they are masked with again
-        if each.opcode == "and" and is_number(each.operands[1]):
-            return int(each.operands[1]) not in EXTENDING and self._is_loaded(each.operands[0])
-        return each.opcode in BITWISE and all(map(self._is_loaded, each.operands))
-
-    def _is_loaded(self, value: str) -> bool:
-        """Whether a narrow value is loaded, or made bit by bit of such."""
-        each = self.flow.instruction(value)
-        if each is None or each.opcode == "load":
-            return each is not None
-        return each.opcode in BITWISE and all(map(self._is_loaded, each.operands))
+        """Whether what is extended was masked, or joined bit by bit, before (`narrow_bits`)."""
+        return self.profile.applies(Rule.NARROW_BITS) and is_joined_before(self.flow, extension)
 
     def name(self, value: str) -> str:
         """The register that holds `value`; constants are written #5."""

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 from bfsim.kernel import operations
 from bfsim.kernel.estimate.choices.if_conversion import ConversionKind, ConvertedIf
+from bfsim.kernel.estimate.choices.narrow_choices import CHOSEN
 from bfsim.kernel.estimate.conditions.joined_tests import Range
 from bfsim.kernel.estimate.selection.constants import load_constant
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
-from bfsim.kernel.estimate.selection.masked_bytes import is_masked
+from bfsim.kernel.estimate.selection.narrow_bits import is_masked_for_test
 from bfsim.kernel.ir.control_flow import BEFORE_TESTS
 from bfsim.kernel.ir.loads_along import goes_along
 from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
@@ -30,18 +31,11 @@ class Decisions:
         self.emitter, self.append = emitter, emitter.append
         self.context, self.flow = emitter.context, emitter.context.flow
         self._extended = set[str]()
-        self._masks_apart = self.context.profile.applies(Rule.NARROW_BITS)
+        """Masks that have been extended to be compared."""
 
     def compare(self, each: Instruction) -> None:
-        if self.context.folding.bit_tested(each) is not None:
-            masked = self.context.folding.bit_tested(each) or ""
-            made = self.flow.instruction(each.operands[0])
-            if (
-                self._masks_apart
-                and made is not None
-                and is_masked(self.flow, made)
-                and self._decides_way(each)
-            ):
+        if (masked := self.context.folding.bit_tested(each)) is not None:
+            if self._is_masked(each.operands[0]) and self._decides_way(each):
                 self.append(Op.ALU, each, None, DATA, (masked, DATA))
             self.append(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
@@ -62,24 +56,31 @@ class Decisions:
         else:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
+    def _is_masked(self, value: str) -> bool:
+        """Whether a mask of a narrow value is done by itself, for tests alone."""
+        made = self.flow.instruction(value)
+        applies = self.context.profile.applies(Rule.NARROW_BITS)
+        return applies and made is not None and is_masked_for_test(self.flow, made)
+
     def _is_hoisted(self, value: str) -> bool:
+        """Whether a value was loaded before a test that comes before this block."""
         return value.endswith(BEFORE_TESTS) and self.flow.defined[value][0] != self.emitter.label
 
     def _decides_way(self, test: Instruction) -> bool:
-        """Whether a test decides where to go: what it only gives, or chooses between numbers, is a bit that is shifted."""
+        """Whether a test decides where to go: one that is itself what is wanted, or chooses between numbers, is a bit that is shifted."""
         ways = [
             block.successors
             for block in self.flow.blocks.values()
             if block.terminator.operands[:1] == (test.result,)
         ]
-        return any(not any(way.startswith("chosen") for way in each) for each in ways)
+        return any(not any(way.startswith(CHOSEN) for way in each) for each in ways)
 
     def _compared(self, each: Instruction, value: str) -> str:
-        """What is compared of a value: one that goes along, or was loaded before a test, is extended each time, what a mask leaves of a byte once."""
+        """What is compared of a value: one that goes along or was loaded before a test is extended each time, what a mask leaves of one once."""
         made = self.flow.instruction(value)
         if made is None or made.bits >= WORD:
             return value
-        is_mask = self._masks_apart and is_masked(self.flow, made)
+        is_mask = self._is_masked(value)
         if not (is_mask or goes_along(self.flow, value) or self._is_hoisted(value)):
             return value
         if not is_mask or value not in self._extended:
@@ -200,7 +201,7 @@ def _decides(branch: Instruction, test: Instruction) -> bool:
 
 
 def _unsigned(test: Instruction, bound: int) -> int:
-    """Return what an equal byte is compared with: LLVM writes 255 as -1. [assumed] of unsigned ones, as those of pictures are."""
+    """Return the number that a byte is tested to equal; LLVM writes 255 as -1. [assumed] that bytes are unsigned, as those of pictures are."""
     is_byte = test.text.split()[2] == f"i{BYTE}" and predicate(test) in ("eq", "ne")
     return bound % (1 << BYTE) if is_byte else bound
 

@@ -1,8 +1,8 @@
-"""Bytes and half-words of which a test wants some bits, and nothing wants a word.
+"""Bytes and half-words that are masked, or joined bit by bit, before they are extended.
 
-C computes with words, but GCC does the mask before the extension ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12]. What a mask in
-a register leaves of a byte it does not know: so the mask is done also where a single bit is tested then, and the result is extended where
-several are.
+C computes with words, but GCC does such an operation before the extension ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12; of
+numbers that fit, for masks]. Where nothing wants a word, but a test some of the bits, only the test extends: what a mask in a register leaves
+of a byte GCC does not know. So the mask is done also where a single bit is tested then, and the result is extended where several are.
 """
 
 from __future__ import annotations
@@ -11,20 +11,48 @@ from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction, is_number
 from bfsim.kernel.ir.widths import BYTE, WORD
 
-EXTENDING = (0xFF, 0xFFFF)  # masks that are one instruction, whatever is loaded
+BITWISE = ("and", "or", "xor")
+SHIFTS = ("lshr", "ashr", "shl")
+EXTENDING = (0xFF, 0xFFFF)
+"""Masks that are an extension themselves, whatever is loaded."""
 SIGN = 1 << (BYTE - 1)
-"""A byte whose highest bit is wanted is compared with 0."""
+"""The highest bit of a byte: whether it is set is a comparison with 0."""
 
 
-def is_masked(flow: ControlFlow, each: Instruction) -> bool:
-    """Whether an instruction is such a mask of what is loaded."""
+def is_joined_before(flow: ControlFlow, extension: Instruction) -> bool:
+    """Whether what is extended is a mask of what is loaded, which is no extension itself, or made bit by bit of values that are loaded."""
+    each = flow.instruction(extension.operands[0])
+    if each is not None and each.opcode in ("add", "sub", "mul") and is_number(each.operands[1]):
+        each = flow.instruction(each.operands[0])  # LLVM computes with bytes what fits
+    users = flow.users.get(extension.result or "", [])
+    if each is None or (users and all(_is_mask(user) for user in users)):
+        return False  # what is masked again is extended before both
+    if each.opcode == "and" and is_number(each.operands[1]):
+        return int(each.operands[1]) not in EXTENDING and _is_loaded(flow, each.operands[0])
+    return each.opcode in BITWISE and all(_is_loaded(flow, operand) for operand in each.operands)
+
+
+def is_masked_for_test(flow: ControlFlow, each: Instruction) -> bool:
+    """Whether an instruction is a mask of what is loaded, of which only tests want some bits."""
     if each.opcode != "and" or each.bits >= WORD or not is_number(each.operands[1]):
         return False
     mask, source = int(each.operands[1]), flow.instruction(each.operands[0])
-    while source is not None and source.opcode in ("lshr", "ashr", "shl", "and", "or", "xor"):
+    while source is not None and source.opcode in (*SHIFTS, *BITWISE):
         source = flow.instruction(source.operands[0])
     if source is None or source.opcode != "load" or mask in EXTENDING:
         return False
     is_sign = each.bits == BYTE and mask % (2 * SIGN) == SIGN
     wanted = [*flow.users[each.result or ""], *flow.users[source.result or ""]]
     return not is_sign and not any(user.opcode in ("zext", "sext") for user in wanted)
+
+
+def _is_mask(user: Instruction) -> bool:
+    return user.opcode in BITWISE and is_number(user.operands[1])
+
+
+def _is_loaded(flow: ControlFlow, value: str) -> bool:
+    """Whether a narrow value is loaded, or made bit by bit of such."""
+    each = flow.instruction(value)
+    if each is None or each.opcode == "load":
+        return each is not None
+    return each.opcode in BITWISE and all(_is_loaded(flow, operand) for operand in each.operands)
