@@ -49,20 +49,19 @@ class Accesses:
 
     def _access_bytes(self, each: Instruction) -> int | None:
         """Bytes have no short form with an offset [PRM]."""
-        if each.bits != operations.BYTE_BITS:
-            return None
-        pointer, variable = (
-            self.flow.instruction(each.operands[-1]),
-            self.context.induction_variables.of.get(id(each)),
-        )
-        offset = (
+        is_byte = each.bits == operations.BYTE_BITS
+        return operations.LONG_FORM_BYTES if is_byte and self._has_offset(each) else None
+
+    def _has_offset(self, each: Instruction) -> bool:
+        variable = self.context.induction_variables.of.get(id(each))
+        if variable is not None:
+            return variable.distance_of(each) != 0
+        pointer = self.flow.instruction(each.operands[-1])
+        return (
             pointer is not None
             and pointer.opcode == "getelementptr"
             and not pointer.operands[-1].startswith("%")
         )
-        if variable is not None:
-            offset = variable.distance_of(each) != 0
-        return operations.LONG_FORM_BYTES if offset else None
 
     def _address(self, each: Instruction) -> str:
         """Return the pointer that an access uses: one that walks along, or one that was computed."""
@@ -112,20 +111,17 @@ class Accesses:
             self.ahead[walking.name] = each.result or ""
             self.append(Op.ALU, each, each.result, POINTER, (walking.name, POINTER))
             return
-        nbytes = pointee_nbytes(each)
-        if nbytes > 1 and self._is_masked_byte(index):
+        op = Op.ALU if pointee_nbytes(each) == 1 else Op.ADD_SHIFT
+        if op is Op.ADD_SHIFT and self._is_masked_byte(index):
             # the distance is a product of half-words [convert_mult_to_widen in tree-ssa-math-opts.cc]
             self.append(Op.EXTEND, each, f"{each.result}.index", DATA, (index, DATA))
             index = f"{each.result}.index"
-        if nbytes > 1 and (scaled := self._scaled_index(each)):
-            self.append(
-                Op.ALU, each, each.result, POINTER, (self.context.base(base), POINTER), (scaled, POINTER)
-            )
-            return
-        op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
+        if op is Op.ADD_SHIFT and (scaled := self._scaled_index(each)):
+            op, index = Op.ALU, scaled
         self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
 
     def _is_masked_byte(self, index: str) -> bool:
+        """Whether an index is what a mask leaves of a byte, extended behind the mask."""
         extension = self.flow.instruction(index)
         if extension is None or extension.opcode != "zext" or not self.context.is_extended_late(extension):
             return False
@@ -133,48 +129,43 @@ class Accesses:
         return made is not None and made.opcode == "and"
 
     def _scaled_index(self, each: Instruction) -> str:
-        """Compute an index in bytes where that of the next element, which one side of a test chooses, is made of it; its name.
+        """Compute an index in bytes where that of the next element, which one side of a test chooses, is made of it; its name, or none.
 
         [gimple-ssa-strength-reduction.cc: a product of a sum is one of what it is the sum of, and a number]
         """
         index = each.operands[-1]
-        for user in self.flow.users.get(index, ()):
-            if (
-                user.opcode == "add"
-                and is_number(user.operands[1])
-                and self._is_chosen(user.result or "", each)
-            ):
-                self.append(Op.SHIFT, each, f"{index}.bytes", POINTER, (index, POINTER))
-                return f"{index}.bytes"
-        made = self.flow.instruction(index)
-        if (
-            made is not None
-            and made.opcode == "add"
-            and is_number(made.operands[1])
-            and self._is_chosen(index, each)
-        ):
-            basis = f"{made.operands[0]}.bytes"
-            if any(row.result == basis for rows in self.emitter.code.of.values() for row in rows):
-                self.append(Op.ALU, each, f"{index}.bytes", POINTER, (basis, POINTER))
-                return f"{index}.bytes"
+        name, made = f"{index}.bytes", self.flow.instruction(index)
+        if any(self._is_next(user, each) for user in self.flow.users.get(index, ())):
+            self.append(Op.SHIFT, each, name, POINTER, (index, POINTER))
+            return name
+        if made is not None and self._is_next(made, each):
+            before = f"{made.operands[0]}.bytes"
+            if any(row.result == before for rows in self.emitter.code.of.values() for row in rows):
+                self.append(Op.ALU, each, name, POINTER, (before, POINTER))
+                return name
         return ""
 
-    def _is_chosen(self, index: str, like: Instruction) -> bool:
-        """Whether the address of an element of the same size is one that one side of a test chooses."""
-        return any(
-            user.opcode == "getelementptr"
-            and pointee_nbytes(user) == pointee_nbytes(like)
+    def _is_next(self, index: Instruction, like: Instruction) -> bool:
+        """Whether an index is the sum of another one and a number, and one side of a test chooses an element there, as wide as `like`."""
+        return (
+            index.opcode == "add"
+            and is_number(index.operands[1])
             and any(
-                (each.result or "").endswith(EITHER) for each in self.flow.users.get(user.result or "", ())
+                user.opcode == "getelementptr"
+                and pointee_nbytes(user) == pointee_nbytes(like)
+                and self._is_chosen(user)
+                for user in self.flow.users.get(index.result or "", ())
             )
-            for user in self.flow.users.get(index, ())
         )
+
+    def _is_chosen(self, address: Instruction) -> bool:
+        """Whether one side of a test chooses an address."""
+        users = self.flow.users.get(address.result or "", ())
+        return any((user.result or "").endswith(EITHER) for user in users)
 
     def _walking(self, each: Instruction) -> InductionVariable | None:
         """The pointer whose next value is the address that one side of a test chooses [one_pre_gcse_pass in gcse.cc]."""
-        if not any(
-            (user.result or "").endswith(EITHER) for user in self.flow.users.get(each.result or "", ())
-        ):
+        if not self._is_chosen(each):
             return None
         at = self.context.evolution.affine(each.result or "")
         for variable in self.context.induction_variables.all:
@@ -220,54 +211,54 @@ class Accesses:
         for variable in self.context.induction_variables.all:
             if variable.loop.header in self.context.memory_calls or variable.neighbour is not None:
                 continue
-            line = variable.line
-            entering, latch = self.flow.entering(variable.loop), variable.loop.latch
-            if not variable.start:
-                start = MachineInstruction(Op.MOVE, line, variable.name, POINTER, ((variable.root, ANY),))
-                self.emitter.code.add(entering, start)
-            total = self.context.name(variable.root)
-            for name, times in variable.start:
-                op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
-                terms = ((total, POINTER), (self.context.name(name), POINTER))
-                self.emitter.code.add(entering, MachineInstruction(op, line, variable.name, POINTER, terms))
-                total = variable.name
-            if variable.offset_apart:
-                self.emitter.code.add(
-                    entering,
-                    MachineInstruction(Op.ALU, line, variable.name, POINTER, ((variable.name, POINTER),)),
-                )
+            self._set_up(variable)
             if variable.keeps_address:
                 self._step_apart(variable)
             if variable.name in self.ahead:
-                following = ((self.ahead[variable.name], POINTER),)
-                self.emitter.code.add(
-                    latch, MachineInstruction(Op.MOVE, line, variable.name, POINTER, following)
-                )
+                self._add(variable.loop.latch, Op.MOVE, variable, variable.name, self.ahead[variable.name])
             elif not variable.steps_free:
-                uses = ((variable.name, POINTER),) + (
-                    ((variable.stride, POINTER),) if variable.stride else ()
-                )
-                self.emitter.code.add(latch, MachineInstruction(Op.ALU, line, variable.name, POINTER, uses))
-                loose = (
-                    variable.loop.header not in self.context.counters.counted
-                    and len(self.flow.exits(variable.loop)) > 1
-                    and self._is_wanted_behind(variable)
-                )
-                if loose and self.context.profile.applies(Rule.POINTER_COPIES):
-                    # the exits see the pointer before and after its step
-                    self.emitter.code.add(
-                        latch, MachineInstruction(Op.MOVE, line, None, POINTER, ((variable.name, POINTER),))
-                    )
+                self._step(variable)
+
+    def _set_up(self, variable: InductionVariable) -> None:
+        """Compute where a pointer starts, before its loop."""
+        entering, total = self.flow.entering(variable.loop), self.context.name(variable.root)
+        if not variable.start:
+            start = MachineInstruction(
+                Op.MOVE, variable.line, variable.name, POINTER, ((variable.root, ANY),)
+            )
+            self.emitter.code.add(entering, start)
+        for name, times in variable.start:
+            op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
+            self._add(entering, op, variable, variable.name, total, self.context.name(name))
+            total = variable.name
+        if variable.offset_apart:
+            self._add(entering, Op.ALU, variable, variable.name, variable.name)
+
+    def _step(self, variable: InductionVariable) -> None:
+        """Step a pointer at the end of an iteration."""
+        latch, stride = variable.loop.latch, (variable.stride,) if variable.stride else ()
+        self._add(latch, Op.ALU, variable, variable.name, variable.name, *stride)
+        loose = (
+            variable.loop.header not in self.context.counters.counted
+            and len(self.flow.exits(variable.loop)) > 1
+            and self._is_wanted_behind(variable)
+        )
+        if loose and self.context.profile.applies(Rule.POINTER_COPIES):
+            # the exits see the pointer before and after its step
+            self._add(latch, Op.MOVE, variable, None, variable.name)
 
     def _step_apart(self, variable: InductionVariable) -> None:
         """Keep the address from before the step."""
         assert variable.stepping is not None
-        label, _, _ = variable.stepping
-        walking = ((variable.name, POINTER),)
-        self.emitter.code.add(label, MachineInstruction(Op.MOVE, variable.line, None, POINTER, walking))
-        self.emitter.code.add(
-            label, MachineInstruction(Op.ALU, variable.line, variable.name, POINTER, walking)
-        )
+        self._add(variable.stepping.label, Op.MOVE, variable, None, variable.name)
+        self._add(variable.stepping.label, Op.ALU, variable, variable.name, variable.name)
+
+    def _add(
+        self, label: str, op: Op, variable: InductionVariable, result: str | None, *pointers: str
+    ) -> None:
+        """Append an operation on pointers to a block."""
+        uses = tuple((each, POINTER) for each in pointers)
+        self.emitter.code.add(label, MachineInstruction(op, variable.line, result, POINTER, uses))
 
     def _is_wanted_behind(self, variable: InductionVariable) -> bool:
         """Whether a counter that the addresses of `variable` are made of, or its next value, is wanted behind the loop."""
