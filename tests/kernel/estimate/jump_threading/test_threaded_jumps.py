@@ -94,7 +94,6 @@ def f(a: u8[:], o: i32[:], n: i32) -> None:
 """
 COUNTS = "if a[(i + dy) * 10 + 5 + dx] > 100:\n                    s += 1"
 
-# Without these rules estimates are off by up to 61 %.
 SHIFTED = """
 def f(a: u8[:], b: u8[:], n: i32) -> None:
     for i in range(2, n - 2):
@@ -107,6 +106,8 @@ def f(a: u8[:], b: u8[:], n: i32) -> None:
                     v |= 1
         b[i] = v
 """
+
+# Without these rules estimates are off by up to 61 %.
 CASES = {
     "the middle is left out": (
         AROUND.format(
