@@ -24,6 +24,8 @@ NO_HINT = (1 << 20, 1)
 """Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
 LEAVES = (11, 189)
 """Weights of a branch whose first side leaves one of two loops that begin with the same test [PRED_LOOP_EXIT in predict.def of GCC 12, of two exits]."""
+TRUTHS = {"false": 0, "true": 1}
+"""Constants of an i1, as numbers."""
 COMMUTATIVE = ("add", "mul", "and", "or", "xor")
 """Operations whose operands may change places."""
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
@@ -219,6 +221,11 @@ def written(result: str, text: str, operands: tuple[str, ...], at: Instruction) 
 def is_number(value: str) -> bool:
     """Whether a value is an integer of the text."""
     return value.lstrip("-").isdigit()
+
+
+def is_constant(value: str) -> bool:
+    """Whether a value is an integer of the text, or a truth."""
+    return is_number(value) or value in TRUTHS
 
 
 def predicate(compare: Instruction) -> str:

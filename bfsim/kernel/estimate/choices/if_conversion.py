@@ -14,7 +14,7 @@ from bfsim.kernel.estimate.choices.conditional_moves import are_conditional_move
 from bfsim.kernel.estimate.choices.narrow_choices import is_narrowed, is_of_one_type, stored_bits
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.loads_along import FOLLOWING, goes_along
-from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
+from bfsim.kernel.ir.text import TRUTHS, Instruction, arms_of, is_number, predicate
 from bfsim.kernel.ir.widths import BYTE, WORD, widest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -175,7 +175,7 @@ class IfConversion:
     ) -> ConvertedIf | None:
         work = [each for arm in arms for each in self._work(arm)]
         test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
-        is_flag = not work and {yes, no} in ({"1", "0"}, {"true", "false"})
+        is_flag = not work and {yes, no} in ({"1", "0"}, {*TRUTHS})
         if test is not None and is_flag and (test.opcode == "icmp" or (test.opcode, test.bits) == ("xor", 1)):
             return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
         if test is None or test.opcode != "icmp":

@@ -11,11 +11,19 @@ from dataclasses import dataclass, replace
 
 from bfsim.kernel.estimate.choices.narrow_choices import CHOSEN
 from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.text import Instruction, Routine, arms_of, each_arm, is_number, predicate, with_each_arm
+from bfsim.kernel.ir.text import (
+    Instruction,
+    Routine,
+    arms_of,
+    each_arm,
+    is_constant,
+    is_number,
+    predicate,
+    with_each_arm,
+)
 
 FLAG = {"0": "1", "1": "0"}
 """What a flag is where it is not the one."""
-TRUTHS = ("true", "false")
 
 
 def with_known_values(routine: Routine) -> Routine:
@@ -51,7 +59,7 @@ class KnownValues:
     def _is_computed(self, choice: Instruction, label: str, home: str) -> bool:
         """Whether a choice between numbers was computed before [tree-ssa-phiopt.cc]: `1 if test else 0`, or by a test that chooses nothing else."""
         is_expression = (choice.result or "").startswith(f"%{CHOSEN}")
-        if is_expression and all(_is_constant(value) for value, _ in each_arm(choice)):
+        if is_expression and all(is_constant(value) for value, _ in each_arm(choice)):
             return True
         phis = [each for each in self.flow.blocks[home].instructions if each.opcode == "phi"]
         return any(
@@ -59,11 +67,11 @@ class KnownValues:
             and self.flow.tested(label) == self.flow.tested(other)
             and all(arms_of(phi)[label] == arms_of(phi)[other] for phi in phis if phi is not choice)
             for value, other in each_arm(choice)
-            if _is_constant(value)
+            if is_constant(value)
         )
 
     def _variable(self, value: str, label: str, home: str) -> str:
-        if not _is_constant(value):
+        if not is_constant(value):
             return value
         equal = (name for name, number in self._found_out(label, home) if number == value)
         return next(equal, value)
@@ -85,7 +93,7 @@ class KnownValues:
         if ending.opcode != "br" or test is None or len(set(ways)) != 2:
             return
         if test.opcode == "phi":
-            yield ending.operands[0], TRUTHS[ways.index(way)]
+            yield ending.operands[0], ("true", "false")[ways.index(way)]
         if test.opcode != "icmp":
             return
         name, number = test.operands
@@ -109,7 +117,3 @@ class KnownValues:
         if made is None or made.opcode != "phi":
             return made is not None and made.opcode == "zext" and " i1 " in made.text
         return all(self._is_flag(value, seen | {name}) for value, _ in each_arm(made))
-
-
-def _is_constant(value: str) -> bool:
-    return is_number(value) or value in TRUTHS

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, arms_of, written
-
-NUMBERS = {"true": "1", "false": "0"}
+from bfsim.kernel.ir.text import TRUTHS, BasicBlock, Instruction, Routine, arms_of, written
 
 
 def with_same_truths(routine: Routine) -> Routine:
@@ -39,6 +37,6 @@ def _truth(phis: Sequence[Instruction], choice: Instruction) -> Instruction | No
     arms = arms_of(choice)
     for each in phis:
         truths = arms_of(each) if each is not choice and each.text.startswith("phi i1 ") else {}
-        if truths and all(NUMBERS.get(truth) == arms[label] for label, truth in truths.items()):
+        if truths and all(str(TRUTHS.get(truth)) == arms[label] for label, truth in truths.items()):
             return each
     return None

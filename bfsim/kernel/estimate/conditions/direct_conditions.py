@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.edges import going_to, with_arms
-from bfsim.kernel.ir.text import BasicBlock, Routine, arms_of, renamed
+from bfsim.kernel.ir.text import TRUTHS, BasicBlock, Routine, arms_of, renamed
 
 
 def with_direct_conditions(routine: Routine) -> Routine:
@@ -39,8 +39,8 @@ def _ways(flow: ControlFlow, block: BasicBlock) -> dict[str, str | int] | None:
             found[label] = value
         elif end.opcode == "br" and value == end.operands[0] and end_ways.count(block.label) == 1:
             found[label] = int(end_ways[0] == block.label)
-        elif value in ("true", "false") and end.opcode == "br":
-            found[label] = int(value == "true")
+        elif value in TRUTHS and end.opcode == "br":
+            found[label] = TRUTHS[value]
         else:
             return None
         if found[label] in (0, 1) and (yes if found[label] else no) in end_ways:
@@ -53,7 +53,7 @@ def _lead(blocks: dict[str, BasicBlock], block: BasicBlock, ways: dict[str, str 
     yes, no = block.successors
     before = {yes: list[str](), no: list[str]()}
     for label, decides in ways.items():
-        known = {"true": 1, "false": 0}.get(str(decides), decides)
+        known = TRUTHS.get(str(decides), decides)
         if isinstance(known, int):
             goal = yes if known else no
             blocks[label] = going_to(blocks[label], block.label, goal)

@@ -42,7 +42,7 @@ def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instru
 
 
 def _next_values(flow: ControlFlow, variable: Instruction) -> list[str]:
-    """What a variable may become: also one that goes on with another one's value, as a counter does behind an iteration that is skipped."""
+    """Return what a variable may become, also by way of another one, as a counter does behind an iteration that is skipped."""
     merged = (flow.instruction(each) for each in variable.operands)
     others = (each for each in merged if each is not None and each.opcode == "phi" and each is not variable)
     return [*variable.operands, *(value for each in others for value in each.operands)]

@@ -52,7 +52,7 @@ def chains(flow: ControlFlow, begins: Callable[[BasicBlock], bool]) -> list[list
 
 
 def is_alone(block: BasicBlock) -> bool:
-    """Whether a block does nothing but test, what a number is added to, too."""
+    """Whether a block does nothing but test, be it a value that is converted or that a number is added to."""
     return all(
         each.opcode in CONVERSIONS or (each.opcode == "add" and is_number(each.operands[1]))
         for each in block.instructions[:-2]
@@ -94,12 +94,16 @@ def _test(flow: ControlFlow, block: BasicBlock) -> NumberTest | None:
     hit, other = block.successors if predicate(test) == "eq" else reversed(block.successors)
     bits = int(test.text.split()[-3].removeprefix("i"))
     value, number = test.operands[0], int(test.operands[1])
-    value, bits, number = _of_sum(flow, value, number) or (value, bits, number)
+    if (narrow := _of_sum(flow, value, number)) is not None:
+        value, bits, number = narrow
     return NumberTest(block.label, value, bits, number % (1 << bits) if bits < WORD else number, hit, other)
 
 
 def _of_sum(flow: ControlFlow, value: str, number: int) -> tuple[str, int, int] | None:
-    """Return the narrow value, its bits, and its number, where what is tested is the sum of it and a number [init_range_entry in tree-ssa-reassoc.cc]."""
+    """Return the narrow value that a test of a sum of it and a number is of, its bits, and the number that it is tested for itself.
+
+    [init_range_entry in tree-ssa-reassoc.cc]
+    """
     total = flow.instruction(value)
     if total is None or total.opcode != "add" or total.bits != WORD or not is_number(total.operands[1]):
         return None

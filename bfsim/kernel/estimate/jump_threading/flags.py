@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
+from bfsim.kernel.ir.text import Instruction, arms_of, is_constant, predicate
 
 
 class JumpThreading:
@@ -136,4 +136,4 @@ class JumpThreading:
 
 
 def _is_constant(operand: str) -> bool:
-    return is_number(operand) or operand in ("true", "false")
+    return is_constant(operand)

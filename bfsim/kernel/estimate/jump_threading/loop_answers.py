@@ -5,11 +5,10 @@ from __future__ import annotations
 from bfsim.kernel.estimate.ranges.value_ranges import LARGEST, LEAST, Range, value_range
 from bfsim.kernel.estimate.switches.copied_ways import answered
 from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
+from bfsim.kernel.ir.text import TRUTHS, Instruction, arms_of, is_constant, is_number, predicate
 
 WIDEST_STEP = 256
 """[ours] Of a counter that no loop brings so far that it wraps."""
-TRUTHS = {"false": 0, "true": 1}
 
 
 def answer(flow: ControlFlow, loop: Loop, condition: str, again: bool) -> bool | None:
@@ -40,10 +39,8 @@ def said(relation: str, one: Range, other: Range) -> bool | None:
 
 def range_of(flow: ControlFlow, loop: Loop, value: str, again: bool) -> Range:
     """The least and the largest that a value of the header may be, or anything that is known to be the same in all iterations."""
-    if is_number(value):
-        return int(value), int(value)
-    if value in TRUTHS:
-        return TRUTHS[value], TRUTHS[value]
+    if is_constant(value):
+        return constant(value)
     phi = flow.instruction(value)
     if phi is None or phi.opcode != "phi" or flow.defined[value][0] != loop.header:
         return LEAST, LARGEST
@@ -62,7 +59,7 @@ def constant(value: str) -> Range:
 
 def _stepped(flow: ControlFlow, loop: Loop, phi: Instruction, last: str, start: Range) -> Range:
     """The range of what a value of the header becomes: of a counter, beyond its start; of what is chosen, that of all choices."""
-    if is_number(last) or last in TRUTHS:
+    if is_constant(last):
         return constant(last)
     each = flow.instruction(last)
     if each is None:

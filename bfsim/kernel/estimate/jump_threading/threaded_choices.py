@@ -15,7 +15,6 @@ import llvmlite.binding as llvm
 
 from bfsim.kernel.estimate.conditions.number_tests import CONVERSIONS
 from bfsim.kernel.estimate.switches.copied_ways import (
-    TRUTHS,
     CopiedWays,
     Node,
     Ways,
@@ -25,7 +24,16 @@ from bfsim.kernel.estimate.switches.copied_ways import (
 from bfsim.kernel.ir import llvm_passes
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.reading import read_module
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, arms_of, is_number, predicate, renamed
+from bfsim.kernel.ir.text import (
+    BasicBlock,
+    Instruction,
+    Routine,
+    arms_of,
+    is_constant,
+    is_number,
+    predicate,
+    renamed,
+)
 from bfsim.kernel.ir.writing import with_names, write_module
 
 MOST_ON_A_WAY = 7
@@ -84,7 +92,7 @@ def _tests(flow: ControlFlow) -> Iterator[str]:
 
 
 def _has_number(phi: Instruction) -> bool:
-    return any(is_number(each) or each in TRUTHS for each in arms_of(phi).values())
+    return any(is_constant(each) for each in arms_of(phi).values())
 
 
 def _tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:

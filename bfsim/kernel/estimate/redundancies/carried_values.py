@@ -50,7 +50,7 @@ def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> CarriedValue |
     if not all(flow.is_invariant(base, loop) for base in address.operands[:-1]):
         return None
     before = list(_until(flow.blocks[loop.header], each))
-    if each.opcode == "load" and any(_may_write(other, each) for other in before):
+    if each.opcode == "load" and any(may_write(other, each) for other in before):
         return None
     following = _there(flow, each, arms_of(index)[loop.latch], loop.latch, loop.blocks)
     if following is None or (each.opcode != "load" and _first(flow, loop, each, index) is None):
@@ -109,11 +109,11 @@ def _is_written(flow: ControlFlow, load: Instruction, label: str, end: str, with
                 if way != end:
                     waiting.append(way)
     rows += [row for way in reached for row in flow.blocks[way].instructions]
-    return any(_may_write(row, load) for row in rows)
+    return any(may_write(row, load) for row in rows)
 
 
-def _may_write(row: Instruction, load: Instruction) -> bool:
-    """As in C, arrays of elements of one width may overlap, and bytes with anything."""
+def may_write(row: Instruction, load: Instruction) -> bool:
+    """Return whether an instruction may write what `load` loads: as in C, arrays of elements of one width may overlap, and bytes with anything."""
     return row.is_call or (row.opcode == "store" and (row.bits == load.bits or BYTE in (row.bits, load.bits)))
 
 

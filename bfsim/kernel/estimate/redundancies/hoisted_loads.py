@@ -11,17 +11,25 @@ from dataclasses import dataclass, replace
 
 from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, ScalarEvolution
+from bfsim.kernel.estimate.redundancies.carried_values import may_write
 from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow
-from bfsim.kernel.ir.text import Instruction, Routine, arms_of, is_number, predicate, renamed, type_of
+from bfsim.kernel.ir.text import (
+    Instruction,
+    Routine,
+    arms_of,
+    is_constant,
+    is_number,
+    predicate,
+    renamed,
+    type_of,
+)
 from bfsim.kernel.ir.unused import without_unused
-from bfsim.kernel.ir.widths import BYTE
 
-TRUTHS = ("false", "true")
 ADDRESSES = ("getelementptr", "add", "sub", "shl", "mul", "sext", "zext")
 
 
 def with_hoisted_loads(routine: Routine) -> Routine:
-    """Return `routine` with such loads before the tests; what is moved before one test may be moved before the one before."""
+    """Return `routine` with such loads before the tests, the last tests first: what is moved before one may be moved on."""
     for label in reversed(ControlFlow(routine).order):
         while (found := next(_Loads(ControlFlow(routine), label).found(), None)) is not None:
             routine = without_unused(_moved(routine, label, found), ("getelementptr",))
@@ -54,7 +62,7 @@ class _Loads:
             if way == first or (loop is not None and way not in loop.blocks):
                 continue
             for each in self.flow.blocks[way].instructions:
-                if _changes(each):
+                if each.opcode == "store" or each.is_call:
                     break
                 hoisted = self._hoisted(each, ways, first) if each.opcode == "load" else None
                 if hoisted is not None:
@@ -75,10 +83,10 @@ class _Loads:
         arms = arms_of(tested).items()
         starts = {value for way, value in arms if self.label not in self.flow.dominators[way]}
         start = starts.pop()
-        if starts or not (is_number(start) or start in TRUTHS):
+        if starts or not (is_constant(start)):
             return ""
         if test is tested:
-            holds = start == TRUTHS[1]
+            holds = start == "true"
         elif is_number(test.operands[1]):
             holds = getattr(operator, predicate(test)[-2:])(int(start), int(test.operands[1]))
         else:
@@ -90,6 +98,7 @@ class _Loads:
         return self.flow.blocks[label].instructions[0].line.line
 
     def _hoisted(self, load: Instruction, ways: list[str], first: str) -> _Hoisted | None:
+        """What a load before the test takes the place of, if all ways make it; what the way `first` loads stays."""
         rows = self._made_of(load)
         if rows is None:
             return None
@@ -128,21 +137,10 @@ class _Loads:
                 if self.label in self.flow.dominators[label]:
                     same.add(each.result or "")
                 return True
-            if _may_write(each, load):
+            if may_write(each, load):
                 return False
         ways = set(self.flow.blocks[label].successors)
         return bool(ways) and all(self._loads(way, load, at, same, seen) for way in ways)
-
-
-def _changes(each: Instruction) -> bool:
-    return each.opcode == "store" or each.is_call
-
-
-def _may_write(each: Instruction, load: Instruction) -> bool:
-    """As in C, arrays of elements of one width may overlap, and bytes with anything."""
-    return each.is_call or (
-        each.opcode == "store" and (each.bits == load.bits or BYTE in (each.bits, load.bits))
-    )
 
 
 def _moved(routine: Routine, label: str, found: _Hoisted) -> Routine:

@@ -74,9 +74,8 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
         return None
     if any(flow.blocks[each].terminator.opcode != "br" for each in before):
         return None
-    in_loop = (
-        flow.innermost(label) is not None
-    )  # what a loop has loaded goes along with it to there (`carried_values`)
+    # outside of loops, what one has loaded goes along with it to there (`carried_values`)
+    in_loop = flow.innermost(label) is not None
     for each in block.instructions:
         is_operation = each.opcode in NEUTRAL or (in_loop and _is_address(each))
         if is_operation and any(_root(flow, operand) in choices for operand in each.operands):
@@ -197,10 +196,9 @@ def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
     absorbed = ABSORBING.get(opcode)
     if absorbed in (left, right):
         return absorbed
-    if is_number(left) and is_number(right) and opcode == "add":
-        return str(int(left) + int(right))
     if is_number(left) and is_number(right):
-        return None  # another number, which takes a register there: to add it behind, as it was, is nearer to GCC's code
+        # of an index, an offset; another number takes a register there: to compute it behind, as it was, is nearer to GCC's code
+        return str(int(left) + int(right)) if opcode == "add" else None
     sides = [(left, right), (right, left)] if opcode in COMMUTATIVE else [(left, right)]
     for kept, other in sides:
         if other == NEUTRAL[opcode]:

@@ -12,9 +12,11 @@ from bfsim.kernel.ir.edges import going_to
 from bfsim.kernel.ir.text import (
     HIDES,
     INVERTED,
+    TRUTHS,
     BasicBlock,
     Instruction,
     Routine,
+    is_constant,
     is_number,
     predicate,
     renamed,
@@ -25,7 +27,6 @@ MOST_COPIED = 100
 MOST_NODES = 300
 """[ours] Of blocks with what is known before them, on the ways from one block."""
 RELATIONS = {"eq": int.__eq__, "slt": int.__lt__, "sgt": int.__gt__}
-TRUTHS = {"false": 0, "true": 1}
 Known = frozenset[tuple[str, int]]
 """What is known to be in variables, by their names."""
 Node = tuple[str, Known]
@@ -109,7 +110,7 @@ class CopiedWays:
             result, found = each.result or "", None
             if each.opcode == "store" and each.operands[-1] in self.variables:
                 variables.pop(each.operands[-1], None)
-                is_set |= is_number(each.operands[0]) or each.operands[0] in TRUTHS
+                is_set |= is_constant(each.operands[0])
                 if (stored := value(each.operands[0])) is not None:
                     variables[each.operands[-1]] = stored
             elif each.opcode == "load":

@@ -17,7 +17,7 @@ from bfsim.kernel.estimate.unoptimised.expressions import (
     extreme_of,
     simplified,
 )
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine
+from bfsim.kernel.ir.text import TRUTHS, BasicBlock, Instruction, Routine
 from bfsim.kernel.ir.widths import BYTE
 
 ARITHMETIC = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shl": "<<", "lshr": ">>",
@@ -72,7 +72,7 @@ class Trees:
     def expr(self, operand: str, label: str | None) -> Expr:
         """The value of `operand` in block `label`; None: wherever it was computed, as C computes a loop's bound."""
         if not operand.startswith("%"):
-            return const({"true": 1, "false": 0}.get(operand) or int(operand if operand[-1].isdigit() else 0))
+            return const(TRUTHS.get(operand) or int(operand if operand[-1].isdigit() else 0))
         if operand not in self.home:
             return Expr("local", name=operand[1:])
         place, each = self.home[operand]
