@@ -159,7 +159,7 @@ GCC: dict[Rule, str] = {
     Rule.THREADED_HINTS: "predict_paths_leading_to in predict.cc",
     Rule.PREDICTIVE_COMMONING: "tree-predcom.cc, which the vectoriser of -O2 brings along",
     Rule.COUNTER_REGISTERS: "loop_end in bfin.md",
-    Rule.KEPT_ADDRESSES: "tree-ssa-ter.cc",
+    Rule.KEPT_ADDRESSES: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc, tree-ssa-ter.cc",
     Rule.STEPPED_BETWEEN: "can_combine_p in combine.cc",
     Rule.NARROW_TREES: "convert_to_integer_1 in convert.cc",
     Rule.SUM_CLASSES: "find_costs_and_classes in ira-costs.cc",
@@ -169,6 +169,7 @@ GCC: dict[Rule, str] = {
     Rule.JUMP_TABLES: "gimple-if-to-switch.cc",
     Rule.CONSTANT_TABLES: "switch_conversion in tree-switch-conversion.cc",
     Rule.STATE_MACHINES: "tree-ssa-threadbackward.cc",
+    Rule.COMMON_LOADS: "do_hoist_insertion in tree-ssa-pre.cc",
     Rule.CODE_HOISTING: "do_hoist_insertion in tree-ssa-pre.cc",
     Rule.THREADED_CHOICES: "tree-ssa-threadbackward.cc",
     Rule.KEPT_BOUNDS: "tree-ssa-threadbackward.cc",
@@ -266,7 +267,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.THREADED_HINTS: (),
     Rule.PREDICTIVE_COMMONING: (),  # from kernels that are not measured here: tests/kernel/estimate/memory/test_predictive_commoning.py
     Rule.COUNTER_REGISTERS: (),
-    Rule.KEPT_ADDRESSES: (),
+    Rule.KEPT_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_kept_addresses.py
     Rule.STEPPED_BETWEEN: (),
     Rule.NARROW_TREES: (),
     Rule.SUM_CLASSES: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_register_classes.py
