@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 from bfsim.kernel import operations
 from bfsim.kernel.estimate.registers.webs import Webs
+from bfsim.kernel.estimate.selection.constants import BOUND
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.operations import Op
 
@@ -120,12 +121,12 @@ class RegisterClasses:
 
     def _place_bounds(self) -> None:
         """Put each number that is loaded to be compared into the bank of what it is compared with."""
-        for label in self.flow.order:
-            for instruction in self.code.of[label]:
-                if instruction.op is Op.COMPARE and len(instruction.uses) == 2:
-                    (compared, _), (bound, _) = instruction.uses
-                    if bound.endswith(".bound") and self.webs.find(compared) in self.webs.bank:
-                        self.webs.bank[self.webs.find(bound)] = self.webs.bank[self.webs.find(compared)]
+        bank, find = self.webs.bank, self.webs.find
+        for instruction in (each for label in self.flow.order for each in self.code.of[label]):
+            if instruction.op is Op.COMPARE and len(instruction.uses) == 2:
+                (compared, _), (bound, _) = instruction.uses
+                if bound.endswith(BOUND) and find(compared) in bank:
+                    bank[find(bound)] = bank[find(compared)]
 
     def _second_pass(self, instruction: MachineInstruction, weight: int) -> None:
         """Add what an operation costs its values in each bank, in moves; note what is behind those of a chain."""

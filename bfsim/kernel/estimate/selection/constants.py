@@ -7,6 +7,9 @@ from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, Reg
 from bfsim.kernel.ir.text import SourceLine
 from bfsim.kernel.operations import Op
 
+BOUND = ".bound"
+"""Ends the name of a number that is loaded since something is compared with it."""
+
 
 def load_constant(
     constant: str, line: SourceLine, result: str | None = None, bank: RegisterBank = RegisterBank.ANY

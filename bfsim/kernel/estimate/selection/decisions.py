@@ -8,7 +8,6 @@ from bfsim.kernel import operations
 from bfsim.kernel.estimate.choices.if_conversion import ConversionKind, ConvertedIf
 from bfsim.kernel.estimate.choices.narrow_choices import CHOSEN
 from bfsim.kernel.estimate.conditions.joined_tests import Range
-from bfsim.kernel.estimate.selection.constants import load_constant
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
 from bfsim.kernel.estimate.selection.narrow_bits import is_masked_for_test
@@ -49,10 +48,8 @@ class Decisions:
         if is_number(right) and _is_near(predicate(each), _unsigned(each, int(right))):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif is_number(right) and self.context.profile.applies(Rule.COMPARED):
-            self.emitter.code.add(
-                self.emitter.label, load_constant(f"#{right}", each.line, f"{each.result}.bound")
-            )
-            self.append(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
+            bound = self.emitter.load_bound(each, right)
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY), (bound, ANY))
         else:
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
@@ -99,10 +96,8 @@ class Decisions:
         if length in operations.COMPARE_UNSIGNED_IMMEDIATE:
             self.append(Op.COMPARE, each, None, DATA, (value, ANY))
         else:
-            self.emitter.code.add(
-                self.emitter.label, load_constant(f"#{length}", each.line, f"{each.result}.bound")
-            )
-            self.append(Op.COMPARE, each, None, DATA, (value, ANY), (f"{each.result}.bound", ANY))
+            bound = self.emitter.load_bound(each, str(length))
+            self.append(Op.COMPARE, each, None, DATA, (value, ANY), (bound, ANY))
 
     def choose(self, each: Instruction) -> None:
         """A select that LLVM itself formed."""

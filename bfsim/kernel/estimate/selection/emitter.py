@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bfsim.kernel.estimate.selection.constants import BOUND, load_constant
 from bfsim.kernel.estimate.selection.context import Context
 from bfsim.kernel.estimate.selection.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.ir.text import Instruction
@@ -26,3 +27,9 @@ class Emitter:
             self.label,
             MachineInstruction(op, each.line, result, bank, named, over, cclk, nbytes, access, routine),
         )
+
+    def load_bound(self, each: Instruction, number: str) -> str:
+        """Load a number that is compared with and that no comparison takes as an immediate; return its name."""
+        name = f"{each.result}{BOUND}"
+        self.code.add(self.label, load_constant(f"#{number}", each.line, name))
+        return name

@@ -6,7 +6,6 @@ from itertools import pairwise
 
 from bfsim.kernel import operations
 from bfsim.kernel.estimate.selection.calls import Calls
-from bfsim.kernel.estimate.selection.constants import load_constant
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import RegisterBank
 from bfsim.kernel.ir.text import Instruction, is_number
@@ -59,10 +58,7 @@ class Named:
         """A comparison, of what is extended if it is narrow, and a conditional move, which overwrites either operand."""
         (left, _), (right, _) = values
         if is_number(right) and int(right) not in operations.COMPARE_UNSIGNED_IMMEDIATE:
-            self.emitter.code.add(
-                self.emitter.label, load_constant(f"#{right}", each.line, f"{each.result}.bound")
-            )
-            right = f"{each.result}.bound"
+            right = self.emitter.load_bound(each, right)
         compared = left
         if each.bits < WORD:
             compared = f"{each.result}.extended"
