@@ -46,7 +46,11 @@ def _first(flow: ControlFlow, loop: Loop, chain: tuple[str, ...]) -> Iterator[Kn
     """The first such test behind a chain of blocks from the header on."""
     block = flow.blocks[chain[-1]]
     ways = block.successors
-    if block.terminator.opcode != "br" or len(set(ways)) < 2 or cost(flow, loop, chain) > MOST_ON_A_WAY:
+    if (
+        block.terminator.opcode != "br"
+        or len(set(ways)) < 2
+        or statements_copied(flow, loop, chain) > MOST_ON_A_WAY
+    ):
         return
     again, first = (answer(flow, loop, block.terminator.operands[0], source) for source in (True, False))
     if again is not None and again != first:
@@ -62,11 +66,11 @@ def _first(flow: ControlFlow, loop: Loop, chain: tuple[str, ...]) -> Iterator[Kn
 
 def _may_copy(flow: ControlFlow, loop: Loop, chain: tuple[str, ...], goal: str) -> bool:
     every = goal in flow.dominators[loop.latch]
-    return every or cost(flow, loop, chain) * STATEMENTS <= (len(chain) + BEFORE) * BLOCKS
+    return every or statements_copied(flow, loop, chain) * STATEMENTS <= (len(chain) + BEFORE) * BLOCKS
 
 
-def cost(flow: ControlFlow, loop: Loop, chain: tuple[str, ...]) -> int:
-    """Statements that are copied: values that the loop carries, pointers too, but for the one that is tested, and what is computed.
+def statements_copied(flow: ControlFlow, loop: Loop, chain: tuple[str, ...]) -> int:
+    """Return how many statements are copied: values that the loop carries, pointers too, but for the one that is tested, and what is computed.
 
     Where a sum of the counter is computed, that may be what is tested.
     """

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bfsim.kernel.estimate.conditions.short_circuits import SECOND
-from bfsim.kernel.estimate.jump_threading.first_iterations import cost, with_invariants_before
+from bfsim.kernel.estimate.jump_threading.first_iterations import statements_copied, with_invariants_before
 from bfsim.kernel.estimate.jump_threading.known_ways import KnownWays, with_known_ways, with_one_way
 from bfsim.kernel.estimate.jump_threading.loop_answers import answer, constant, counts_anew, range_of, said
 from bfsim.kernel.estimate.jump_threading.skipped_iterations import SKIPPED
@@ -42,7 +42,7 @@ def _each_entered(flow: ControlFlow) -> Iterator[KnownWays]:
             continue
         if loop.inner or loop.latch.endswith(SECOND) or f"{loop.latch}{COPIED}" in flow.blocks:
             continue  # LLVM had made one test of both, so they are at its end, or what begins it has been copied
-        if len(before) == 1 and cost(flow, loop, (loop.header,)) <= MOST_ON_A_WAY:
+        if len(before) == 1 and statements_copied(flow, loop, (loop.header,)) <= MOST_ON_A_WAY:
             condition = block.terminator.operands[0]
             known = None if _is_of_flag(flow, loop, condition) else _said_first(flow, loop, condition)
             if known is not None and ways[0 if known else 1] == inside[0]:

@@ -70,9 +70,8 @@ def _stepped(flow: ControlFlow, loop: Loop, phi: Instruction, last: str, start: 
     if each.opcode != "add" or each.operands[0] != phi.result or not is_number(each.operands[1]):
         return value_range(flow, last)
     step = int(each.operands[1])
-    if _is_counted_anew(flow, loop, phi):
-        return LEAST, LARGEST
-    if abs(step) > WIDEST_STEP or not _ends(flow, loop, {phi.result, last}) or start == (LEAST, LARGEST):
+    is_bounded = abs(step) <= WIDEST_STEP and _ends(flow, loop, {phi.result, last})
+    if _is_counted_anew(flow, loop, phi) or not is_bounded or start == (LEAST, LARGEST):
         return LEAST, LARGEST
     return (start[0] + step, LARGEST) if step > 0 else (LEAST, start[1] + step)
 
