@@ -10,7 +10,7 @@ import pytest
 from bfsim.kernel import GCC_O2, VDSP_O2, keys
 from bfsim.kernel.estimate.costing import optimised
 from bfsim.kernel.estimate.prediction.predict import Likelihood
-from bfsim.kernel.estimate.registers.moves import _is_circular
+from bfsim.kernel.estimate.registers.phi_copies import _is_circular
 from bfsim.kernel.ir.control_flow import COPIED, ControlFlow
 from bfsim.kernel.ir.reading import read_module
 from bfsim.kernel.operations import Op
