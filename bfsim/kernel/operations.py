@@ -119,6 +119,7 @@ DATA_REGISTERS = 8  # [PRM] R0-R7
 POINTER_REGISTERS = 6  # [PRM] P0-P5; FP and SP are taken
 SCRATCH_DATA_REGISTERS = 4  # [GCC] R0-R3 are not saved by the callee
 SCRATCH_POINTER_REGISTERS = 3  # [GCC] P0-P2
+INDEX_REGISTERS = 4  # [PRM] I0-I3
 REGISTER_ARGUMENTS = 3  # [GCC] R0-R2, the others on the stack
 LOOP_END_BYTES = 6  # [GCC] doloop_end in bfin.md: its length for the end of a counted loop, which LSETUP then makes no code at all
 HARDWARE_LOOPS = 2  # [PRM] LC0/LT0/LB0 and LC1/LT1/LB1

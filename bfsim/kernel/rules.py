@@ -130,6 +130,7 @@ class Rule(StrEnum):
     COMPUTED_STARTS = "a loop with several exits is counted where its first address is computed before it"
     CROSS_JUMPS = "what ends two blocks stands in the code once, if it is all of one"
     EITHER_BANK = "a value that may be in either bank gives way where one is full"
+    INDEX_REGISTERS = "a pointer that only walks over half-words is in an index register where a pointer register would have to be saved for it"
     SPILLED_SUMS = "a sum that has no data register is added to in an I register"
     FIELD_ADDRESSES = "a field of a record that is loaded and stored has an address of its own"
     POINTER_DIFFERENCES = (
@@ -177,6 +178,7 @@ GCC: dict[Rule, str] = {
     Rule.COMPUTED_STARTS: "simplify_using_initial_values in loop-iv.cc",
     Rule.FIRST_ITERATIONS: "profitable_path_p in tree-ssa-threadbackward.cc",
     Rule.EITHER_BANK: "find_costs_and_classes in ira-costs.cc",
+    Rule.INDEX_REGISTERS: "assign_hard_reg in ira-color.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
     Rule.POINTER_DIFFERENCES: "determine_group_iv_cost_generic in tree-ssa-loop-ivopts.cc",
@@ -290,6 +292,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.FIRST_ITERATIONS: (),  # from kernels that are not measured here: tests/kernel/estimate/jump_threading/test_first_iterations.py
     Rule.CROSS_JUMPS: (),  # tests/kernel/estimate/loops/test_ends_of_loops.py
     Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_either_bank.py
+    Rule.INDEX_REGISTERS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_index_registers.py
     Rule.SPILLED_SUMS: (),
     Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_field_addresses.py
     Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_pointer_differences.py

@@ -12,6 +12,7 @@ from bfsim.kernel import operations
 from bfsim.kernel.estimate.registers.argument_loads import load_where_used
 from bfsim.kernel.estimate.registers.byte_addresses import add_in_data_registers
 from bfsim.kernel.estimate.registers.expansion_order import order_as_expanded
+from bfsim.kernel.estimate.registers.index_registers import IndexRegisters
 from bfsim.kernel.estimate.registers.moves import Moves
 from bfsim.kernel.estimate.registers.pressure import Pressure
 from bfsim.kernel.estimate.registers.register_classes import RegisterClasses
@@ -52,6 +53,8 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
     if context.profile.applies(Rule.SUM_CLASSES):
         RegisterClasses(webs).place()
     moves = Moves(webs)
+    if context.profile.applies(Rule.INDEX_REGISTERS):
+        IndexRegisters(webs).place()
     pressure = Pressure(webs)
     names = (*webs.web, *webs.bank)
     result = Allocation(
@@ -76,7 +79,7 @@ class _Ends:
 
     def save(self) -> None:
         """Find the registers that are saved, and load or move the arguments."""
-        across = {RegisterBank.DATA: set[str](), RegisterBank.POINTER: set[str]()}
+        across = {bank: set[str]() for bank in RegisterBank}
         for label in self.flow.blocks:
             for alive in self.pressure.points(label, across_calls=True):
                 for name in alive:

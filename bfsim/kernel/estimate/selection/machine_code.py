@@ -10,10 +10,11 @@ from bfsim.kernel.operations import COSTS, Op
 
 
 class RegisterBank(Enum):
-    """Where a value must be: data register, pointer register, or either."""
+    """Where a value must be: data register, pointer register, or either; some pointers are in index registers in the end."""
 
     DATA = "R"
     POINTER = "P"
+    INDEX = "I"
     ANY = "R/P"
 
 

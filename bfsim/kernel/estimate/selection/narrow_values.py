@@ -55,6 +55,11 @@ class NarrowValues:
         uses = self._uses(load)
         return not uses.isdisjoint({Use.WIDE, Use.DISTANCE}) and len(uses) > 1
 
+    def extended_by_load(self, load: Instruction) -> bool:
+        """Whether a narrow value is extended as it is loaded."""
+        is_cut = all(user.opcode == "trunc" for user in self._wide_users(load))
+        return self._uses(load) == {Use.WIDE} and not is_cut and not self.extended_late(load)
+
     def extended_for_distance(self, load: Instruction) -> bool:
         """Whether a byte that is extended to a word is also extended for the distance of an element, in the same block."""
         rows = next(each.instructions for each in self.flow.routine.blocks if load in each.instructions)
