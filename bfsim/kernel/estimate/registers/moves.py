@@ -21,6 +21,7 @@ class Moves:
         self._overwrites()
         if webs.context.profile.applies(Rule.SUM_CLASSES):
             self._move_back()
+            self._move_on()
         self._moves()
         self._results()
         self._constants()
@@ -90,6 +91,13 @@ class Moves:
 
     def _move_back(self) -> None:
         """What two values in pointer registers give is moved to a data register: one move, not two."""
+        self._compute_where_both_are(RegisterBank.POINTER, RegisterBank.DATA)
+
+    def _move_on(self) -> None:
+        """What two values in data registers give is moved to a pointer register."""
+        self._compute_where_both_are(RegisterBank.DATA, RegisterBank.POINTER)
+
+    def _compute_where_both_are(self, own: RegisterBank, wanted: RegisterBank) -> None:
         for label, block in self.code.of.items():
             found: list[MachineInstruction] = []
             for instruction in block:
@@ -98,8 +106,8 @@ class Moves:
                 if instruction.op is Op.ALU and instruction.bank is RegisterBank.ANY and result:
                     names = [name for name, _ in instruction.uses if not name.startswith("#")]
                     banks = [self.bank.get(self.find(name)) for name in (*names, result)]
-                    if banks == [RegisterBank.POINTER] * 2 + [RegisterBank.DATA]:
-                        instruction.result = self._copy_of(result, RegisterBank.POINTER, "sum")
+                    if banks == [own] * 2 + [wanted]:
+                        instruction.result = self._copy_of(result, own, "sum")
                         uses = ((instruction.result, RegisterBank.ANY),)
                         found.append(
                             MachineInstruction(Op.MOVE, instruction.line, result, RegisterBank.ANY, uses)

@@ -13,7 +13,7 @@ from bfsim.kernel.estimate.selection.machine_code import RegisterBank
 from bfsim.kernel.estimate.selection.narrow_bits import is_masked_for_test
 from bfsim.kernel.ir.control_flow import BEFORE_TESTS
 from bfsim.kernel.ir.loads_along import goes_along
-from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
+from bfsim.kernel.ir.text import INVERTED, Instruction, arms_of, is_number, predicate
 from bfsim.kernel.ir.widths import BYTE, WORD
 from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
@@ -64,13 +64,19 @@ class Decisions:
         return value.endswith(BEFORE_TESTS) and self.flow.defined[value][0] != self.emitter.label
 
     def _decides_way(self, test: Instruction) -> bool:
-        """Whether a test decides where to go: one that is itself what is wanted, or chooses between numbers, is a bit that is shifted."""
+        """Whether a test decides where to go: one that is itself what is wanted, or chooses between 0 and 1, is a bit that is shifted."""
         ways = [
             block.successors
             for block in self.flow.blocks.values()
             if block.terminator.operands[:1] == (test.result,)
         ]
-        return any(not any(way.startswith(CHOSEN) for way in each) for each in ways)
+        return any(not any(map(self._gives_truth, each)) for each in ways)
+
+    def _gives_truth(self, label: str) -> bool:
+        """Whether a choice is made on the way to a block, unless it is one of other numbers than 0 and 1."""
+        choices = [each for each in self.flow.blocks[label].instructions if each.opcode == "phi"]
+        numbers = {value for each in choices for value in arms_of(each).values() if is_number(value)}
+        return label.startswith(CHOSEN) and numbers <= {"0", "1"}
 
     def _compared(self, each: Instruction, value: str) -> str:
         """What is compared of a value: one that goes along or was loaded before a test is extended each time, what a mask leaves of one once."""
