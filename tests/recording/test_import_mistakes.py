@@ -124,7 +124,7 @@ def test_standard_output_is_no_recording() -> None:
         (
             ["short.uyvy"],
             {"mono": True, "size": (8, 4)},
-            "8x4 UYVY frames of 64 bytes, not 100 bytes = 1.56 frames",
+            "8x4 UYVY frames of 64 bytes, not 100 bytes: 1 frames and 36 bytes",
         ),
         (["none.uyvy"], {"mono": True, "size": (8, 4)}, "not 0 bytes"),
         (["short.uyvy"], {"mono": True, "size": (7, 4)}, "width of UYVY frames must be even, not 7"),

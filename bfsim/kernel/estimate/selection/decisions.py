@@ -130,6 +130,9 @@ class Decisions:
         flags = [f"{each.result}.{number}" for number in range(2)]
         for flag in flags:
             self.append(Op.CC_MOVE, each, flag, DATA)
+        converted = self.context.if_conversion.by_label.get(self.emitter.label)
+        if converted is not None and converted.kind is ConversionKind.FLAG:
+            return  # the difference is the flag
         decides = all(user.opcode == "br" for user in self.flow.users.get(each.result or "", []))
         uses = ((flag, DATA) for flag in flags)
         self.append(Op.COMPARE if decides else Op.ALU, each, None if decides else each.result, DATA, *uses)
@@ -165,8 +168,12 @@ class Decisions:
 
     def _flag(self, each: Instruction, result: str, conversion: ConvertedIf) -> None:
         """The condition as 0 or 1: what no comparison says is the opposite of what one does [cstoresi4 in bfin.md]."""
-        self.append(Op.CC_MOVE, each, result, DATA)
         test = self.flow.instruction(self.flow.blocks[conversion.label].terminator.operands[0])
+        if test is not None and test.opcode == "xor" and test.operands[1] != "true":
+            flags = ((f"{test.result}.{number}", DATA) for number in range(2))
+            self.append(Op.ALU, each, result, DATA, *flags)
+        else:
+            self.append(Op.CC_MOVE, each, result, DATA)
         tells = test is not None and test.opcode == "icmp" and conversion.label not in self.context.ranges
         if test is None or not tells or not self.context.profile.applies(Rule.OPPOSITE_FLAGS):
             return
