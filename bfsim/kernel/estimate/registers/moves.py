@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 from bfsim.kernel.estimate.registers.phi_copies import PhiCopies
 from bfsim.kernel.estimate.registers.webs import Webs
 from bfsim.kernel.estimate.selection.constants import load_constant
@@ -94,16 +96,27 @@ class Moves:
         self._compute_where_both_are(RegisterBank.POINTER, RegisterBank.DATA)
 
     def _move_on(self) -> None:
-        """What two values in data registers give is moved to a pointer register."""
-        self._compute_where_both_are(RegisterBank.DATA, RegisterBank.POINTER)
+        """What two values in data registers give is moved to a pointer register, but for a part of an address: that is added up there, (P + P) << 1."""
+        indices = {
+            name
+            for block in self.code.of.values()
+            for each in block
+            if len({name for name, _ in each.uses}) > 1
+            for name, bank in each.uses
+            if bank is RegisterBank.POINTER
+        }
+        self._compute_where_both_are(RegisterBank.DATA, RegisterBank.POINTER, but=indices)
 
-    def _compute_where_both_are(self, own: RegisterBank, wanted: RegisterBank) -> None:
+    def _compute_where_both_are(
+        self, own: RegisterBank, wanted: RegisterBank, but: Container[str] = ()
+    ) -> None:
         for label, block in self.code.of.items():
             found: list[MachineInstruction] = []
             for instruction in block:
                 found.append(instruction)
                 result = instruction.result
-                if instruction.op is Op.ALU and instruction.bank is RegisterBank.ANY and result:
+                is_free = instruction.op is Op.ALU and instruction.bank is RegisterBank.ANY
+                if is_free and result and result not in but:
                     names = [name for name, _ in instruction.uses if not name.startswith("#")]
                     banks = [self.bank.get(self.find(name)) for name in (*names, result)]
                     if banks == [own] * 2 + [wanted]:
