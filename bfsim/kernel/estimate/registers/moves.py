@@ -96,20 +96,24 @@ class Moves:
         self._compute_where_both_are(RegisterBank.POINTER, RegisterBank.DATA)
 
     def _move_on(self) -> None:
-        """What two values in data registers give is moved to a pointer register, but for a part of an address: that is added up there, (P + P) << 1."""
-        indices = {
+        """What two values in data registers give is moved to a pointer register, unless it is a part of an address.
+
+        Such a part is added up in pointer registers: (P + P) << 1 is one instruction.
+        """
+        parts = {
             name
             for block in self.code.of.values()
             for each in block
-            if len({name for name, _ in each.uses}) > 1
+            if len(set(each.uses)) > 1
             for name, bank in each.uses
             if bank is RegisterBank.POINTER
         }
-        self._compute_where_both_are(RegisterBank.DATA, RegisterBank.POINTER, but=indices)
+        self._compute_where_both_are(RegisterBank.DATA, RegisterBank.POINTER, but=parts)
 
     def _compute_where_both_are(
         self, own: RegisterBank, wanted: RegisterBank, but: Container[str] = ()
     ) -> None:
+        """Compute in their own bank what two values there give, and move that to the bank in which it is wanted."""
         for label, block in self.code.of.items():
             found: list[MachineInstruction] = []
             for instruction in block:
