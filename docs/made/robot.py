@@ -1,6 +1,6 @@
 """Put into the page beside the robot, and that of the accuracy, what the scripts of T Table 6.4 find: `python docs/made/robot.py FOLDER`, after a change of any cycle.
 
-FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and some twenty minutes.
+FOLDER: recordings of `bfsim record render thesis FOLDER`. Needs mitsuba, and some twenty-five minutes.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from pathlib import Path
 from blocks import DOCS, put, table
 
 from benchmarks.robot.claims import claims
+from benchmarks.robot.reach import in_a_sentence, reaches
 from benchmarks.robot.readings import measured
 from benchmarks.robot.unknowns import HEADS, unknowns
 from benchmarks.robot.unknowns import cells as open_cells
@@ -52,6 +53,7 @@ def main(folder: Path) -> None:
     put(PAGE, "scenes", "\n\n".join(map(of_column, columns)))
     put(ACCURACY, "robot", of_the_mean(columns[-1]))
     put(PAGE, "fit", f"Fitted to Figure 6.7: {in_words(setting)}.")
+    put(PAGE, "reach", in_a_sentence(reaches(folder)))
     variants = ([title, *open_cells(share, found)] for title, share, found in unknowns())
     put(PAGE, "unknowns", table(["", *HEADS], variants))
     put(PAGE, "claims", table(["", "robot", "`thesis`"], claims(folder)))
