@@ -5,12 +5,11 @@ Every number is in whole CCLK cycles; only the frame rate is a float.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from bfsim.report.budget.rows import budget_rows, costs_of, elapsed_cclk
+from bfsim.report.budget.rows import budget_rows, costs_in, elapsed_cclk
 from bfsim.report.budget.spread import Spread
 from bfsim.report.budget.times import frame_rate_hz, latency_cclk
 from bfsim.trace import BudgetRow, CoreFrame, RunRecord, StageCost, StallReason
@@ -83,22 +82,23 @@ def _core_budget(frames: Sequence[CoreFrame], rows: Sequence[BudgetRow]) -> Core
     whole = BudgetRow(stage=FRAME, reference_ms=sum(known_ms) if known_ms else None)
     return CoreBudget(
         core=frames[0].core,
-        rows=tuple(_row(row, [costs_of(frame, row, rows) for frame in frames]) for row in rows),
+        rows=tuple(_row(row, costs_in(frames, row, rows)) for row in rows),
         frame=_row(whole, [frame.stages for frame in frames]),
     )
 
 
 def _row(row: BudgetRow, costs: Sequence[Sequence[StageCost]]) -> StageRow:
     """Sum up a row whose costs are given for each frame."""
-    stall: Counter[StallReason] = Counter()
+    stall = dict.fromkeys(StallReason, 0)
     for cost in chain(*costs):
-        stall.update(cost.stall_cclk)
+        for reason, cclk in cost.stall_cclk.items():
+            stall[reason] += cclk
     return StageRow(
         name=row.stage,
         within=row.within,
         reference_ms=row.reference_ms,
         elapsed_cclk=Spread.of([elapsed_cclk(each) for each in costs]),
         issue_cclk=sum(cost.issue_cclk for cost in chain(*costs)),
-        stall_cclk={reason: stall[reason] for reason in StallReason if stall[reason]},
+        stall_cclk={reason: cclk for reason, cclk in stall.items() if cclk},
         idle_cclk=sum(cost.idle_cclk for cost in chain(*costs)),
     )

@@ -22,8 +22,13 @@ def budget_rows(run: RunRecord) -> tuple[BudgetRow, ...]:
 
 def costs_of(frame: CoreFrame, row: BudgetRow, rows: Sequence[BudgetRow]) -> list[StageCost]:
     """What `row` cost one core in one frame, with its parts among `rows`."""
+    return costs_in([frame], row, rows)[0]
+
+
+def costs_in(frames: Iterable[CoreFrame], row: BudgetRow, rows: Sequence[BudgetRow]) -> list[list[StageCost]]:
+    """What `row` cost one core in each of some frames, as above."""
     stages = {row.stage, *(each.stage for each in rows if each.within == row.stage)}
-    return [cost for cost in frame.stages if cost.stage in stages]
+    return [[cost for cost in frame.stages if cost.stage in stages] for frame in frames]
 
 
 def elapsed_cclk(costs: Iterable[StageCost]) -> int:

@@ -10,7 +10,7 @@ from bfsim.report.budget.bound import Bound, Cause, bound_of
 from bfsim.report.budget.budget import Budget, CoreBudget, StageRow, budget_of
 from bfsim.report.budget.start_up import of_one_frame, without_start_up
 from bfsim.report.budget.target import Target
-from bfsim.report.budget.times import milliseconds, waits_for_pictures
+from bfsim.report.budget.times import frame_rate_hz, milliseconds, waits_for_pictures
 from bfsim.report.run.budget_tables import named
 from bfsim.report.run.notes import notes
 from bfsim.report.tables.bars import IDLE, STALL, WORK, bar_of
@@ -29,13 +29,15 @@ def screen(run: RunRecord, target: Target | None = None) -> RenderableType:
     """
     budget = budget_of(without_start_up(run))
     bound = bound_of(budget)
-    return stacked(verdict(run), _table(run, budget, bound), notes(run, budget, bound, target))
+    return stacked(_verdict(run, bound), _table(run, budget, bound), notes(run, budget, bound, target))
 
 
 def verdict(run: RunRecord) -> Text:
     """Return the frame rate of a run of at least one frame, and what bounds it, in one sentence."""
-    budget = budget_of(without_start_up(run))
-    bound = bound_of(budget)
+    return _verdict(run, bound_of(budget_of(without_start_up(run))))
+
+
+def _verdict(run: RunRecord, bound: Bound) -> Text:
     core = bound.core
     share, idle = (
         f"{100 * cclk / core.frame.elapsed_cclk.total:.0f}" for cclk in (bound.cclk, core.frame.idle_cclk)
@@ -47,7 +49,7 @@ def verdict(run: RunRecord) -> Text:
         Cause.PICTURES: f"the pictures, core {core.core} waits for them ({share} %)",
         Cause.OTHER_CORE: f"the cores' turns, core {core.core} waits for its own ({share} %)",
     }[bound.cause]
-    rate_hz = budget_of(run).frame_rate_hz
+    rate_hz = frame_rate_hz(run.frames, run.identity.cclk_hz)
     return Text(
         f"{rate_hz:.2f} frames/s, {1000 / rate_hz:.2f} ms a frame{of_one_frame(run)}: bound by {by}.",
         style="bold",
