@@ -34,7 +34,7 @@ class OwnerCosts(Sequence[OwnerCost]):
     def __init__(self, owners: tuple[Owner, ...], table: NDArray[np.int64]) -> None:
         """`owners`: best the same tuple for as many frames as have the same."""
         numbers = table.reshape(-1)
-        places = np.flatnonzero(numbers)
+        (places,) = numbers.nonzero()
         self._owners = owners
         self._places, self._amounts = places.astype(np.uint32).tobytes(), numbers[places].tobytes()
 

@@ -19,6 +19,7 @@ from bfsim.machine.board import Board
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.owner_costs import COLUMN_OF
 from bfsim.machine.symbols import symbols_of
 from bfsim.trace import BoardRecord, StallReason
 from tests.machine.kernels import copy, fill, first, spin, total
@@ -122,10 +123,10 @@ def test_a_line_costs_once() -> None:
             times.append((yield from timed(core, walk)))
 
     def timed(core: Core, walk: Sequence[int]) -> Play:
-        stalls = core._parts.clock.accounts.now.kernels.stall_cclk
-        before = stalls.get(StallReason.CACHE_FILL, 0)
+        stalls, fill = core._parts.clock.accounts.now.kernels.row, COLUMN_OF[StallReason.CACHE_FILL]
+        before = stalls[fill]
         yield core.run(visit, core.array("far_image"), core.array("order"), len(walk))
-        return stalls.get(StallReason.CACHE_FILL, 0) - before
+        return stalls[fill] - before
 
     board = made_board(in_work(work), ldf=shipped("cache.ldf"), more=(FAR, ORDER))
     board.ahead = None  # a core has its stalls when its firmware looks then

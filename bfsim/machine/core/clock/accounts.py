@@ -6,8 +6,6 @@ is, by name: a ring, a semaphore, an interrupt, the cameras.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,58 +14,54 @@ from bfsim.trace import REST, CoreFrame, StageCost, StallReason
 
 KERNELS = ""
 """The owner of what kernels cost."""
+SORTED_REASONS = sorted(COLUMN_OF.items())
 
 
 class Account:
-    """Cycles of one owner in one stage of a frame."""
+    """Cycles of one owner in one stage of a frame: a row of an `OwnerCosts` table."""
 
-    __slots__ = ("idle_cclk", "issue_cclk", "stall_cclk")
+    __slots__ = ("row",)
 
     def __init__(self) -> None:
-        self.issue_cclk = 0
-        self.idle_cclk = 0
-        self.stall_cclk: dict[StallReason, int] = {}
+        self.row = [0] * COLUMNS
+
+    def issue(self, cclk: int) -> None:
+        """Add cycles of work."""
+        self.row[ISSUE] += cclk
+
+    def idle(self, cclk: int) -> None:
+        """Add cycles of nothing to do."""
+        self.row[IDLE] += cclk
 
     def stall(self, reason: StallReason, cclk: int) -> None:
         """Add cycles of a stall."""
-        self.stall_cclk[reason] = self.stall_cclk.get(reason, 0) + cclk
-
-    def write(self, row: NDArray[np.int64]) -> None:
-        """Write the cycles into a row of an `OwnerCosts` table."""
-        row[ISSUE], row[IDLE] = self.issue_cclk, self.idle_cclk
-        for reason, cclk in self.stall_cclk.items():
-            row[COLUMN_OF[reason]] = cclk
+        self.row[COLUMN_OF[reason]] += cclk
 
 
 class StageAccount:
-    """Cycles of one stage in one frame, by owner."""
+    """Cycles of one stage in one frame: `owners` have an account each."""
+
+    __slots__ = ("kernels", "owners")
 
     def __init__(self) -> None:
         self.kernels = Account()
-        self._owners = {KERNELS: self.kernels}
+        self.owners = {KERNELS: self.kernels}
 
     def of(self, owner: str) -> Account:
         """Return the account of an owner."""
-        return self._owners.get(owner) or self._owners.setdefault(owner, Account())
+        return self.owners.get(owner) or self.owners.setdefault(owner, Account())
 
     def cost(self, stage: str) -> StageCost:
         """Return the record of `stage`, all owners together."""
-        whole = Account()
-        for each in self._owners.values():
-            whole.issue_cclk += each.issue_cclk
-            whole.idle_cclk += each.idle_cclk
-            for reason, cclk in each.stall_cclk.items():
-                whole.stall(reason, cclk)
+        whole = self.kernels.row
+        if len(self.owners) > 1:
+            whole = [*map(sum, zip(*[each.row for each in self.owners.values()], strict=True))]
         return StageCost(
             stage=stage,
-            issue_cclk=whole.issue_cclk,
-            stall_cclk={reason: cclk for reason, cclk in sorted(whole.stall_cclk.items()) if cclk},
-            idle_cclk=whole.idle_cclk,
+            issue_cclk=whole[ISSUE],
+            stall_cclk={reason: whole[column] for reason, column in SORTED_REASONS if whole[column]},
+            idle_cclk=whole[IDLE],
         )
-
-    def others(self) -> Iterator[tuple[str, Account]]:
-        """Yield the accounts of those owners that are no kernels."""
-        return ((owner, each) for owner, each in self._owners.items() if owner != KERNELS)
 
 
 class FrameAccounts:
@@ -78,9 +72,7 @@ class FrameAccounts:
         self._stages = stages
         self._begin_cclk = 0
         self._kernels: tuple[Owner, ...] = ()
-        self._owners: dict[
-            tuple[Owner, ...], tuple[Owner, ...]
-        ] = {}  # these kernels and others, by the others
+        self._owners: dict[tuple[tuple[str, str], ...], tuple[Owner, ...]] = {}  # these kernels and others
         self._open()
 
     def _open(self) -> None:
@@ -89,7 +81,9 @@ class FrameAccounts:
 
     def enter(self, stage: str) -> None:
         """Let cycles go to `stage`, or to the rest."""
-        self.now = self._accounts.setdefault(stage, StageAccount())
+        if stage not in self._accounts:
+            self._accounts[stage] = StageAccount()
+        self.now = self._accounts[stage]
 
     def close(self, end_cclk: int, kernels: tuple[Owner, ...], costs: NDArray[np.int64]) -> CoreFrame:
         """End the frame at `end_cclk`, begin the next one, and return the record: stages in the budget's order.
@@ -97,29 +91,28 @@ class FrameAccounts:
         `kernels` are those that ran, in each stage, the same tuple for as long as none comes, with their `costs` as rows of an `OwnerCosts` table.
         """
         order = [each for each in (*self._stages, REST) if each in self._accounts]
-        others = [
-            (Owner(stage, owner), each) for stage in order for owner, each in self._accounts[stage].others()
-        ]
-        table = np.zeros((len(others), COLUMNS), np.int64)
-        for row, (_, each) in zip(table, others, strict=True):
-            each.write(row)
+        others, rows = [], []
+        for stage in order:
+            for owner, account in self._accounts[stage].owners.items():
+                if owner != KERNELS:
+                    others.append((stage, owner))
+                    rows.append(account.row)
+        table = np.array(rows, np.int64).reshape(-1, COLUMNS)
         frame = CoreFrame(
             core=self._core,
             begin_cclk=self._begin_cclk,
             end_cclk=end_cclk,
-            stages=tuple(self._accounts[each].cost(each) for each in order),
-            owners=OwnerCosts(
-                self._with(kernels, tuple(owner for owner, _ in others)), np.concatenate([costs, table])
-            ),
+            stages=tuple([self._accounts[each].cost(each) for each in order]),
+            owners=OwnerCosts(self._with(kernels, tuple(others)), np.concatenate([costs, table])),
         )
         self._begin_cclk = end_cclk
         self._open()
         return frame
 
-    def _with(self, kernels: tuple[Owner, ...], others: tuple[Owner, ...]) -> tuple[Owner, ...]:
-        """Return all owners of a frame: most frames have the same ones, and then the same tuple."""
+    def _with(self, kernels: tuple[Owner, ...], others: tuple[tuple[str, str], ...]) -> tuple[Owner, ...]:
+        """Return all owners of a frame, others by stage and name: most frames have the same ones, and then the same tuple."""
         if kernels is not self._kernels:
             self._kernels, self._owners = kernels, {}
         if others not in self._owners:
-            self._owners[others] = (*kernels, *others)
+            self._owners[others] = (*kernels, *(Owner(*each) for each in others))
         return self._owners[others]

@@ -14,12 +14,15 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS, REASON_OF_ACCOUNT
 from bfsim.machine.bus.transfer_plans import Played, Transfer
 from bfsim.machine.core.clock.accounts import KERNELS, FrameAccounts
+from bfsim.machine.owner_costs import COLUMN_OF, ISSUE
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import CoreTimeline
 from bfsim.trace import StallReason
 
-KERNEL_STALLS = (StallReason.INTERLOCK, *BUS_STALLS)
-"""What kernels stall for, in the order of `Played`."""
+KERNEL_COLUMNS = (ISSUE, *(COLUMN_OF[each] for each in (StallReason.INTERLOCK, *BUS_STALLS)))
+"""Columns of what kernels took, in the order of `Played`."""
+ACCOUNT_COLUMNS = [(word, COLUMN_OF[reason]) for word, reason in REASON_OF_ACCOUNT.items()]
+"""Words of an account there, and columns of each."""
 
 
 class CoreClock:
@@ -57,7 +60,7 @@ class CoreClock:
         if self.timeline:
             self.timeline.work(self.cclk, cclk)
         self.cclk += cclk
-        self.accounts.now.of(owner).issue_cclk += cclk
+        self.accounts.now.of(owner).issue(cclk)
 
     def program_device(self, owner: str, *, writes: int, reads: int) -> None:
         """Let the time pass that it takes to write and read registers of a device: that is DMA set-up."""
@@ -72,7 +75,7 @@ class CoreClock:
             self.timeline.call(name, self.cclk, work.issue_cclk, stalls)
         account = self.accounts.now.of(owner)
         self.cclk += work.issue_cclk
-        account.issue_cclk += work.issue_cclk
+        account.issue(work.issue_cclk)
         for reason, cclk in stalls.items():
             self.cclk += cclk
             account.stall(reason, cclk)
@@ -80,16 +83,14 @@ class CoreClock:
     def stretch(self, played: Played, owners: Sequence[str]) -> None:
         """Charge what a stretch of work took that the bus has played; `owners`: of its accounts, by their numbers."""
         self.cclk = played.clock_cclk
-        kernels = self.accounts.now.kernels
-        kernels.issue_cclk += played.issue_cclk
-        for reason, cclk in zip(KERNEL_STALLS, played.stalls_cclk, strict=True):
-            if cclk:
-                kernels.stall(reason, cclk)
+        now = self.accounts.now
+        row = now.kernels.row
+        for column, cclk in zip(KERNEL_COLUMNS, (played.issue_cclk, *played.stalls_cclk), strict=True):
+            row[column] += cclk
         for number, words in played.accounts.items():
-            account = self.accounts.now.of(owners[number])
-            for word, reason in REASON_OF_ACCOUNT.items():
-                if words[word]:
-                    account.stall(reason, words[word])
+            row = now.of(owners[number]).row
+            for word, column in ACCOUNT_COLUMNS:
+                row[column] += words[word]
 
     def until(self, tick: int) -> int:
         """Return the cycles up to the first CCLK edge from `tick` on; 0 if that is over."""
@@ -111,7 +112,7 @@ class CoreClock:
         self.pass_waiting(reason, cclk, ended_by)
         cclk, self.owed_cclk = cclk + self.owed_cclk, 0
         if reason is None:
-            self.accounts.now.of(owner).idle_cclk += cclk
+            self.accounts.now.of(owner).idle(cclk)
         elif cclk:
             self.accounts.now.of(owner).stall(reason, cclk)
 
