@@ -23,6 +23,9 @@ from bfsim.machine.calls.code_fetches import fetch_lines, fetch_singly
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
+from bfsim.machine.retiming.laid_sorts import lay_sorts
+from bfsim.machine.retiming.left_stage import end_stretch, leave_stage
+from bfsim.machine.retiming.passed_mark import pass_mark
 from bfsim.machine.retiming.written_stretch import write_stretch
 
 FOLDER = Path(native.__file__).parent / KEPT
@@ -46,6 +49,10 @@ ENTRIES = (
     charge_events,
     charge_sites,
     write_stretch,
+    lay_sorts,
+    pass_mark,
+    end_stretch,
+    leave_stage,
 )
 
 

@@ -219,7 +219,7 @@ def _shown_to(
 ) -> Callable[[int, tuple[Seen, ...]], None]:
     """Return who is told what was seen in a frame, and tells it with the times of its pictures."""
     return lambda index, cameras: on_seen(
-        SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras)
+        SeenFrame(index=index, times_ns=source.times_ns(index), cameras=cameras)
     )
 
 

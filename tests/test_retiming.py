@@ -104,6 +104,36 @@ def test_a_play_does_not_look_at_pictures_again(folder: Path, monkeypatch: pytes
     assert differing(plain, simulate(recording, work=path)) <= HOSTS_OWN
 
 
+def test_pictures_are_those_of_the_recorded_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is the same, byte by byte, is not unpacked; of one that is stored otherwise each pixel is compared."""
+    recording, path = small(tmp_path, monkeypatch)
+    what: dict[str, Any] = {"firmware": "fw_mixed:eyes"}
+    plain = simulate(recording, record_work=path, **what)
+    with RecordingReader(recording) as reader:
+        frames = [(each.left.copy(), each.right, each.left_ns, each.right_ns) for each in reader.frames()]
+        size = {"width": reader.width, "height": reader.height}
+
+    def store() -> None:
+        with RecordingWriter(recording, **size, description="stored anew") as writer:
+            for each in frames:
+                writer.add(*each)
+
+    def unread(*_: object) -> Any:
+        raise AssertionError("a play unpacks pictures")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(RecordingReader, "frames", unread)
+        assert differing(plain, simulate(recording, work=path, **what)) <= HOSTS_OWN
+    store()
+    assert differing(plain, simulate(recording, work=path, **what)) <= HOSTS_OWN
+    frames[1][0][-1, -1] ^= 1
+    store()
+    with pytest.raises(
+        WorkError, match=r"must be as it was when its run was recorded, and frame 1 is another"
+    ):
+        simulate(recording, work=path, **what)
+
+
 @pytest.mark.parametrize("seed", [0, *exhaustive(1, 2, 3)])
 def test_it_is_the_run_of_other_hardware(work: Path, plain: Run, seed: int) -> None:
     """Whatever the clocks, the latencies, and the settings of DMA and bus."""

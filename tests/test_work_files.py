@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import zstandard
 
 from bfsim.errors import WorkError
 from bfsim.kernel.calls import access_log as log
@@ -17,7 +16,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, FrameWork
 from bfsim.run import simulate
 from bfsim.running.frame_file import TABLES, read, written
-from bfsim.running.work_file import FORMAT
+from bfsim.running.work_file import FORMAT, compressed
 from tests.work_files import changed, rewritten, unpacked
 
 FRAMES = 2
@@ -76,7 +75,7 @@ def test_another_version_is_refused(work: Path, folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "frame", [b"", b"no frame", zstandard.compress(b"{}\n"), b"\x28\xb5\x2f\xfd\xe0" + b"\xff" * 8]
+    "frame", [b"", b"no frame", compressed(b"{}\n"), b"\xff" * 8]
 )  # the last one says that it decompresses to more than there is memory in the world
 def test_a_broken_frame_is_refused(work: Path, folder: Path, frame: bytes) -> None:
     """Where it is read, in the words for the file; nothing large is made for it."""
@@ -124,7 +123,10 @@ def test_memory_and_counters_that_are_not_there_are_refused(work: Path, folder: 
     def many(done: FrameWork) -> None:
         done.events[:, 1] = 1 << 30
 
-    for change in (far, many):
+    def later(done: FrameWork) -> None:  # at the end of a stage, within a stretch
+        done.events[len(done.events) // 2 :, 1] = 1 << 30
+
+    for change in (far, many, later):
         with pytest.raises(WorkError, match="that is not there"):
             simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
 
@@ -153,7 +155,9 @@ def test_a_routine_that_is_none_is_refused(work: Path, folder: Path, routine: An
         ("run.json", "buffers", True),
         ("end.json", "modules", 7),
         ("end.json", "modules", [None]),
-        ("end.json", "frame_digests", "none"),
+        ("end.json", "frames", "none"),
+        ("end.json", "frames", {"digests": [], "times_ns": [[1, 2]], "stored_end": 0, "stored_digest": ""}),
+        ("end.json", "frames", {"digests": ["a"], "times_ns": [[1]], "stored_end": 0, "stored_digest": ""}),
         ("end.json", "obstacles", {}),
         ("end.json", "doubts", [[16, 16]]),
         ("end.json", "doubts", [[16, "all"], [0, 0], [0, 0]]),
@@ -219,7 +223,7 @@ def test_calls_and_accesses_that_are_missing_are_refused(work: Path, folder: Pat
         done.operations[np.flatnonzero(done.operations[:, 0] == w.ACCESS)[-1], 3] += 1
 
     for change, said in (
-        (more_calls, r"odd\.work must be a whole file"),
+        (more_calls, "more calls of its firmware"),
         (more_accesses, "that is not there"),
     ):
         with pytest.raises(WorkError, match=said):
@@ -227,11 +231,18 @@ def test_calls_and_accesses_that_are_missing_are_refused(work: Path, folder: Pat
 
 
 @pytest.mark.parametrize(
-    "odd", [{"rows": {"operations": -1}}, {"rows": {"accesses": 1 << 40}}, {"widths": [-2] * 19}, {"widths": [4] * 19}, {"widths": []}]
+    "odd", [{"rows": {"operations": -1}}, {"rows": {"accesses": 1 << 40}}, {"widths": [-2] * 21}, {"widths": [4] * 21}, {"widths": []}]
 )  # fmt: skip
 def test_columns_that_are_not_in_the_file_are_refused(odd: dict[str, Any]) -> None:
     """Compiled code reads them, which would read memory behind the file."""
-    head = {"calls": [], "accounts": [], "widths": [0] * 19, "rows": dict.fromkeys(TABLES, 0)}
+    head = {
+        "calls": [],
+        "accounts": [],
+        "stages": [],
+        "results": {},
+        "widths": [0] * 21,
+        "rows": dict.fromkeys(TABLES, 0),
+    }
     assert read("A", json.dumps(head).encode() + b"\n").calls == ()
     head = {**head, **odd, "rows": dict.fromkeys(TABLES, 0) | odd.get("rows", {})}
     with pytest.raises(ValueError, match=r"columns must be|not in range|shorter than"):
@@ -247,9 +258,11 @@ def test_a_frame_is_read_as_it_was_written() -> None:
         operations = np.array([(w.ACCESS, 1, top, count, 0) for count in counts], np.int64)
         events, copies = among.integers(0, top, (4, 3)), among.integers(0, top, (2, 6))
         work = FrameWork(
-            core="A", operations=operations, accesses=accesses, events=events, copies=copies, calls=(("post", ("x",)),), accounts=("y",)
+            core="A", operations=operations, accesses=accesses, events=events, copies=copies, calls=(("post", ("x",)),), accounts=("y",),
+            stages=("z",), results={"seen": 1},
         )  # fmt: skip
         again = unpacked(read("A", written(work)))
-        for table in TABLES:
+        for table in ("operations", "accesses", "events", "copies"):
             assert (getattr(again, table) == getattr(work, table)).all(), table
         assert (again.calls, again.accounts) == (work.calls, work.accounts)
+        assert (again.stages, again.results) == (work.stages, work.results)

@@ -5,31 +5,51 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Callable
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import zstandard
 
 from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.packed_work import ACCESSES, EVENTS, OPERATIONS, PackedWork
-from bfsim.machine.retiming.work import BYTE, STAMP, FrameWork
-from bfsim.running.frame_file import TABLES, read, written
+from bfsim.machine.retiming.packed_work import (
+    BYTE_STEP,
+    PACKED,
+    SORT,
+    STEP,
+    PackedWork,
+)
+from bfsim.machine.retiming.work import (
+    ACCESS_COLUMNS,
+    BYTE,
+    KIND,
+    OWNER,
+    SITE,
+    STAMP,
+    FrameWork,
+)
+from bfsim.running.frame_file import read, written
+from bfsim.running.work_file import compressed, decompressed
 
 
 def unpacked(work: PackedWork) -> FrameWork:
     """Return the tables of a packed work."""
-    operations, accesses, events = (
-        np.column_stack([work.column(first + number, work.rows[name]) for number in range(TABLES[name])])
+    of_operations, operation_sorts, packed, access_sorts, events = (
+        np.column_stack([work.column(first + number, work.rows[name]) for number in range(PACKED[name])])
         .astype(np.int64)
-        .reshape(-1, TABLES[name])
-        for name, first in (("operations", OPERATIONS), ("accesses", ACCESSES), ("events", EVENTS))
+        .reshape(-1, PACKED[name])
+        for name, first in zip(PACKED, accumulate(PACKED.values(), initial=0), strict=False)
     )
+    operations = operation_sorts[of_operations[:, 0]]
+    copies = operations[:, 0] == w.COPY
+    operations[copies, 1] = np.cumsum(operations[copies, 1])
+    accesses = np.empty((len(packed), ACCESS_COLUMNS), np.int64)
+    accesses[:, [KIND, OWNER, SITE]] = access_sorts[packed[:, SORT]]
     begin = 0
     for count in operations[operations[:, 0] == w.ACCESS, 3]:
-        accesses[begin : begin + count, STAMP] = np.cumsum(accesses[begin : begin + count, STAMP])
+        accesses[begin : begin + count, STAMP] = np.cumsum(packed[begin : begin + count, STEP])
         begin += count
-    accesses[:, BYTE] = np.cumsum(accesses[:, BYTE])
+    accesses[:, BYTE] = np.cumsum(packed[:, BYTE_STEP])
     events[:, 1] = np.cumsum(events[:, 1])
     return FrameWork(
         core=work.core,
@@ -39,6 +59,8 @@ def unpacked(work: PackedWork) -> FrameWork:
         copies=work.copies,
         calls=work.calls,
         accounts=work.accounts,
+        stages=work.stages,
+        results=work.results,
     )
 
 
@@ -48,9 +70,9 @@ def changed(work: Path, path: Path, change: Callable[[FrameWork], None]) -> Path
         for name in old.namelist():
             content = old.read(name)
             if name == "A/000001":
-                done = unpacked(read("A", zstandard.decompress(content)))
+                done = unpacked(read("A", decompressed(content)))
                 change(done)
-                content = zstandard.compress(written(done))
+                content = compressed(written(done))
             new.writestr(name, content)
     return path
 

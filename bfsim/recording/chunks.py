@@ -54,13 +54,13 @@ def records_in(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 class ChunkReader:
-    """Reads the chunks that an index lists. `offset` is that of the one last begun.
+    """Reads the chunks that an index lists. `offset` is that of the one last begun, and `end` is behind all of those.
 
     Raises RecordingError for one that is too large, and whatever mcap and the decompressors raise for one that is damaged.
     """
 
     def __init__(self, stream: IO[bytes], path: Path, size_bytes: int, summary: Summary) -> None:
-        self.offset = 0
+        self.offset = self.end = 0
         self._stream = stream
         self._path = path
         self._size_bytes = size_bytes
@@ -131,6 +131,7 @@ class ChunkReader:
             self._refuse(
                 f"must hold at most {_size(LARGEST_CHUNK_BYTES)}, not {_size(largest)}; write the recording with smaller chunks"
             )
+        self.end = max(self.end, self.offset + RECORD_HEAD.size + length)
         self._stream.seek(self.offset + RECORD_HEAD.size)
         chunk = Chunk.read(ReadDataStream(io.BytesIO(self._stream.read(length))))
         data = _decompressed(chunk)

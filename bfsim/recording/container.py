@@ -5,6 +5,7 @@ Knows records, channels and chunks; knows nothing of pictures.
 
 from __future__ import annotations
 
+import hashlib
 import io
 import os
 import struct
@@ -56,6 +57,9 @@ _FOOTER = struct.Struct("<BQQQI")
 _TAIL_BYTES = _FOOTER.size + len(MAGIC)
 _CRC_BYTES = 4
 
+_PART_BYTES = 1 << 20
+"""What is read at a time of a file that is read as it is stored."""
+
 _MADE_BY = "`bfsim record import` makes a recording from images, raw frames, a video or a bag"
 _OTHER_FILES = {
     ".py": "firmware goes behind `--firmware`, and a board behind `--board`",
@@ -71,6 +75,8 @@ class McapContainer:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
+        self.read_end = 0
+        """The byte behind the last of all chunks that were read so far."""
         if self.path.is_dir():
             raise RecordingError(
                 f"{self.path}: recording must be a readable file, not a folder; `bfsim record import` makes one of a folder of pictures"
@@ -87,7 +93,8 @@ class McapContainer:
             ) from None
         try:
             self.size_bytes = os.fstat(self._stream.fileno()).st_size
-            self.summary = self._summary_of(self._index())
+            self._index_bytes = self._index()
+            self.summary = self._summary_of(self._index_bytes)
             header, _ = self._record(Opcode.HEADER, len(MAGIC), "header")
             self.library: str = Header.read(ReadDataStream(io.BytesIO(header))).library
         except _DAMAGE as error:
@@ -113,7 +120,16 @@ class McapContainer:
                 raise
             except _DAMAGE as error:
                 raise self._damaged(f"the chunk at byte {chunks.offset}", error) from None
+            self.read_end = max(self.read_end, chunks.end)
             yield channel, message
+
+    def stored_digest(self, end: int) -> str:
+        """Return a digest of the index, and of the file up to a byte, as it is stored: if it is the same, so is what was read up to there."""
+        digest = hashlib.sha256(self._index_bytes)
+        self._stream.seek(0)
+        while part := self._stream.read(min(_PART_BYTES, max(0, end - self._stream.tell()))):
+            digest.update(part)
+        return digest.hexdigest()
 
     def channel(self, topic: str) -> tuple[Channel, Schema | None] | None:
         """The channel with this topic and its schema, or None."""

@@ -68,6 +68,15 @@ class RecordingReader:
         """Compressions of the file's chunks, "" for none."""
         return sorted({index.compression for index in self._file.summary.chunk_indexes})
 
+    @property
+    def read_end(self) -> int:
+        """The byte behind all that was read so far of frames."""
+        return self._file.read_end
+
+    def stored_digest(self, end: int) -> str:
+        """Return a digest of the file as it is stored up to a byte: if it is the same, so are the frames that were read up to there."""
+        return self._file.stored_digest(end)
+
     def residual_plot(self) -> bytes:
         """Plot (PNG) of how far the chessboards' corners are from the fitted cameras'."""
         plot = self._file.attachment(layout.RESIDUAL_PLOT_NAME)

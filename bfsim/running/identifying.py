@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import llvmlite.binding as llvm
+import numpy as np
 
 from bfsim import __version__, shipped
 from bfsim.errors import WorkError
@@ -16,6 +18,23 @@ from bfsim.process.reading_ahead import read_ahead
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.running.setup import FittedFirmware, RunSetup
 from bfsim.trace import Identity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownFrames:
+    """Frames that were read once: `digests` of the recording up to each, `times_ns` of its left and right picture.
+
+    `stored_digest`: of the file as it is stored up to the byte `stored_end`, up to which it was read.
+    """
+
+    digests: tuple[str, ...]
+    times_ns: tuple[tuple[int, int], ...]
+    stored_end: int
+    stored_digest: str
+
+    def __post_init__(self) -> None:
+        if len(self.digests) != len(self.times_ns):
+            raise ValueError("each frame must have a digest and its times")
 
 
 class DigestedFrames:
@@ -27,17 +46,22 @@ class DigestedFrames:
         self.total = total
         self.digests: list[str] = []
         """Of the recording up to each frame that was read."""
-        self._expected: Sequence[str] = ()
-        self._times_ns: dict[int, dict[str, int]] = {}
+        self._expected: KnownFrames | None = None
+        self._times_ns: list[tuple[int, int]] = []
 
     def __iter__(self) -> Iterator[StereoFrame]:
-        for frame, digest in read_ahead(self._with_digests()):
+        expected = self._expected
+        if expected and self._reader.stored_digest(expected.stored_end) == expected.stored_digest:
+            frames = self._unseen(expected)
+        else:
+            frames = read_ahead(self._with_digests())
+        for frame, digest in frames:
             self.digests.append(digest)
-            if self._expected and self._expected[frame.index] != self.digests[-1]:
+            if expected and expected.digests[frame.index] != digest:
                 raise WorkError(
                     f"{self.name} must be as it was when its run was recorded, and frame {frame.index} is another: record it again"
                 )
-            self._times_ns[frame.index] = {"left": frame.left_ns, "right": frame.right_ns}
+            self._times_ns.append((frame.left_ns, frame.right_ns))
             yield frame
 
     def _with_digests(self) -> Iterator[tuple[StereoFrame, str]]:
@@ -49,13 +73,35 @@ class DigestedFrames:
             digest.update(frame.right.tobytes())
             yield frame, digest.hexdigest()
 
-    def expect(self, digests: Sequence[str]) -> None:
-        """Compare each frame that is read from now on with what was read before. Raises WorkError for another one."""
-        self._expected = digests
+    def _unseen(self, known: KnownFrames) -> Iterator[tuple[StereoFrame, str]]:
+        """Yield frames that are stored as they were before, whose pictures nobody looks at again: black ones."""
+        black = np.zeros((self._reader.height, 2 * self._reader.width), np.uint8)
+        for index, (digest, (left_ns, right_ns)) in enumerate(
+            zip(known.digests, known.times_ns, strict=True)
+        ):
+            yield StereoFrame(index, black, black, left_ns, right_ns, None), digest
 
-    def take_times_ns(self, index: int) -> dict[str, int]:
+    @property
+    def known(self) -> KnownFrames:
+        """What is known of the frames that were read."""
+        end = self._reader.read_end
+        return KnownFrames(
+            digests=tuple(self.digests),
+            times_ns=tuple(self._times_ns),
+            stored_end=end,
+            stored_digest=self._reader.stored_digest(end),
+        )
+
+    def expect(self, known: KnownFrames) -> None:
+        """Compare each frame that is read from now on with what was read before. Raises WorkError for another one.
+
+        Where the file is the same, byte by byte, as far as it was read, the pictures are not looked at, and are black.
+        """
+        self._expected = known
+
+    def times_ns(self, index: int) -> dict[str, int]:
         """Return when the pictures of a frame were taken, by camera."""
-        return self._times_ns.pop(index)
+        return dict(zip(("left", "right"), self._times_ns[index], strict=True))
 
     @property
     def digest(self) -> str:

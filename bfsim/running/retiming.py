@@ -20,7 +20,6 @@ from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
-from bfsim.process.reading_ahead import read_ahead
 from bfsim.recording.stereo.stereo_check import StereoCheck
 from bfsim.running.identifying import DigestedFrames
 from bfsim.trace import Identity
@@ -126,7 +125,7 @@ def recording_work(
         if not all(each.is_done for each in machine.main_loops.values()):
             raise _InterruptedError
         writer.end(
-            frame_digests=frames.digests,
+            frames=frames.known,
             modules=sorted(loaded.own.modules),
             firmware_digest=loaded.digest,
             doubts=check.counts,
@@ -153,7 +152,7 @@ def playing_work(
     with opened(path) as reader:
         _check(reader, machine, identity, frames.total)
         kernels = _kernels(reader, loaded)
-        frames.expect(reader.recorded.frame_digests)
+        frames.expect(reader.recorded.frames)
         check.take_counts(reader.recorded.doubts)
         machine.firmware = replace(
             machine.firmware, mains=dict.fromkeys(machine.firmware.mains, played_again), view=None
@@ -165,7 +164,7 @@ def playing_work(
 def _replayed(reader: WorkReader, kernels: dict[str, Kernel], parts: Parts) -> Core:
     from bfsim.machine.retiming.replayed_core import ReplayedCore
 
-    return ReplayedCore(parts, kernels, read_ahead(reader.works(parts.name)))
+    return ReplayedCore(parts, kernels, reader.works(parts.name))
 
 
 def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -> None:
@@ -178,9 +177,9 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
                 f"{path} must be recorded with the same {what}, {shown(getattr(identity, field))}, "
                 f"not with {shown(recorded.identity.get(field))}: record it again"
             )
-    if total != len(recorded.frame_digests):
+    if total != len(recorded.frames.digests):
         raise WorkError(
-            f"{path} must be played for as many frames as it has, {len(recorded.frame_digests)}, not for {total}: see --frames"
+            f"{path} must be played for as many frames as it has, {len(recorded.frames.digests)}, not for {total}: see --frames"
         )
     if [*recorded.buffers] != [*map(tuple, machine.owners_of_memory)]:
         raise WorkError(f"{path} must be recorded with the same buffers: record it again")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import simpy
 
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.stretches import end_of_stretch
+from bfsim.machine.bus.stretches import end_of_stretch, moment_of
 from bfsim.machine.simulation import Simulation
 
 
@@ -15,6 +17,7 @@ class Ends:
     def __init__(self, env: Simulation) -> None:
         self._env = env
         self._awaited: dict[int, simpy.Event] = {}
+        self._moments: dict[int, Callable[[], None]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._awaited)
@@ -34,10 +37,16 @@ class Ends:
         """Return the event at the end of a core's stretch."""
         return self.of_transfer(end_of_stretch(core))
 
+    def at_moments(self, core: int, what: Callable[[], None]) -> None:
+        """Do `what` at each moment of a core's stretches."""
+        self._moments[moment_of(core)] = what
+
     def wake(self, number: int, tick: int) -> bool:
-        """Let the event of a number, if it has one, happen at a tick; return whether it has."""
+        """Let the event of a number, if it has one, happen at a tick; return whether it has. Of a moment, do what is to be done then."""
         event = self._awaited.pop(number, None)
         if event is None:
+            if number in self._moments:
+                self._moments[number]()
             return False
         self._env.trigger_at(event, tick)
         return True

@@ -178,7 +178,8 @@ PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
     SET_UP,         # program a device: cycles, account
     COPY,           # post a copy: its plan, and where it begins to read and to write
     AWAIT,          # wait for a copy: how many were posted since, why that is a stall, account
-) = range(6)  # fmt: skip
+    MOMENT,         # let somebody do at this moment what the bus cannot do: a number for them
+) = range(7)  # fmt: skip
 OF_CALL = 5  # which call an ACCESS is, of those that were prepared
 OPERATION_WORDS = 6
 MAX_OPERATIONS = 1 << 17

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from struct import Struct
 from typing import Any
 
@@ -17,6 +17,18 @@ from bfsim.machine.bus.transfer_plans import Played
 from bfsim.machine.simulation import Simulation
 
 BEGUN = Struct(f"@{w.BEGUN_WORDS}q")
+ISSUED, STALLS, ACCOUNTS = (each - w.TOUCHED for each in (w.ISSUED, w.INTERLOCKED, w.ACCOUNTS))
+"""Where these stand behind TOUCHED."""
+
+
+def played_of(words: list[int], clock_cclk: int) -> Played:
+    """Return what a stretch took, by its words from TOUCHED on (`bus.state`), and where its clock is."""
+    touches, accounts = words[ACCOUNTS + w.TOUCH :: w.ACCOUNT_WORDS] if words[0] else [], {}
+    for touch, number in sorted(zip(touches, range(len(touches)), strict=True)):
+        if touch:
+            begin = ACCOUNTS + number * w.ACCOUNT_WORDS
+            accounts[number] = words[begin : begin + w.ACCOUNT_WORDS]
+    return Played(clock_cclk, words[ISSUED], words[STALLS:ACCOUNTS], accounts)
 
 
 class StretchPlayer:
@@ -40,24 +52,23 @@ class StretchPlayer:
         BEGUN.pack_into(words, 8 * play, first, end, clock_cclk, self._env.tick, w.NONE, copies)
         return self._ends.of_stretch(core)
 
-    def played(self, core: int, accounts: int) -> Played:
-        """Return what the last stretch of a core took, with so many `accounts`.
+    def at_moments(self, core: int, what: Callable[[], None]) -> None:
+        """Do `what` at each moment of a core's stretches."""
+        self._ends.at_moments(core, what)
 
-        Raises FirmwareError if DMA had no room for all of its copies.
-        """
-        play = w.PLAYS_AT + core * w.PLAY_WORDS
-        words: list[int] = self._words[play : play + w.ACCOUNTS + accounts * w.ACCOUNT_WORDS].tolist()
-        if words[w.OPERATION] < words[w.OPERATIONS_END]:
+    def clock_cclk(self, core: int) -> int:
+        """Return where a core's clock is after its last stretch. Raises FirmwareError if DMA had no room for all of its copies."""
+        play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
+        if words[play + w.OPERATION] < words[play + w.OPERATIONS_END]:
             raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
-        touches = words[w.ACCOUNTS + w.TOUCH :: w.ACCOUNT_WORDS] if words[w.TOUCHED] else ()
-        used = sorted((touch, number) for number, touch in enumerate(touches) if touch)
-        begins = ((number, w.ACCOUNTS + number * w.ACCOUNT_WORDS) for _, number in used)
-        return Played(
-            clock_cclk=words[w.CLOCK],
-            issue_cclk=words[w.ISSUED],
-            stalls_cclk=words[w.INTERLOCKED : w.ACCOUNTS],
-            accounts={number: words[begin : begin + w.ACCOUNT_WORDS] for number, begin in begins},
-        )
+        cclk: int = words[play + w.CLOCK]
+        return cclk
+
+    def played(self, core: int, accounts: int) -> Played:
+        """Return what the last stretch of a core took, with so many `accounts`. Raises FirmwareError as above."""
+        play = w.PLAYS_AT + core * w.PLAY_WORDS
+        words = self._words[play + w.TOUCHED : play + w.ACCOUNTS + accounts * w.ACCOUNT_WORDS].tolist()
+        return played_of(words, self.clock_cclk(core))
 
     def copy_of(self, core: int, number: int) -> tuple[int, int]:
         """Return number and place of the transfer that the copy `number` of a core was, of those that it has posted."""

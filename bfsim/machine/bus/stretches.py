@@ -19,6 +19,12 @@ def end_of_stretch(core: int) -> int:
 
 
 @native
+def moment_of(core: int) -> int:
+    """Return what `advance` returns at a moment of a core's stretch."""
+    return w.NONE - 1 - 2 * w.CORES - core
+
+
+@native
 def who_acts(state: State) -> int:
     """Return the core that goes on first."""
     first = 0
@@ -42,12 +48,16 @@ def resume(state: State, woken: int) -> bool:
 
 @native
 def act(state: State, core: int, now: int) -> int:
-    """Do a core's operations at tick `now`, up to which the bus was played, until it must wait; return the end of its stretch, or NONE."""
+    """Do a core's operations at tick `now`, up to which the bus was played, until it must wait; return the end or a moment of its stretch, or NONE."""
     play = w.PLAYS_AT + core * w.PLAY_WORDS
     if state[play + w.AWAITED] != w.NONE:
         end_wait(state, core, now)
     while state[play + w.OPERATION] < state[play + w.OPERATIONS_END]:
         at = operation_of(state, core)
+        if state[at] == w.MOMENT:
+            state[play + w.OPERATION] += 1
+            state[play + w.ACTS_AT] = state[w.DONE_AT] = now
+            return moment_of(core)
         if needs_bus(state, core, at):
             clock = state[play + w.CLOCK] * state[w.CCLK]
             if clock > now:

@@ -240,7 +240,7 @@ def advance(state_at: State, memory_at: Memory, until: int) -> int:
     """Play everything before tick `until`: requests and, where the cores have stretches to play, these.
 
     Returns early with who is woken, at tick DONE_AT, else NONE: a transfer by its number, the job of core c by NONE - 1 - c, the end of
-    its stretch by `end_of_stretch`.
+    its stretch by `end_of_stretch`, a moment of it by `moment_of`.
     """
     state, memory = words_at(state_at), words_at(memory_at)
     start_jobs(state)

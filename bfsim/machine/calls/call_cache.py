@@ -140,8 +140,7 @@ class CallCache:
     def enter(self, stage: str) -> None:
         """Count the calls from now on under `stage`."""
         self.stage = stage
-        if stage not in self._in_stage:
-            self._in_stage[stage] = StageGroups()
+        self.groups_in(stage)
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel, ready to run."""
         self.ready.enter(stage)
@@ -149,6 +148,22 @@ class CallCache:
     def accessed(self) -> Accesses:
         """Return what the calls of the present stage have accessed in L1 since this was asked last."""
         return self._in_stage[self.stage].accessed(self._ledger.events_at)
+
+    def groups_in(self, stage: str) -> StageGroups:
+        """Return the groups of calls of a stage."""
+        if stage not in self._in_stage:
+            self._in_stage[stage] = StageGroups()
+        return self._in_stage[stage]
+
+    @property
+    def sub_banks(self) -> SubBanks:
+        """The sub-banks of L1."""
+        return self._subbanks
+
+    @property
+    def conflicts_at(self) -> int:
+        """The address of what conflicts in L1 have cost at each site, to be added to."""
+        return self._ledger.conflicts_at
 
     def conflicts_cclk(self, accessed: Accesses, elapsed_cclk: int) -> int:
         """Return what conflicts in L1 cost calls that have `accessed` it in `elapsed_cclk`, all since this was asked last."""

@@ -44,17 +44,23 @@ def made(spread: Numbers, events: Numbers, count: int, number: int) -> float:
     return events[number] * spread[EACH * count + number] / spread[AMONG * count + number]
 
 
-@native_entry("int64", "int64*", "int64", "int64*", "int64*", "int64*")
-def count_events(spread_at: Any, count: int, counters_at: Any, before_at: Any, events_at: Any) -> int:
+@native
+def count_since(spread: Numbers, count: int, counters: Numbers, before: Numbers, events: Numbers) -> int:
     """Count what the `counters` of a core have counted since `before`, for each of `count` columns; return how many these are."""
-    spread, counters, before, events = (
-        words_at(spread_at), words_at(counters_at), words_at(before_at), words_at(events_at)
-    )  # fmt: skip
     for number in range(count):
         now = counters[spread[COUNTER * count + number]]
         events[number] = now - before[number]
         before[number] = now
     return count
+
+
+@native_entry("int64", "int64*", "int64", "int64*", "int64*", "int64*")
+def count_events(spread_at: Any, count: int, counters_at: Any, before_at: Any, events_at: Any) -> int:
+    """Count events as above."""
+    spread, counters, before, events = (
+        words_at(spread_at), words_at(counters_at), words_at(before_at), words_at(events_at)
+    )  # fmt: skip
+    return count_since(spread, count, counters, before, events)
 
 
 @native_entry(
@@ -64,18 +70,23 @@ def charge_conflicts(
     state_at: Any, before_at: Any, words_moved_at: Any, accesses_at: Any, spread_at: Any, events_at: Any, count: int,
     elapsed: int, conflict: int, at_sites_at: Any,
 ) -> int:  # fmt: skip
+    """Charge conflicts as below."""
+    banks = words_at(before_at), words_at(words_moved_at), words_at(accesses_at)
+    spread, events, at_sites = words_at(spread_at), words_at(events_at), words_at(at_sites_at)
+    return charged(words_at(state_at), banks, spread, events, count, elapsed, conflict, at_sites)
+
+
+@native
+def charged(
+    state: Numbers, banks: tuple[Numbers, Numbers, MutableSequence[float]], spread: Numbers, events: Numbers, count: int,
+    elapsed: int, conflict: int, at_sites: Numbers,
+) -> int:  # fmt: skip
     """Return what conflicts cost in `elapsed` cycles, each of them `conflict`, and add it to what they cost at each site.
 
-    It is shared out by the parts of the accesses: each gets its part, rounded so that none is lost. `before`: the words that DMA had
+    It is shared out by the parts of the accesses: each gets its part, rounded so that none is lost. `banks`: the words that DMA had
     moved before, by sub-bank; room for those since, and for accesses.
     """
-    state, before, words_moved, accesses = (
-        words_at(state_at),
-        words_at(before_at),
-        words_at(words_moved_at),
-        words_at(accesses_at),
-    )
-    spread, events, at_sites = words_at(spread_at), words_at(events_at), words_at(at_sites_at)
+    before, words_moved, accesses = banks
     for bank in range(w.MAX_SUBBANKS):
         words_moved[bank] = state[w.SUBBANKS_AT + bank] - before[bank]
         before[bank] += words_moved[bank]
@@ -114,8 +125,13 @@ class StageGroups:
         """Add a group. Where its rows lie is looked up when it has run."""
         self._new.append(group)
 
-    def accessed(self, counters_at: int) -> Accesses:
-        """Return what the calls have accessed since the last time, by what the core's counters, at an address, have counted."""
+    @property
+    def has_new(self) -> bool:
+        """Whether there are groups that have not been looked at yet."""
+        return bool(self._new)
+
+    def look(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Look where the rows of new groups lie; return the spread of all of them, and its counts before."""
         if self._new:
             joined = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
             self._spread = np.ascontiguousarray(joined)  # behind a single column numpy lays others by rows
@@ -123,6 +139,11 @@ class StageGroups:
             self._addresses = self._spread.ctypes.data, self._before.ctypes.data
             self._events = ctypes.c_int64 * len(self._before)
             self._new = []
+        return self._spread, self._before
+
+    def accessed(self, counters_at: int) -> Accesses:
+        """Return what the calls have accessed since the last time, by what the core's counters, at an address, have counted."""
+        self.look()
         events = self._events()
         spread_at, before_at = self._addresses
         self._count(spread_at, len(events), counters_at, before_at, ctypes.addressof(events))
@@ -136,7 +157,6 @@ class SubBanks:
         """`words`: the state of the bus."""
         state: NDArray[np.int64] = np.asarray(words)
         self._bytes = chip.l1.subbank_bytes
-        self._conflict_cclk = chip.l1.conflict_cclk
         self._first = memories.l1
         self._arrays = (
             state,
@@ -144,7 +164,10 @@ class SubBanks:
             np.zeros(w.MAX_SUBBANKS, np.int64),  # and room for
             np.zeros(w.MAX_SUBBANKS, np.float64),
         )
-        self._charge = built_in(charge_conflicts.address(), 6, *(each.ctypes.data for each in self._arrays))
+        self.at = [each.ctypes.data for each in self._arrays]
+        """The addresses of these."""
+        self.conflict_cclk = chip.l1.conflict_cclk
+        self._charge = built_in(charge_conflicts.address(), 6, *self.at)
 
     def of(self, row: Row) -> range:
         """Return the sub-banks that a row lies in, none outside L1."""
@@ -160,7 +183,7 @@ class SubBanks:
         """
         _, events, spread_at = accessed
         return self._charge(
-            spread_at, ctypes.addressof(events), len(events), elapsed_cclk, self._conflict_cclk, at_sites_at
+            spread_at, ctypes.addressof(events), len(events), elapsed_cclk, self.conflict_cclk, at_sites_at
         )
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel.native.entries import native
-from bfsim.machine.retiming.work import ACCESS_COLUMNS, EVENT_COLUMNS, OPERATION_COLUMNS, Table
+from bfsim.machine.retiming.work import EVENT_COLUMNS, OPERATION_COLUMNS, Table
 
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 ALIGNED_BYTES = 8
@@ -19,18 +20,26 @@ ALIGNED_BYTES = 8
 BEGIN, WIDTH = range(2)
 """Words of a column: its first byte, and the number of its width."""
 COLUMN_WORDS = 2
-OPERATIONS, ACCESSES = 0, OPERATION_COLUMNS
-EVENTS = ACCESSES + ACCESS_COLUMNS
-"""The first column of each table."""
-PACKED_COLUMNS = EVENTS + EVENT_COLUMNS
+PACKED = {
+    "operations": 1, "operation_sorts": OPERATION_COLUMNS, "accesses": 3, "access_sorts": 3, "events": EVENT_COLUMNS,
+}  # fmt: skip
+"""The tables, and how many columns each has."""
+OPERATIONS, OPERATION_SORTS, ACCESSES, ACCESS_SORTS, EVENTS, PACKED_COLUMNS = accumulate(
+    PACKED.values(), initial=0
+)
+"""The first column of each, and the one behind all."""
+STEP, SORT, BYTE_STEP = range(3)
+"""Columns of an access, whose kind, owner and site are those of its sort."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PackedWork:
-    """What one core did, as `FrameWork`, with the numbers of three tables in `octets`, as they were written.
+    """What one core did, as `FrameWork`, with the numbers of the tables above in `octets`, as they were written.
 
-    `columns`: words as above of each column of `operations`, `accesses` and `events`, of which `rows` says how many there are. Of accesses
+    `columns`: words as above of each of their columns; `rows` says how many there are of each table. Of accesses
     each stamp is the difference to the one before it in its call, and each byte that to the one before it; so is each counter of events.
+    What many have in common is a row of *sorts*: the numbers of an operation, with the number of a copy as the difference to that of the
+    copy before; and kind, owner and site of an access.
     """
 
     core: str
@@ -40,6 +49,8 @@ class PackedWork:
     copies: Table
     calls: tuple[tuple[str, tuple[Any, ...]], ...]
     accounts: tuple[str, ...]
+    stages: tuple[str, ...]
+    results: Mapping[str, int]
 
     def column(self, number: int, rows: int) -> NDArray[Any]:
         """Return the numbers of a column as they are written. Raises ValueError where they are not all there."""

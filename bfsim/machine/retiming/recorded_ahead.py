@@ -35,14 +35,16 @@ class RecordedAhead(Ahead):
 
     def _begin(self) -> None:
         super()._begin()
-        self._marks: list[int] = []  # behind how many operations the calls of firmware are
+        self._marks: list[
+            tuple[int, int, int]
+        ] = []  # behind how many operations each is, its kind and number
 
-    def mark(self) -> None:
-        """Note the place of a call of firmware."""
+    def mark(self, kind: int = CALL, number: int = 0) -> None:
+        """Note the place of a call of firmware, or of the beginning of a stage."""
         if noted := self.tape.mark():
-            self._marks.append(noted)
+            self._marks.append((noted, kind, number))
         else:
-            self.notes.add(CALL)
+            self.notes.add(kind, number)
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
         """Note it though nothing is noted before it."""
@@ -87,4 +89,6 @@ class RecordedAhead(Ahead):
         operations[copies, 1], operations[copies, 2:] = operations[copies, 4], 0
         operations[awaits, 3] = accounts[operations[awaits, 3]]
         self.is_too_late |= bool((operations[awaits, 1] > LATEST).any())
-        notes.add_all(np.insert(operations, self._marks, (CALL, 0, 0, 0, 0), axis=0))
+        marks = np.array(self._marks, np.int64).reshape(-1, 3)
+        rows = np.pad(marks[:, 1:], ((0, 0), (0, OPERATION_COLUMNS - 2)))
+        notes.add_all(np.insert(operations, marks[:, 0], rows, axis=0))

@@ -17,7 +17,7 @@ from bfsim.machine.core.pictures.frames import Frame
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.memories import Row
 from bfsim.machine.retiming.recorded_ahead import LATEST, RecordedAhead
-from bfsim.machine.retiming.work import FrameWork, Place
+from bfsim.machine.retiming.work import STAGE, FrameWork, Place
 
 Wait = Generator[Any, Any, Any]
 
@@ -35,6 +35,7 @@ class RecordingCore(Core):
         self._on_work = on_work
         self._on_obstacle = on_obstacle
         self._result: Any = None  # of the last call that has waited
+        self._set: dict[str, tuple[Any, ...]] = {}  # in the camera, by the call
         parts.calls.on_prepared = self._note_prepared
 
     def end(self) -> None:
@@ -50,7 +51,8 @@ class RecordingCore(Core):
         self._note("prepare", kernel.function.symbol, in_l1, *map(self._notes.place, rows))
 
     def _enter(self, stage: str) -> None:
-        self._note("stage", stage)
+        self._notes.add_mark(self._parts.calls.events)
+        self._progress.mark(STAGE, self._notes.stage(stage))
         super()._enter(stage)
 
     # ---- pictures
@@ -74,7 +76,7 @@ class RecordingCore(Core):
     def publish(self, **results: int) -> None:
         """Publish as every core does."""
         super().publish(**results)
-        self._note("publish", {name: int(each) for name, each in results.items()})
+        self._notes.publish(results)
 
     def remark(self, text: str) -> None:
         """Remark as every core does."""
@@ -83,12 +85,12 @@ class RecordingCore(Core):
 
     def set_camera(self, settings: CameraSettings) -> None:
         """Set the camera as every core does."""
-        self._note("set_camera", asdict(settings))
+        self._note_change("set_camera", asdict(settings))
         super().set_camera(settings)
 
     def set_picture_size(self, size: FrameSize) -> None:
         """Set the size of the pictures as every core does."""
-        self._note("set_picture_size", size.width_px, size.height_px)
+        self._note_change("set_picture_size", size.width_px, size.height_px)
         super().set_picture_size(size)
 
     def ppi_status(self) -> Generator[Any, Any, int]:
@@ -166,8 +168,15 @@ class RecordingCore(Core):
 
     def _note(self, name: str, *arguments: Any) -> None:
         """Note a call, with what the kernels have counted until then."""
-        self._notes.add_call(name, arguments, self._parts.calls.events)
+        self._notes.add_mark(self._parts.calls.events)
+        self._notes.add_call(name, arguments)
         self._progress.mark()
+
+    def _note_change(self, name: str, *arguments: Any) -> None:
+        """Note a call that changes nothing if it is made again."""
+        if self._set.get(name) != arguments:
+            self._set[name] = arguments
+            self._note(name, *arguments)
 
     def _hand_over(self) -> None:
         if self._progress.is_too_late:

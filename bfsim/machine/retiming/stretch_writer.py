@@ -8,24 +8,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.block_spec import EventSpec
-from bfsim.machine.retiming.packed_work import COLUMN_WORDS, PACKED_COLUMNS, WIDTHS, PackedWork
-from bfsim.machine.retiming.work import Table
-from bfsim.machine.retiming.written_stretch import (
+from bfsim.machine.retiming.frame_words import (
     ACCESS_ROWS,
+    ACCESS_SORT_ROWS,
     ACCOUNTS,
     COPIES,
     EVENT_ROWS,
     FRAME_WORDS,
+    IS_AT_CALL,
     MMR_READ,
     MMR_WRITE,
+    NEXT,
     NO_CODE,
     NO_ROOM,
     NOT_THERE,
     ODD,
+    OPERATION_SORT_ROWS,
     OWNERS,
     ROWS,
-    write_stretch,
+    SORTS_AT,
+    STAGES,
 )
+from bfsim.machine.retiming.laid_sorts import ACCESS_SORT_WORDS, lay_sorts
+from bfsim.machine.retiming.packed_work import WIDTHS, PackedWork
+from bfsim.machine.retiming.passed_mark import pass_mark
+from bfsim.machine.retiming.work import OPERATION_COLUMNS, Table
+from bfsim.machine.retiming.written_stretch import write_stretch
 from bfsim.machine_code.built_in import built_in
 
 PROBLEMS = {
@@ -37,35 +45,76 @@ PROBLEMS = {
 
 
 class StretchWriter:
-    """Writes the stretches of one frame's `work` into the `state` of a bus, its words, for a core.
+    """Writes stretches into the `state` of a bus, its words, for a core: those of one frame's work, and then of the next one's.
 
-    `firsts`: where in the arena the memory of each owner begins, IN_L1 for what lies there; `copies`: rows of what is behind COPY for
-    each copy; `accounts`: how many there are; `events`: what the core takes for registers.
+    `firsts`: where in the arena the memory of each owner begins, IN_L1 for what lies there; `events`: what the core takes for registers.
     """
 
-    def __init__(
-        self, state: Any, core: int, work: PackedWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
-    ) -> None:  # fmt: skip
-        words = np.zeros(FRAME_WORDS + PACKED_COLUMNS * COLUMN_WORDS, np.int64)
-        words[[ROWS, ACCESS_ROWS, EVENT_ROWS]] = (
-            work.rows["operations"], work.rows["accesses"], work.rows["events"],
-        )  # fmt: skip
-        words[[COPIES, ACCOUNTS, OWNERS]] = len(copies), accounts, len(firsts)
-        words[[MMR_WRITE, MMR_READ]] = events.mmr_write_cclk, events.mmr_read_cclk
-        words[FRAME_WORDS:] = work.columns.reshape(-1)
-        octets = np.frombuffer(work.octets, np.int8)
-        self._kept: tuple[NDArray[Any], ...] = (words, *[octets] * len(WIDTHS), firsts, copies)
-        self._write = built_in(
-            write_stretch.address(), 4, np.asarray(state).ctypes.data, core, *(each.ctypes.data for each in self._kept)
-        )  # fmt: skip
+    def __init__(self, state: Any, core: int, firsts: NDArray[np.int64], events: EventSpec) -> None:
+        self._at = np.asarray(state).ctypes.data, core
+        self._firsts, self._events = firsts, events
+        self._words = self._room(SORTS_AT)
+        self._work: PackedWork
+        self._views_at: tuple[int, ...] = ()
+        self.counters_at = 0, 0
+        """The address of the core's counters, and how many there are by now."""
 
-    def write(self, kinds_at: int, calls: int, counters_at: int, counters: int) -> int:
-        """Write the next stretch and return how many operations it has: if fewer than it can have, all up to the next call of firmware.
+    def _room(self, count: int) -> NDArray[np.int64]:
+        """Make room for so many words."""
+        words = np.zeros(count, np.int64)
+        at, self._numbers = words.ctypes.data, words.data
+        self._lay = built_in(lay_sorts.address(), 5, at)
+        self._pass = built_in(pass_mark.address(), 6, at)
+        self._write = built_in(write_stretch.address(), 8, *self._at, at)
+        return words
 
-        The addresses of arrays, and how many they have: of each call that is prepared by now, what running it is to the bus; and the
-        core's counters, which count what its kernels have until that call. Raises ValueError for what is not there.
+    def begin(self, work: PackedWork, copies: Table, accounts: int, stages: int) -> None:
+        """Go on with the work of another frame. `copies`: rows of what is behind COPY for each; `accounts`, `stages`: how many there are.
+
+        Raises ValueError for what is not there.
         """
-        written = self._write(kinds_at, calls, counters_at, counters)
+        rows = work.rows
+        operation_sorts, access_sorts = rows["operation_sorts"], rows["access_sorts"]
+        count = SORTS_AT + access_sorts * ACCESS_SORT_WORDS + operation_sorts * OPERATION_COLUMNS
+        if count > len(self._words):
+            self._words = self._room(2 * count)
+        words, events = self._words, self._events
+        words[:FRAME_WORDS] = 0
+        for word, number in (
+            (ROWS, rows["operations"]), (ACCESS_ROWS, rows["accesses"]), (EVENT_ROWS, rows["events"]),
+            (OPERATION_SORT_ROWS, operation_sorts), (ACCESS_SORT_ROWS, access_sorts),
+            (COPIES, len(copies)), (ACCOUNTS, accounts), (OWNERS, len(self._firsts)), (STAGES, stages),
+            (MMR_WRITE, events.mmr_write_cclk), (MMR_READ, events.mmr_read_cclk),
+        ):  # fmt: skip
+            self._numbers[word] = number
+        words[FRAME_WORDS:SORTS_AT] = work.columns.reshape(-1)
+        self._work, self._copies_at = work, copies.ctypes.data
+        self._views_at = (np.frombuffer(work.octets, np.int8).ctypes.data,) * len(WIDTHS)
+        if problem := self._lay(*self._views_at, self._firsts.ctypes.data):
+            raise ValueError(PROBLEMS[problem])
+
+    def write(self, kinds_at: int, calls: int, *, must_look: bool) -> int:
+        """Write the next stretch and return how many operations it has.
+
+        `must_look`: whether it ends before the stage does. The address of an array, and how many it has: of each call that is prepared by
+        now, what running it is to the bus. Raises ValueError for what is not there.
+        """
+        written = self._write(*self._views_at, self._copies_at, kinds_at, calls, must_look)
         if written < 0:
             raise ValueError(PROBLEMS[written])
         return written
+
+    def pass_mark(self) -> None:
+        """Let the core's counters count what its kernels have up to the next mark. Raises ValueError as above."""
+        if problem := self._pass(*self._views_at, *self.counters_at):
+            raise ValueError(PROBLEMS[problem])
+
+    @property
+    def is_at_call(self) -> bool:
+        """Whether a call of firmware comes behind what was written last."""
+        return bool(self._numbers[IS_AT_CALL])
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all was written."""
+        return bool(self._numbers[NEXT] == self._numbers[ROWS])

@@ -5,6 +5,7 @@ Memory is named by its owner (`bus.memory_owners`) and the byte there, never by 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 
 from bfsim.machine.bus import state as w
 
-CALL = w.AWAIT + 1
-"""An operation besides those of a stretch (`bus.state`): the next call of its firmware, which is played in Python."""
+CALL, STAGE = w.MOMENT + 1, w.MOMENT
+"""Operations besides those of a stretch (`bus.state`): the next call of its firmware, which is played in Python; and another stage from
+now on, by its number. Both are *marks*, up to which is known what the kernels have counted."""
 
 STAMP, KIND, OWNER, BYTE, SITE = range(5)
 """Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site.
@@ -46,9 +48,9 @@ class FrameWork:
 
     `operations`: rows of a kind and four numbers as in `bus.state`, with differences: of ACCESS the last two are how many accesses it
     has, and the number of its call among those prepared; SET_UP has register writes and reads before its account.
-    `accesses`: rows as above, of all calls one after the other; each column in one piece. `events`: rows of a call's number here, a counter of the
-    core and what that has counted since it was written down last, up to that call. `copies`: rows as above, and `accounts`,
-    of those used for the first time. `calls`: name and arguments.
+    `accesses`: rows as above, of all calls one after the other; each column in one piece. `events`: rows of a mark's number here, a counter of the
+    core and what that has counted since it was written down last, up to that mark. `copies`: rows as above, and `accounts` and `stages`,
+    of those used for the first time. `calls`: name and arguments. `results`: what was published of the frame.
     """
 
     core: str
@@ -58,3 +60,5 @@ class FrameWork:
     copies: Table
     calls: tuple[tuple[str, tuple[Any, ...]], ...]
     accounts: tuple[str, ...]
+    stages: tuple[str, ...]
+    results: Mapping[str, int]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from bfsim.machine.retiming.work import (
     Place,
     Table,
 )
+from bfsim.trace import REST
 
 Entries = NDArray[np.int64]
 
@@ -31,6 +32,7 @@ class WorkNotes:
         self._core = core
         self._owners = owners
         self._accounts: dict[str, int] = {}
+        self._stages = {REST: 0}
         self._copies: dict[tuple[int, ...], int] = {}
         self._events = np.zeros(0, np.int64)
         self._begin()
@@ -42,6 +44,8 @@ class WorkNotes:
         self._counted: list[Table] = []
         self._calls: list[tuple[str, tuple[Any, ...]]] = []
         self._new_accounts: list[str] = []
+        self._new_stages: list[str] = []
+        self._results: dict[str, int] = {}
         self._new_copies: list[tuple[int, ...]] = []
 
     def add(self, kind: int, one: int = 0, two: int = 0, three: int = 0, four: int = 0) -> None:
@@ -62,23 +66,31 @@ class WorkNotes:
         """Note accesses of the operations to come, which the core's log may forget."""
         self._accesses.append((entries.copy(), sites.copy()))
 
-    def add_call(self, name: str, arguments: tuple[Any, ...], events: NDArray[np.int64]) -> None:
-        """Note a call of firmware, with what the kernels have counted until then; its operation is noted apart."""
+    def add_mark(self, events: NDArray[np.int64]) -> None:
+        """Note what the kernels have counted until the next mark; its operation is noted apart."""
         since = events.copy()
         since[: len(self._events)] -= self._events
         counters = np.flatnonzero(since)
         self._counted.append(
-            np.column_stack([np.full(len(counters), len(self._calls)), counters, since[counters]])
+            np.column_stack([np.full(len(counters), len(self._counted)), counters, since[counters]])
         )
         self._events = events.copy()
+
+    def add_call(self, name: str, arguments: tuple[Any, ...]) -> None:
+        """Note a call of firmware, which is a mark."""
         self._calls.append((name, arguments))
+
+    def publish(self, results: Mapping[str, int]) -> None:
+        """Note what is published of the frame."""
+        self._results.update({name: int(each) for name, each in results.items()})
 
     def account(self, owner: str) -> int:
         """Return the number of an account."""
-        if owner not in self._accounts:
-            self._accounts[owner] = len(self._accounts)
-            self._new_accounts.append(owner)
-        return self._accounts[owner]
+        return _number(owner, self._accounts, self._new_accounts)
+
+    def stage(self, name: str) -> int:
+        """Return the number of a stage."""
+        return _number(name, self._stages, self._new_stages)
 
     @property
     def accounts(self) -> int:
@@ -112,6 +124,8 @@ class WorkNotes:
             copies=_together(self._new_copies, COPY_COLUMNS),
             calls=tuple(self._calls),
             accounts=tuple(self._new_accounts),
+            stages=tuple(self._new_stages),
+            results=self._results,
         )
         self._begin()
         return work
@@ -130,6 +144,14 @@ class WorkNotes:
             offsets - np.array(self._owners.first)[owners], sites,
         )  # fmt: skip
         return columns.T
+
+
+def _number(name: str, numbers: dict[str, int], new: list[str]) -> int:
+    """Return the number of a name, which is a new one if it has none yet."""
+    if name not in numbers:
+        numbers[name] = len(numbers)
+        new.append(name)
+    return numbers[name]
 
 
 def _together(tables: Sequence[Any], columns: int) -> Table:
