@@ -16,6 +16,8 @@ from bfsim.process.signals import BY_SIGNAL, hear_signals
 def main() -> None:
     """Call the command line."""
     collect_rarely()
+    # numpy's library has a thread for each processor otherwise, a quarter of its start; nothing here multiplies large matrices
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # A stream that the shell closed (`>&-`) is None; what nobody wants to read goes nowhere.
     sys.stdout = sys.stdout or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
     sys.stderr = sys.stderr or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
