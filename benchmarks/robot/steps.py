@@ -11,7 +11,7 @@ from benchmarks.robot.pixel_colours import pixel_colours_row
 from benchmarks.robot.tur94_roots import tur94_colour_row, tur94_magnitude_row
 from bfsim.api import Core, Frame, Row, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area, area_in
-from tinyphoon.scan_lines import window
+from tinyphoon.scan_lines import windows
 from tinyphoon.stages.blob_detection import BlobThresholds
 from tinyphoon.stages.circle_detection import CircleThresholds, circle_detection
 from tinyphoon.stages.circle_erosion import eroded_circles, select_outer_edges
@@ -95,11 +95,11 @@ def circles_by_sdram_erosion(
     core: Core, frame: Frame, blobs: int, colours: int, thresholds: CircleThresholds
 ) -> Generator[Any, Any, int]:
     """Erode the picture for filter 1 as the opening does, straight from SDRAM."""
-    opened = core.rows("opened_image")
+    near = windows(core.rows("opened_image"))
     shapes = core.output_ring("opened_ring", core.rows("shape_image"))
     for y in range(frame.height):
         row = yield from shapes.row()
-        yield core.run(erode_columns, *window(opened, y, frame.height), row)
+        yield core.run(erode_columns, *near[y], row)
         shapes.send()
     yield from shapes.flush()
     found: int = yield from circle_detection(core, frame, blobs, colours, thresholds, select_outer_edges)

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle, islice
-from typing import Protocol
 
 from bfsim.api import Row
 
-
-class Lines(Protocol):
-    """Rows in L1 by the number of the line that they hold."""
-
-    def __getitem__(self, number: int, /) -> Row:
-        """Return the row of line `number`, which is lost when the ring has come round to it again."""
+Lines = tuple[Row, ...]
+"""Rows in L1 by the number of the line that they hold, which is lost when its ring has come round to it again."""
 
 
 def line_ring(rows: Sequence[Row], height: int) -> Lines:
@@ -21,8 +16,7 @@ def line_ring(rows: Sequence[Row], height: int) -> Lines:
     return tuple(islice(cycle(rows), height))
 
 
-def window(lines: Lines, y: int, height: int, reach: int = 1) -> tuple[Row, ...]:
-    """Return line `y` and `reach` lines on both sides, from above; the first and the last line of the picture repeat."""
-    if reach == 1 and 0 < y < height - 1:  # nearly all
-        return lines[y - 1], lines[y], lines[y + 1]
-    return tuple(lines[min(max(each, 0), height - 1)] for each in range(y - reach, y + reach + 1))
+def windows(lines: Sequence[Row], reach: int = 1) -> Sequence[Lines]:
+    """Return for each line of a picture `reach` lines above it, itself, and as many below; the first and the last line repeat."""
+    padded = (*lines[:1] * reach, *lines, *lines[-1:] * reach)
+    return tuple(zip(*(padded[step:] for step in range(2 * reach + 1)), strict=False))

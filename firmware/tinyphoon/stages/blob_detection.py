@@ -276,13 +276,12 @@ def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gene
     for number, group in enumerate(thresholds.colour_groups):
         yield core.run(store_group, groups, number, group)
     yield core.run(clear_labels, labels)
-    colours = thresholds.colours
+    run, at, colours = core.run, core.at, thresholds.colours
     used = lost = 0
     for y in range(frame.height):
-        core.at(y)
+        at(y)
         line = yield from opened.line()
-        row = line, labels, parents, blobs, groups, colours, y
-        wanted = yield core.run(segment_row, *row, used)
+        wanted = yield run(segment_row, line, labels, parents, blobs, groups, colours, y, used)
         used = min(wanted, LABELS - 1)
         lost += wanted - used
         if used >= RECYCLE_AT:

@@ -13,7 +13,6 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, u8, u16, u32
 from tinyphoon.fields import allowed
-from tinyphoon.scan_lines import window
 from tinyphoon.stages.circle_consensus import agree_on_side
 from tinyphoon.stages.circle_edges import (
     AREA_WORDS,
@@ -107,17 +106,18 @@ def select_edges(
     top, bottom = yield from open_outline(core, frame, blob, thresholds)
     first = max(top - 1, 0)
     image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
-    ring = core.input_ring(image, "colour_ring")
-    lines: list[Row] = []
+    lines = core.input_ring(image, "colour_ring")
     store = edge_store(core)
     filters = area, thresholds.angle_range, int(thresholds.beside_colour), atan
     found = 0
-    for ahead in range(first, bottom + 2):
+    here = below = yield from lines.line()
+    for ahead in range(first + 1, bottom + 2):
+        above, here = here, below  # the first and the last line repeat
         if ahead < frame.height:
-            lines.append((yield from ring.line()))
+            below = yield from lines.line()
         y = ahead - 1
         if top <= y:
-            near = window(lines, y - first, len(image))
+            near = above, here, below
             found = yield core.run(select_edges_row, *store, y, *near, colours, *filters, selected, found)
     return found
 

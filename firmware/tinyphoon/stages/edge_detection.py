@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from functools import partial
+from typing import Any, Literal, Protocol, Self
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, Kernel, Row, i16, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
-from tinyphoon.scan_lines import line_ring, window
+from tinyphoon.scan_lines import line_ring, windows
 from tinyphoon.stages.colour_reduction import AS_IT_IS, balance_row, colour_row
-from tinyphoon.stages.edge_thinning import Candidates, thinned_bands
-from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, hysteresis
+from tinyphoon.stages.edge_thinning import Candidates, take_candidates, thinned_bands
+from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, clear_labels, group_edges_row, hysteresis
 from tinyphoon.stores.edges import edge_columns
 
 
@@ -192,25 +193,38 @@ class FoundEdges(Protocol):
         """Keep the edges of row `y`, its pixels with a gradient."""
 
 
-def slopes_row(
-    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, _: int
-) -> Generator[Any, Any, None]:
-    """Make length and direction of a row's gradients from its smoothed lines, whatever the threshold."""
-    gx, gy = core.array("gx"), core.array("gy")
-    yield core.run(sobel_row, *smooth, gx, gy)
-    yield core.run(magnitude_row, gx, gy, magnitude)
-    yield core.run(direction_row, gx, gy, core.array("atan"), direction)
+@dataclass(frozen=True, slots=True)
+class Slopes:
+    """What makes length and direction of a row's gradients, which are in `gx` and `gy` meanwhile."""
+
+    core: Core
+    gx: Row
+    gy: Row
+    atan: Row
+
+    @classmethod
+    def of(cls, core: Core) -> Self:
+        """Return that of a core."""
+        return cls(core, core.array("gx"), core.array("gy"), core.array("atan"))
+
+    def row(self, smooth: Sequence[Row], magnitude: Row, direction: Row, _: int) -> Generator[Any, Any, None]:
+        """Make them from a row's smoothed lines, whatever the threshold."""
+        run, gx, gy = self.core.run, self.gx, self.gy
+        above, here, below = smooth
+        yield run(sobel_row, above, here, below, gx, gy)
+        yield run(magnitude_row, gx, gy, magnitude)
+        yield run(direction_row, gx, gy, self.atan, direction)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSteps:
     """How a scan reduces the colours of a row, makes its gradients, and suppresses what is no edge: these ways, or others with the same results.
 
-    `slopes` takes the smoothed lines, the rows of lengths and directions to be made, and the threshold.
+    `slopes.row` takes the smoothed lines, the rows of lengths and directions to be made, and the threshold.
     """
 
     colours: Kernel = colour_row
-    slopes: Callable[[Core, Sequence[Row], Row, Row, int], Generator[Any, Any, None]] = slopes_row
+    slopes: type[Slopes] = Slopes
     suppress: Kernel = suppress_row
 
 
@@ -234,37 +248,39 @@ def scan(
     smooth, magnitude, direction = (
         line_ring(core.rows(name), height) for name in ("smooth_ring", "magnitude_ring", "direction_ring")
     )
+    near_grey, near_smooth, near_magnitude = windows(grey, reach), windows(smooth), windows(magnitude)
+    run, at = core.run, core.at
+    reduce, slopes, suppress = steps.colours, steps.slopes.of(core), steps.suppress
     atan, joined = core.array("atan"), core.array("joined_colours")
     gauss_row = gauss3_row if reach == 1 else gauss5_row
     gains = () if thresholds.is_balanced else thresholds.gains
-    limits, least = thresholds.colour_limits, thresholds.edge_threshold
+    (eps_black, eps_white, least_chroma), least = thresholds.colour_limits, thresholds.edge_threshold
     rim = [core.array(f"sighted_{end}") for end in ("first", "last") if core.has_buffer(f"sighted_{end}")]
     for y in range(height + reach + 2):
         if y < height:
-            core.at(y)
+            at(y)
             line = yield from camera.line()
-            yield core.run(grey_row, line, grey[y])
+            yield run(grey_row, line, grey[y])
             if gains:
-                yield core.run(balance_row, line, *gains)
+                yield run(balance_row, line, *gains)
             row = yield from colours.row()
-            yield core.run(steps.colours, line, atan, joined, row, *limits)
+            yield run(reduce, line, atan, joined, row, eps_black, eps_white, least_chroma)
             colours.send()
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2
         if 0 <= smoothed < height:
-            core.at(smoothed)
-            yield core.run(gauss_row, *window(grey, smoothed, height, reach), smooth[smoothed])
+            at(smoothed)
+            yield run(gauss_row, *near_grey[smoothed], smooth[smoothed])
         if 0 <= sloped < height:
-            core.at(sloped)
-            rows = window(smooth, sloped, height), magnitude[sloped], direction[sloped]
-            yield from steps.slopes(core, *rows, least)
+            at(sloped)
+            yield from slopes.row(near_smooth[sloped], magnitude[sloped], direction[sloped], least)
         if done >= 0:
-            core.at(done)
-            near = window(magnitude, done, height)
+            at(done)
             edges = yield from found.row()
-            yield core.run(steps.suppress, *near, direction[done], edges, least)
+            above, here, below = near_magnitude[done]
+            yield run(suppress, above, here, below, direction[done], edges, least)
             if rim:
-                yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
+                yield run(clear_rim, edges, *rim, area.y + done, area.x)
             yield from found.add(done, edges, direction[done])
     core.at()
     yield from colours.flush()
@@ -300,17 +316,23 @@ def edge_detection(
     publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, with the
     rows of the camera's picture in which most were, and `edge_groups_shared`, how many groups had to share a label.
     """
-    candidates = Candidates.of(core, frame.height)
+    run, at, candidates = core.run, core.at, Candidates.of(core, frame.height)
     yield from candidates.begin()
     yield from scanned(core, frame, thresholds, area, candidates)
     rows, lost = yield from candidates.thin()
     groups = EdgeGroups.of(core, frame.width)
+    store, least, left_out = groups.store, candidates.least, candidates.band_edges
+    (data, index, counts), (table, strongest) = store, groups.tables
     found = given = 0
-    for y in range(frame.height):
-        core.at(y)
-        found = yield from candidates.take(rows, y, found)
-        core.at(y, edge_columns(core, y))
-        given = yield from groups.add(y, given)
+    for y, band in enumerate(candidates.bands):
+        at(y)
+        row = yield from rows.line()
+        found = yield run(take_candidates, row, least, band, data, index, counts, left_out, y, found)
+        at(y, partial(edge_columns, store, y))
+        above, here = groups.labels[y & 1]
+        if y == 0:
+            yield run(clear_labels, above)
+        given = yield run(group_edges_row, data, index, counts, y, above, here, table, strongest, given)
     kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
     core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
     bands = thinned_bands(core.array("band_edges").array, frame.height)

@@ -118,10 +118,10 @@ def take_candidates(
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """The candidates of a picture of `height` rows: written row by row, then taken into the edge store."""
+    """The candidates of a picture: written row by row, then taken into the edge store. `bands`: the band that each row belongs to."""
 
     core: Core
-    height: int
+    bands: Sequence[int]
     store: tuple[Row, Row, Row]
     levels: Row
     least: Row
@@ -131,15 +131,12 @@ class Candidates:
 
     @classmethod
     def of(cls, core: Core, height: int) -> Candidates:
-        """Return those of a core."""
+        """Return those of a picture of `height` rows of a core's camera."""
         outward = core.output_ring("candidate_ring", core.rows("edge_candidates"))
         levels, *_ = core.overlay("segments", u16, BANDS * LEVELS)  # the lines come later
         tables = levels, core.array("least_gradients"), core.array("band_edges")
-        return cls(core, height, edge_store(core), *tables, core.rows("edge_ring")[0], outward)
-
-    def band(self, y: int) -> int:
-        """Return the band that a row belongs to."""
-        return y * BANDS // self.height
+        bands = [y * BANDS // height for y in range(height)]
+        return cls(core, bands, edge_store(core), *tables, core.rows("edge_ring")[0], outward)
 
     def begin(self) -> Generator[Any, Any, None]:
         """Begin a picture."""
@@ -153,32 +150,18 @@ class Candidates:
 
     def add(self, y: int, gradients: Row, directions: Row) -> Generator[Any, Any, None]:
         """Keep the edges of row `y` as candidates: its pixels with a gradient."""
-        row = yield from self.outward.row()
+        run, outward = self.core.run, self.outward
+        row = yield from outward.row()
         _, index, counts = self.store
-        count = yield self.core.run(store_edges_row, gradients, directions, row, index, counts, y, 0)
-        yield self.core.run(count_levels, row, count, self.levels, self.band(y))
-        self.outward.send()
+        count = yield run(store_edges_row, gradients, directions, row, index, counts, y, 0)
+        yield run(count_levels, row, count, self.levels, self.bands[y])
+        outward.send()
 
     def thin(self) -> Generator[Any, Any, tuple[InputRing, int]]:
         """Share the store out; return a ring of the candidates from the first row on, and how many are left out."""
         yield from self.outward.flush()
         left_out: int = yield self.core.run(share_out, self.levels, EDGE_CAPACITY, self.least)
         return self.core.input_ring(self.core.rows("edge_candidates"), "candidate_ring"), left_out
-
-    def take(self, rows: InputRing, y: int, found: int) -> Generator[Any, Any, int]:
-        """Store what row `y`, the next one, keeps; `found` edges are stored before, returns how many are with it."""
-        row = yield from rows.line()
-        stored: int = yield self.core.run(
-            take_candidates,
-            row,
-            self.least,
-            self.band(y),
-            *self.store,
-            self.band_edges,
-            y,
-            found,
-        )
-        return stored
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i16, i32, u8, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area
-from tinyphoon.scan_lines import Lines, line_ring, window
+from tinyphoon.scan_lines import Lines, line_ring, windows
 from tinyphoon.stages.colour_reduction import balance_row
 from tinyphoon.stages.edge_detection import EdgeThresholds, edge_detection, gauss5_row
 from tinyphoon.stages.edge_thinning import Candidates
@@ -63,7 +63,7 @@ class Ring:
 
 @dataclass(frozen=True, slots=True)
 class FastScan:
-    """The rings of a scan, and what becomes of a row in each step."""
+    """The rings of a scan, what kernels take from three and more lines of them, and what becomes of a row in each step."""
 
     core: Core
     frame: Frame
@@ -75,6 +75,9 @@ class FastScan:
     magnitude: Ring
     gx: Ring
     gy: Ring
+    near_grey: Sequence[Lines]
+    near_smooth: Sequence[Lines]
+    near_magnitude: Sequence[Lines]
     rim: Sequence[Row]
 
     @classmethod
@@ -85,9 +88,11 @@ class FastScan:
         rim = [core.array(name) for name in ("sighted_first", "sighted_last") if core.has_buffer(name)]
         # the opening comes later: two lines of its ring are enough for the larger Gauss
         grey = Ring.of(core, ["grey_ring", "opened_ring"], u8, frame)
-        rings = (Ring.of(core, [name], u8, frame) for name in ("smooth_ring", "magnitude_ring"))
+        smooth, magnitude = (Ring.of(core, [name], u8, frame) for name in ("smooth_ring", "magnitude_ring"))
         slopes = (Ring.of(core, [name], i16, frame) for name in ("gx_ring", "gy_ring"))
-        return cls(core, frame, thresholds, area, candidates, grey, *rings, *slopes, rim)
+        near_grey = windows(grey.words) if thresholds.gauss_px == 3 else windows(grey.elements, reach=2)
+        near = near_grey, windows(smooth.words), windows(magnitude.elements)
+        return cls(core, frame, thresholds, area, candidates, grey, smooth, magnitude, *slopes, *near, rim)
 
     def reduce(self, y: int, line: Row, row: Row) -> Generator[Any, Any, None]:
         """Take the luma of a line of the camera, and reduce its colours to `row`."""
@@ -100,18 +105,16 @@ class FastScan:
 
     def smoothed(self, y: int) -> Generator[Any, Any, None]:
         """Smooth a row."""
-        height, reach = self.frame.height, self.thresholds.gauss_px // 2
-        if reach == 1:
-            rows = window(self.grey.words, y, height)
-            yield self.core.run(gauss3_words, *rows, self.smooth.words[y], self.frame.width - 1)
+        near, smooth = self.near_grey[y], self.smooth
+        if self.thresholds.gauss_px == 3:
+            yield self.core.run(gauss3_words, *near, smooth.words[y], self.frame.width - 1)
         else:
-            rows = window(self.grey.elements, y, height, reach)
-            yield self.core.run(gauss5_row, *rows, self.smooth.elements[y])
+            yield self.core.run(gauss5_row, *near, smooth.elements[y])
 
     def slopes(self, y: int) -> Generator[Any, Any, None]:
         """Find the gradients of a smoothed row, and the magnitudes of those that may be edges."""
         core, gx, gy, magnitude = self.core, self.gx.words[y], self.gy.words[y], self.magnitude.words[y]
-        yield core.run(sobel_words, *window(self.smooth.words, y, self.frame.height), gx, gy, magnitude)
+        yield core.run(sobel_words, *self.near_smooth[y], gx, gy, magnitude)
         limits = self.thresholds.edge_threshold, self.frame.width - 1
         yield core.run(magnitude_words, gx, gy, core.array("roots"), *limits, magnitude)
 
@@ -123,7 +126,7 @@ class FastScan:
         yield core.run(
             peak_words,
             self.magnitude.words[y],
-            *window(self.magnitude.elements, y, self.frame.height),
+            *self.near_magnitude[y],
             self.gx.elements[y],
             self.gy.elements[y],
             core.array("atan"),
@@ -134,7 +137,7 @@ class FastScan:
             row,
             core.array("edge_counts"),
             candidates.levels,
-            candidates.band(y),
+            candidates.bands[y],
         )
         candidates.outward.send()
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
@@ -176,43 +177,22 @@ def hysteresis_buffers() -> Sequence[Buffer]:
 
 @dataclass(frozen=True, slots=True)
 class EdgeGroups:
-    """The edge store, the tables of its groups, and two lines of labels."""
+    """The edge store, the tables of its groups, and two lines of labels.
+
+    `labels`: of even lines, and of odd ones, those of the line before and their own.
+    """
 
     core: Core
     store: tuple[Row, Row, Row]
     tables: tuple[Row, Row]
-    lines: tuple[Row, Row]
+    labels: tuple[tuple[Row, Row], tuple[Row, Row]]
 
     @classmethod
     def of(cls, core: Core, width: int) -> EdgeGroups:
         """Return those of a core. The lines lie over a ring that only later stages use."""
         even, odd, *_ = core.overlay("eroded_ring", u16, width)
-        return cls(
-            core, edge_store(core), (core.array("edge_groups"), core.array("edge_strongest")), (even, odd)
-        )
-
-    def labels(self, y: int) -> Generator[Any, Any, tuple[Row, Row]]:
-        """Return the labels of the line before `y` and those of `y`, which are to be written."""
-        above, here = self.lines[(y + 1) % 2], self.lines[y % 2]
-        if y == 0:
-            yield self.core.run(clear_labels, above)
-        return above, here
-
-    def add(self, y: int, given: int) -> Generator[Any, Any, int]:
-        """Group the stored edges of line `y`; returns the number of labels asked for, which was `given` before."""
-        lines = yield from self.labels(y)
-        result: int = yield self.core.run(group_edges_row, *self.store, y, *lines, *self.tables, given)
-        return result
-
-    def keep(
-        self, y: int, given: int, kept: int, strong_threshold: int, edges: Row
-    ) -> Generator[Any, Any, tuple[int, int]]:
-        """Keep the edges of line `y` of strong groups, in the store and in `edges`; returns `given` and `kept` with it."""
-        above, here = yield from self.labels(y)
-        given = yield self.core.run(label_edges_row, *self.store, y, above, here, LABELS - 1, given)
-        decided = here, *self.tables, strong_threshold
-        kept = yield self.core.run(keep_edges_row, *decided, edges, *self.store, y, kept)
-        return given, kept
+        tables = core.array("edge_groups"), core.array("edge_strongest")
+        return cls(core, edge_store(core), tables, ((odd, even), (even, odd)))
 
 
 def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Generator[Any, Any, int]:
@@ -221,13 +201,21 @@ def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Genera
     The edge image is written from the store. Clearing what was removed in a picture written during the scan would take
     the same lines of DMA twice more, there and back, and leave edges in it that the store had no room for.
     """
+    run, at, store = groups.core.run, groups.core.at, groups.store
     edges = groups.core.output_ring("edge_ring", groups.core.rows("edge_image"))
+    (data, index, counts), (table, strongest), last = store, groups.tables, LABELS - 1
     given = kept = 0
     for y in range(height):
-        groups.core.at(y, edge_columns(groups.core, y))
+        at(y, partial(edge_columns, store, y))
+        above, here = groups.labels[y & 1]
         row = yield from edges.row()
-        given, kept = yield from groups.keep(y, given, kept, strong_threshold, row)
+        if y == 0:
+            yield run(clear_labels, above)
+        given = yield run(label_edges_row, data, index, counts, y, above, here, last, given)
+        kept = yield run(
+            keep_edges_row, here, table, strongest, strong_threshold, row, data, index, counts, y, kept
+        )
         edges.send()
-    groups.core.at()
+    at()
     yield from edges.flush()
     return kept

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8
@@ -74,11 +75,15 @@ def scan_by_labels(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
     store = edge_store(core)
     segments, scan, labels = core.array("segments"), core.array("line_scan"), core.rows("line_labels")
     yield core.run(clear_segments, segments, scan, *labels)
-    limits = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
+    run, at, (even, odd) = core.run, core.at, labels
+    data, index, counts = store
+    angle_range, mean_edges, min_length = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
+    above, here = odd, even
     for y in range(frame.height):
-        core.at(y, edge_columns(core, y))
-        near = labels[y + 1 & 1], labels[y & 1]
-        yield core.run(segments_row, *store, y, *near, segments, scan, *limits)
+        at(y, partial(edge_columns, store, y))
+        row = data, index, counts, y, above, here
+        yield run(segments_row, *row, segments, scan, angle_range, mean_edges, min_length)
+        above, here = here, above
 
 
 LineScan = Callable[[Core, Frame, LineThresholds], Generator[Any, Any, None]]

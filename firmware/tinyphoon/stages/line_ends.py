@@ -11,6 +11,7 @@ Its lines differ from those of `line_scan.py` where runs of edges fit two segmen
 from __future__ import annotations
 
 from collections.abc import Generator
+from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, i32, kernel, u16, u32
@@ -102,11 +103,11 @@ def lines_row(
 
 def scan_by_ends(core: Core, frame: Frame, thresholds: LineThresholds) -> Generator[Any, Any, None]:
     """Scan the edge store, row by row; leaves segments in their table, as `scan_by_labels` does."""
-    segments, scan = core.array("segments"), core.array("line_scan")
+    store, segments, scan = edge_store(core), core.array("segments"), core.array("line_scan")
     yield core.run(clear_segments, segments, scan, *core.rows("line_labels"))
     for y in range(frame.height):
-        core.at(y, edge_columns(core, y))
+        core.at(y, partial(edge_columns, store, y))
         yield core.run(close_lines, segments, scan, y, thresholds.min_length)
-        row = *edge_store(core), y, segments, scan
+        row = *store, y, segments, scan
         yield core.run(lines_row, *row, thresholds.angle_range, thresholds.mean_edges)
     core.at()

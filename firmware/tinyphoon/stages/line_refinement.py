@@ -10,8 +10,9 @@ The sums of each line lie over the segments, which the line detection has finish
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, Row, i16, i32, kernel, u8
@@ -164,20 +165,16 @@ def refine_lines(lines: i16[:], count: i32, sums: i32[:], atan: u8[:], width: i3
     return refined
 
 
-def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> Callable[[], Iterator[int]]:
-    """Return what tells the columns in which `look_at_row` looks at row `y`, for `core.at`: nothing on the chip reads them here."""
-
-    def columns() -> Iterator[int]:
-        for line in range(count):
-            first, last, rise = (
-                int(sums.array[line * SEGMENT_WORDS + word]) for word in (FIRST_ROW, LAST_ROW, RISE)
-            )
-            if first <= y <= last:
-                x0, y0 = (int(lines.array[line * LINE_WORDS + word]) for word in (LINE_X0, LINE_Y0))
-                middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
-                yield from range(middle - reach, middle + reach + 1)
-
-    return columns
+def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> Iterator[int]:
+    """Yield the columns in which `look_at_row` looks at row `y`, for `core.at`: nothing on the chip reads them here."""
+    for line in range(count):
+        first, last, rise = (
+            int(sums.array[line * SEGMENT_WORDS + word]) for word in (FIRST_ROW, LAST_ROW, RISE)
+        )
+        if first <= y <= last:
+            x0, y0 = (int(lines.array[line * LINE_WORDS + word]) for word in (LINE_X0, LINE_Y0))
+            middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
+            yield from range(middle - reach, middle + reach + 1)
 
 
 def line_refinement(
@@ -197,11 +194,11 @@ def line_refinement(
     crossed = range(frame.height)[max(first, 0) : last + 1]  # lines may end beyond the picture
     if crossed:
         camera = core.input_ring(frame.rows[crossed.start : crossed.stop], "camera_ring")
+        run, at, reach, min_step = core.run, core.at, thresholds.reach, thresholds.min_step
         for y in crossed:
-            core.at(y, columns_at(lines, sums, count, y, thresholds.reach))
+            at(y, partial(columns_at, lines, sums, count, y, reach))
             line = yield from camera.line()
-            limits = thresholds.reach, thresholds.min_step
-            yield core.run(look_at_row, line, y, lines, count, sums, *limits)
+            yield run(look_at_row, line, y, lines, count, sums, reach, min_step)
     core.at(line_pixels(lines, count))
     refined = yield core.run(refine_lines, lines, count, sums, core.array("atan"), frame.width, frame.height)
     core.at()

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from bfsim.api import Core, Frame, Kernel, Row, kernel, u32
-from tinyphoon.scan_lines import line_ring, window
+from bfsim.api import Core, Frame, Kernel, kernel, u32
+from tinyphoon.scan_lines import line_ring, windows
 
 
 class NoiseOrder(IntEnum):
@@ -90,33 +90,31 @@ def open_closing(
     core: Core, frame: Frame, noise: NoiseRemoval, erode: Kernel = erode_row, dilate: Kernel = dilate_row
 ) -> Generator[Any, Any, None]:
     """Leave the colour image without its noise in `opened_image` in SDRAM. `erode` and `dilate` make a row."""
+    run, at = core.run, core.at
     for image, closes in noise.passes:
-        ring = core.input_ring(core.rows(image), "colour_ring")
-        colours: list[Row] = []
+        colours = core.input_ring(core.rows(image), "colour_ring")
         first, second = (dilate, erode) if closes else (erode, dilate)
         opened = core.output_ring("opened_ring", core.rows("opened_image"))
         height = frame.height
         between = line_ring(core.rows("eroded_ring"), height)
-        for y in range(height + LAG_LINES):
+        near = windows(between)
+        at(0)
+        here = below = yield from colours.line()
+        for y in range(1, height + LAG_LINES):
+            above, here = here, below  # the first and the last line repeat
             if y < height:
-                core.at(y)
-                colours.append((yield from ring.line()))
-            if 1 <= y <= height:
-                core.at(y - 1)
-                yield from first_row(core, first, window(colours, y - 1, height), between[y - 1], closes)
+                at(y)
+                below = yield from colours.line()
+            if y <= height:
+                at(y - 1)
+                yield run(first, above, here, below, between[y - 1])
+                if closes:
+                    yield run(repeat_border, between[y - 1])
             if y >= LAG_LINES:
-                core.at(y - LAG_LINES)
+                at(y - LAG_LINES)
                 row = yield from opened.row()
-                yield core.run(second, *window(between, y - LAG_LINES, height), row)
+                top, middle, bottom = near[y - LAG_LINES]
+                yield run(second, top, middle, bottom, row)
                 opened.send()
-        core.at()
+        at()
         yield from opened.flush()
-
-
-def first_row(
-    core: Core, operation: Kernel, lines: Sequence[Row], row: Row, closes: bool
-) -> Generator[Any, Any, None]:
-    """Make a row of the first operation of a pass."""
-    yield core.run(operation, *lines, row)
-    if closes:
-        yield core.run(repeat_border, row)

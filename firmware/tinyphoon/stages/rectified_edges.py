@@ -10,6 +10,7 @@ Where the lens is stretched back, a chain of edges gets gaps: a row or a column 
 from __future__ import annotations
 
 from collections.abc import Generator
+from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u16, u32
@@ -144,7 +145,7 @@ def rectified_edges(core: Core, frame: Frame) -> Generator[Any, Any, int]:
     counts, *_ = core.overlay("segments", u16, frame.height)  # the lines have been fitted
     yield core.run(clear_levels, counts)
     for y in range(frame.height):
-        core.at(y, edge_columns(core, y))
+        core.at(y, partial(edge_columns, store, y))
         yield core.run(move_edges_row, *store, y, places, moved, counts, frame.width)
     most: int = yield core.run(longest_row, counts)
     written = core.part(core.rows("edge_candidates"), 0, most)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, OutputRing, Row, i32, kernel, u8, u16
@@ -126,7 +127,7 @@ def remove_weak(groups: EdgeGroups, height: int, strong_threshold: int) -> Gener
     picture = core.output_ring("edge_ring", core.rows("edge_image"))
     kept = 0
     for y in range(height):
-        core.at(y, edge_columns(core, y))
+        core.at(y, partial(edge_columns, groups.store, y))
         line = yield from labels.line()
         row = yield from picture.row()
         decided = line, *groups.tables, strong_threshold

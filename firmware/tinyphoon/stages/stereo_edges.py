@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, u16, u32
@@ -97,32 +98,38 @@ class _Rows:
         below_rows = core.overlay(_SCORES, u32, width)[:REACH]
         return cls(core, edge_store(core), right, *lists, *windows, tuple(below_rows), level_range)
 
-    def take_left(self, y: int) -> Generator[Any, Any, tuple[Row, int]]:
-        """Return the edges of the left picture in row `y`, and how many."""
-        count: int = yield self.core.run(take_left_row, *self.left, y, self.left_row, self.level_range)
-        return self.left_row, count
+    def take_left(self, y: int) -> Generator[Any, Any, int]:
+        """Put the edges of the left picture in row `y` into `left_row`, and return how many they are."""
+        data, index, counts = self.left
+        count: int = yield self.core.run(
+            take_left_row, data, index, counts, y, self.left_row, self.level_range
+        )
+        return count
+
+    def take_both(self, y: int) -> Generator[Any, Any, tuple[int, int]]:
+        """Put the edges of both pictures in row `y` into `left_row` and `right_row`, and return how many they are."""
+        run, (data, index, counts), (edges, rows) = self.core.run, self.left, self.right
+        left = yield run(take_left_row, data, index, counts, y, self.left_row, self.level_range)
+        right = yield run(take_right_row, edges, rows, y, self.right_row, self.level_range)
+        return left, right
 
     def take_below(self, y: int, height: int) -> Generator[Any, Any, list[Row | int]]:
         """Return the edges of the left picture in the REACH rows below row `y` of `height`, each with how many."""
+        run, (data, index, counts), level_range = self.core.run, self.left, self.level_range
         found: list[Row | int] = []
         for beside, room in enumerate(self.below_rows, y + 1):
             count = 0
             if beside < height:
-                count = yield self.core.run(take_left_row, *self.left, beside, room, self.level_range)
+                count = yield run(take_left_row, data, index, counts, beside, room, level_range)
             found += room, count
         return found
 
-    def take_right(self, y: int) -> Generator[Any, Any, tuple[Row, int]]:
-        """Return the edges of the right picture in row `y`, and how many."""
-        count: int = yield self.core.run(take_right_row, *self.right, y, self.right_row, self.level_range)
-        return self.right_row, count
-
     def spread(self, y: int) -> Generator[Any, Any, None]:
         """Put row `y` into the windows; it may lie outside the picture."""
-        left, right = self.windows
-        rest = y % WINDOW_ROWS, self.level_range
-        yield self.core.run(spread_left_row, *self.left, y, left, *rest)
-        yield self.core.run(spread_right_row, *self.right, y, right, *rest)
+        run, (left, right), (data, index, counts) = self.core.run, self.windows, self.left
+        (edges, rows), slot, level_range = self.right, y % WINDOW_ROWS, self.level_range
+        yield run(spread_left_row, data, index, counts, y, left, slot, level_range)
+        yield run(spread_right_row, edges, rows, y, right, slot, level_range)
 
 
 _WINDOWS = "colour_ring", "eroded_ring"
@@ -151,20 +158,19 @@ class _Search:
     """The search for the disparities of left edges, row by row from the bottom of the picture.
 
     They are found in two steps: `match` asks the edges, and `settle`, `delay` rows later, the disparities around; the
-    thesis's way has the first one only, and one row of disparities: those around stay empty. `least` and `most` are the
-    disparities that are wanted, in pixels; `around`: the rows of disparities around each of WINDOW_ROWS and, in their middle, its own;
-    `is_mutual`: whether it is our way.
+    thesis's way has the first one only, and one row of disparities: those around stay empty. `most`: the largest
+    disparity that is wanted, in pixels; `around`: the rows of disparities around each of WINDOW_ROWS and, in their middle, its own;
+    `is_mutual`: whether it is our way; `room` and `limits`: the last arguments of what looks for partners.
     """
 
     core: Core
     rows: _Rows
-    thresholds: StereoEdgeThresholds
     height: int
-    least: int
     most: int
+    follow_range: int
     partners: Row
-    scores: tuple[Row, ...]
-    path: tuple[Row, Row, Row]
+    room: tuple[Row, ...]
+    limits: tuple[int, ...]
     around: tuple[tuple[Row, ...], ...]
     words: tuple[Row, ...]
     is_mutual: bool
@@ -177,10 +183,12 @@ class _Search:
         ends, *_ = core.overlay("grey_ring", u16, frame.width)
         around = _windows(_disparity_rows(core, i16, frame.width))
         is_mutual = thresholds.correspondence is Correspondence.MUTUAL
+        limit = thresholds.direction_range
         return cls(
-            core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), thresholds=thresholds,
-            height=frame.height, least=least, most=most, partners=partners, scores=tuple(scores),
-            path=(values, ends, core.array("edge_groups")),
+            core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), height=frame.height, most=most,
+            follow_range=thresholds.follow_range, partners=partners,
+            room=(*scores, values, ends, core.array("edge_groups")),
+            limits=(limit, most, thresholds.lack, thresholds.margin) if is_mutual else (limit, least, most),
             around=around if is_mutual else WINDOW_ROWS * around[:1],
             words=_disparity_rows(core, u32, frame.width // 2),
             is_mutual=is_mutual,
@@ -201,43 +209,36 @@ class _Search:
 
     def match(self, y: int) -> Generator[Any, Any, None]:
         """Look for partners of the edges of row `y`; it may lie above the picture."""
-        slot = y % WINDOW_ROWS
+        run, rows, slot, partners = self.core.run, self.rows, y % WINDOW_ROWS, self.partners
         if self.is_mutual:
-            yield self.core.run(clear_disparities, self.words[slot])
-            yield from self.rows.spread(y - REACH)
+            yield run(clear_disparities, self.words[slot])
+            yield from rows.spread(y - REACH)
         else:
-            yield self.core.run(clear_disparities, self.words[0])
+            yield run(clear_disparities, self.words[0])
         if y < 0:
             return
-        left = yield from self.rows.take_left(y)
-        right = yield from self.rows.take_right(y)
-        limit = self.thresholds.direction_range
+        left, right = rows.left_row, rows.right_row
+        count, right_count = yield from rows.take_both(y)
+        both = left, count, right, right_count
         if self.is_mutual:
-            limits = limit, self.most, self.thresholds.lack, self.thresholds.margin
-            room = self.partners, *self.scores, *self.path
-            yield self.core.run(match_edges, *left, *right, *self.rows.windows, slot, *room, *limits)
+            yield run(match_edges, *both, *rows.windows, slot, partners, *self.room, *self.limits)
         else:
-            yield self.core.run(match_nearest, *left, *right, self.partners, limit, self.least, self.most)
-        yield self.core.run(place_disparities, *left, right[0], self.partners, self.around[slot][REACH])
+            yield run(match_nearest, *both, partners, *self.limits)
+        yield run(place_disparities, left, count, right, partners, self.around[slot][REACH])
 
     def settle(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row]]:
         """Return the edges of the left picture in row `y`, how many, and their disparities."""
-        left = yield from self.rows.take_left(y)
-        around = self.around[y % WINDOW_ROWS]
+        run, rows, slot = self.core.run, self.rows, y % WINDOW_ROWS
+        left, count = rows.left_row, (yield from rows.take_left(y))
+        above2, above, here, below, below2 = self.around[slot]
         if self.is_mutual:
-            right = self.rows.right_window_rows[y % WINDOW_ROWS]
-            yield self.core.run(believe_edges, *left, *around, right)
-            yield self.core.run(believe_unsure, *left, *around, right)
-            below = yield from self.rows.take_below(y, self.height)
-            limits = self.thresholds.follow_range, self.most
-            yield self.core.run(follow_edges, *left, *below, *around[REACH:], right, *limits)
-        return *left, around[REACH]
-
-    def means(self, y: int, left: Row, count: int) -> Generator[Any, Any, Row]:
-        """Return the disparities of the `count` edges of a settled row, in 1/16 px: the means with those around."""
-        means = self.partners  # which have been placed
-        yield self.core.run(mean_disparities, left, count, *self.around[y % WINDOW_ROWS], means)
-        return means
+            right = rows.right_window_rows[slot]
+            yield run(believe_edges, left, count, above2, above, here, below, below2, right)
+            yield run(believe_unsure, left, count, above2, above, here, below, below2, right)
+            beside = yield from rows.take_below(y, self.height)
+            settled = here, below, below2, right
+            yield run(follow_edges, left, count, *beside, *settled, self.follow_range, self.most)
+        return left, count, here
 
 
 def stereo_edges(
@@ -254,23 +255,27 @@ def stereo_edges(
     least, most = far // SUBPIXELS + 1, near // SUBPIXELS  # whole pixels between
     search = _Search.of(core, frame, thresholds, least, most)
     yield from search.open()
-    store = core.array("edge_data"), core.array("edge_index")
-    size = frame.width, frame.height
+    run, at, store, delay = core.run, core.at, search.rows.left, search.delay
+    data, index, _ = store
+    means = search.partners  # which have been placed
+    width, height = frame.width, frame.height
     found = 0
-    for matched in range(frame.height - 1, -1 - search.delay, -1):
-        y = matched + search.delay
-        core.at(max(matched, 0), edge_columns(core, max(matched, 0)))
+    for matched in range(height - 1, -1 - delay, -1):
+        at(max(matched, 0), partial(edge_columns, store, max(matched, 0)))
         yield from search.match(matched)
-        if y < frame.height:
-            core.at(y, edge_columns(core, y))
+        y = matched + delay
+        if y < height:
+            at(y, partial(edge_columns, store, y))
             row = yield from search.settle(y)
             yield from vote.add(y, row)
-            edges = row[:2]
-            means = yield from search.means(y, *edges)
-            found = yield core.run(
-                store_edges3d_row, *store, y, *edges, means, far, geometry, *size, edges_3d, found
-            )
-    core.at()
+            left, count, _ = row
+            above2, above, here, below, below2 = search.around[y % WINDOW_ROWS]
+            yield run(mean_disparities, left, count, above2, above, here, below, below2, means)
+            found = yield run(
+                store_edges3d_row,
+                data, index, y, left, count, means, far, geometry, width, height, edges_3d, found,
+            )  # fmt: skip
+    at()
     kept = min(found, EDGE3D_CAPACITY)
     core.publish(edges_3d=kept, edges_3d_lost=found - kept)
     return kept

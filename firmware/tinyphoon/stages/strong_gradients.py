@@ -14,9 +14,9 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Any
 
-from bfsim.api import Core, Row, i16, i32, kernel, u8
+from bfsim.api import Row, i16, i32, kernel, u8
 from tinyphoon.arithmetic import angle8
-from tinyphoon.stages.edge_detection import RowSteps, magnitude_row, sobel_row
+from tinyphoon.stages.edge_detection import RowSteps, Slopes, magnitude_row, sobel_row
 
 
 @kernel
@@ -57,14 +57,20 @@ def suppress_strong_row(
     edges[last] = 0
 
 
-def strong_slopes(
-    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, edge_threshold: int
-) -> Generator[Any, Any, None]:
-    """Make a row of gradients as `slopes_row` does, without the directions of weak ones."""
-    gx, gy = core.array("gx"), core.array("gy")
-    yield core.run(sobel_row, *smooth, gx, gy)
-    yield core.run(magnitude_row, gx, gy, magnitude)
-    yield core.run(direct_strong_row, gx, gy, magnitude, core.array("atan"), direction, edge_threshold)
+class StrongSlopes(Slopes):
+    """What makes a row of gradients without the directions of weak ones."""
+
+    __slots__ = ()
+
+    def row(
+        self, smooth: Sequence[Row], magnitude: Row, direction: Row, edge_threshold: int
+    ) -> Generator[Any, Any, None]:
+        """Make them from a row's smoothed lines."""
+        run, gx, gy = self.core.run, self.gx, self.gy
+        above, here, below = smooth
+        yield run(sobel_row, above, here, below, gx, gy)
+        yield run(magnitude_row, gx, gy, magnitude)
+        yield run(direct_strong_row, gx, gy, magnitude, self.atan, direction, edge_threshold)
 
 
-STRONG_FIRST = RowSteps(slopes=strong_slopes, suppress=suppress_strong_row)
+STRONG_FIRST = RowSteps(slopes=StrongSlopes, suppress=suppress_strong_row)

@@ -8,8 +8,6 @@ core A calls `right_edge_data` is core B's own store, so nothing is copied.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from bfsim.api import Core, Row
 
 # 32 KB: the thesis has its store in L1, which holds half as many beside the line rings; real rooms have two to four
@@ -26,13 +24,9 @@ def edge_store(core: Core) -> tuple[Row, Row, Row]:
     return core.array(EDGE_DATA[core.name]), core.array("edge_index"), core.array("edge_counts")
 
 
-def edge_columns(core: Core, y: int) -> Callable[[], list[int]]:
-    """Return what tells the columns of the stored edges of row `y`, for `core.at`: nothing on the chip reads them here."""
-
-    def columns() -> list[int]:
-        edge_data, edge_index, edge_counts = (each.array for each in edge_store(core))
-        first, count = int(edge_index[y]), int(edge_counts[y])
-        found: list[int] = (edge_data[first : first + count] >> 16).tolist()
-        return found
-
-    return columns
+def edge_columns(store: tuple[Row, Row, Row], y: int) -> list[int]:
+    """Return the columns of the edges of row `y` in an edge store, for `core.at`: nothing on the chip reads them here."""
+    edge_data, edge_index, edge_counts = (each.array for each in store)
+    first, count = int(edge_index[y]), int(edge_counts[y])
+    found: list[int] = (edge_data[first : first + count] >> 16).tolist()
+    return found
