@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from threading import Lock, Thread
 
 import pytest
 
+from bfsim.kernel import VDSP_O2
+from bfsim.machine_code.caller import SHORT_CCLK
 from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.run import simulate
+from tests.machine.kernels import spin
 
 
 @pytest.fixture
@@ -32,3 +37,35 @@ def test_runs_of_several_threads_are_as_those_of_one() -> None:
     alone = [*map(cycles, profiles)]
     with ThreadPoolExecutor(3) as threads:
         assert [*threads.map(cycles, 3 * profiles)] == 3 * alone
+
+
+@pytest.fixture
+def patient_threads() -> Iterator[None]:
+    """Threads that wait for others to let them have Python."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(5)
+    yield
+    sys.setswitchinterval(before)
+
+
+@pytest.mark.usefixtures("patient_threads")
+@pytest.mark.parametrize("turns", [0, 2 * SHORT_CCLK])
+def test_others_run_beside_a_call_that_took_long_the_last_time(turns: int) -> None:
+    """A short one keeps Python: to let others have it takes longer than many a kernel."""
+    code = spin.compile(VDSP_O2)
+    call = spin.prepare(code, [], code.new_totals()).run
+    assert (call(turns).issue_cclk > SHORT_CCLK) == bool(turns)
+    waits, others = Lock(), []
+
+    def other() -> None:
+        with waits:
+            others.append(time.monotonic())
+
+    waits.acquire()
+    thread = Thread(target=other)
+    thread.start()
+    waits.release()
+    call(300 * SHORT_CCLK)
+    ended = time.monotonic()
+    thread.join()
+    assert (others[0] < ended) == bool(turns)

@@ -1,8 +1,8 @@
 """Machine code that does not end, ended by a signal: Ctrl-C, SIGTERM, SIGHUP.
 
-Python hears of a signal when machine code has returned. Here a thread hears of it, too; where the main thread is in the same call a
-moment later, it makes it leave that call by `longjmp`, from a handler of SIGINT that is there for as long as that takes. Then Python's
-own handler has its turn, and what it raises comes out of the call.
+Python hears of a signal when machine code has returned. Here a thread hears of it, too, which is machine code itself, for no other runs
+while a call has Python. Where the main thread is in the same call a moment later, it makes it leave that call by `longjmp`, from a handler
+of SIGINT that is there for as long as that takes. Then Python's own handler has its turn, and what it raises comes out of the call.
 """
 
 from __future__ import annotations
@@ -10,10 +10,8 @@ from __future__ import annotations
 import ctypes
 import os
 import signal
-import socket
-import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cache
 from threading import Thread, current_thread, main_thread
 
@@ -22,11 +20,12 @@ from bfsim.machine_code.left import INTERRUPTED
 from bfsim.machine_code.native_code import native_code
 from bfsim.machine_code.signal_action import SA_NODEFER, SignalAction
 
-DEAF_S = 1.0
+DEAF_US = 1_000_000
 """Calls of kernels take milliseconds: one that a signal has not ended by then does not end at all."""
-SOON_S = 0.01
+SOON_US = 10_000
 """[ours] Until Python is in the call that it was about to make, and until a signal is delivered."""
-ENDING = {getattr(signal, each) for each in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, each)}
+ENDING = sum(1 << getattr(signal, each) for each in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, each))
+"""The signals that end a call, a bit each."""
 
 CALL = "bfsim_call_leavable"
 MODULE = f"""
@@ -76,8 +75,65 @@ leave:
 go_on:
   ret void
 }}
+
+@bfsim_hands_on_to = global i32 -1
+declare i64 @read(i32, ptr, i64)
+declare i64 @write(i32, ptr, i64)
+declare i32 @usleep(i32)
+declare i32 @sigaction(i32, ptr, ptr)
+declare i32 @pthread_kill(i64, i32)
+
+define void @bfsim_watch(i32 %pressed, ptr %leaves, ptr %before) {{
+  %number.at = alloca i8
+  br label %wait
+wait:
+  %got = call i64 @read(i32 %pressed, ptr %number.at, i64 1)
+  %is.one = icmp eq i64 %got, 1
+  br i1 %is.one, label %pressed_now, label %interrupted
+interrupted:
+  %slept.0 = call i32 @usleep(i32 {SOON_US})
+  br label %wait
+pressed_now:
+  %other = load volatile i32, ptr @bfsim_hands_on_to
+  %has.other = icmp ne i32 %other, -1
+  br i1 %has.other, label %hand_on, label %look
+hand_on:
+  %handed = call i64 @write(i32 %other, ptr %number.at, i64 1)
+  br label %look
+look:
+  %number = load i8, ptr %number.at
+  %shift = zext i8 %number to i128
+  %bits = lshr i128 {ENDING}, %shift
+  %ends = trunc i128 %bits to i1
+  br i1 %ends, label %soon, label %wait
+soon:
+  %slept.1 = call i32 @usleep(i32 {SOON_US})
+  %call = load volatile i64, ptr @bfsim_turns
+  %is.running = trunc i64 %call to i1
+  br i1 %is.running, label %hope, label %wait
+hope:
+  %slept.2 = call i32 @usleep(i32 {DEAF_US})
+  %still = load volatile i64, ptr @bfsim_turns
+  %is.deaf = icmp eq i64 %still, %call
+  br i1 %is.deaf, label %leave, label %wait
+leave:
+  %main = load i64, ptr @bfsim_main_thread
+  %set = call i32 @sigaction(i32 {signal.SIGINT:d}, ptr %leaves, ptr %before)
+  %sent = call i32 @pthread_kill(i64 %main, i32 {signal.SIGINT:d})
+  br label %until_left
+until_left:
+  %slept.3 = call i32 @usleep(i32 {SOON_US})
+  %now = load volatile i64, ptr @bfsim_turns
+  %is.in.it = icmp eq i64 %now, %call
+  br i1 %is.in.it, label %until_left, label %has_left
+has_left:
+  %reset = call i32 @sigaction(i32 {signal.SIGINT:d}, ptr %before, ptr null)
+  br label %wait
+}}
 """
-"""A call of the main thread, which has the odd ones of `bfsim_turns` while it runs; in other threads nobody hears of signals."""
+"""A call of the main thread, which has the odd ones of `bfsim_turns` while it runs; in other threads nobody hears of signals. What watches for
+them is told where Python's own part of a handler writes the signal's number.
+"""
 
 
 @cache
@@ -96,7 +152,7 @@ def ended_by_signals() -> Iterator[None]:
     watcher = _watcher(os.getpid())
     before = signal.set_wakeup_fd(watcher.woken_by, warn_on_full_buffer=False)
     if before != watcher.woken_by:
-        watcher.hands_on_to = before
+        watcher.hands_on_to.value = before
     try:
         yield
     finally:
@@ -108,37 +164,16 @@ class _Watcher:
 
     def __init__(self) -> None:
         add_leavable_calls()
-        self._pressed, self._press = socket.socketpair()
-        self._press.settimeout(0)
-        self._turns = ctypes.c_int64.from_address(machine_code.address_of("bfsim_turns"))
-        self._leaves = SignalAction(handler=machine_code.address_of("bfsim_leave"), flags=SA_NODEFER)
-        self.woken_by = self._press.fileno()
-        self.hands_on_to = -1
+        pressed, self.woken_by = os.pipe()
+        os.set_blocking(self.woken_by, False)
+        self.hands_on_to = ctypes.c_int32.from_address(machine_code.address_of("bfsim_hands_on_to"))
         """Whom Python told before, such as asyncio; -1 is nobody."""
-        Thread(target=self._watch, daemon=True).start()
-
-    def _watch(self) -> None:
-        while number := self._pressed.recv(1):  # Python's own part of a handler writes the signal's number
-            if self.hands_on_to != -1:
-                with suppress(OSError):
-                    os.write(self.hands_on_to, number)
-            if number[0] in ENDING:
-                time.sleep(SOON_S)
-                call = self._turns.value
-                if call % 2:
-                    time.sleep(DEAF_S)
-                    self._leave(call)
-
-    def _leave(self, call: int) -> None:
-        """Make the main thread leave a call if it is still in that."""
-        if self._turns.value != call:
-            return
-        before, system = SignalAction(), ctypes.CDLL(None)
-        system.sigaction(signal.SIGINT, ctypes.byref(self._leaves), ctypes.byref(before))
-        signal.pthread_kill(main_thread().ident or 0, signal.SIGINT)
-        while self._turns.value == call:
-            time.sleep(SOON_S)
-        system.sigaction(signal.SIGINT, ctypes.byref(before), None)
+        self._leaves = SignalAction(handler=machine_code.address_of("bfsim_leave"), flags=SA_NODEFER)
+        self._before = SignalAction()
+        kind = ctypes.CFUNCTYPE(None, ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)
+        watch = kind(machine_code.address_of("bfsim_watch"))
+        actions = ctypes.addressof(self._leaves), ctypes.addressof(self._before)
+        Thread(target=watch, args=(pressed, *actions), daemon=True).start()
 
 
 @cache
