@@ -23,7 +23,7 @@ from bfsim.machine_code.native_code import native_code
     REFUSE,  # what is called on failure
 ) = range(14)  # fmt: skip
 HEAD = 14
-ENTRY, BOUND = "bfsim_call", "bfsim_call_bound"
+ENTRY, BOUND, GET_VALUE, SET_VALUE = "bfsim_call", "bfsim_call_bound", "bfsim_get_value", "bfsim_set_value"
 SHORT_CCLK = 1_000_000
 """[ours] A call that took no more cycles the last time is over in some 50 µs here: other threads wait for so long."""
 
@@ -63,8 +63,8 @@ FIELDS = "".join(
     field(name, number, kind)
     for name, number, kind in (
         ("called", CALLED, "ptr"), ("data", DATA, "ptr"), ("handed", HANDED, "ptr"), ("given", GIVEN, "i64"), ("taken", TAKEN, "i64"),
-        ("logged", LOGGED, "ptr"), ("before", BEFORE, "ptr"), ("room", ROOM, "ptr"), ("left", LEFT, "ptr"),
-        ("cost", COST, "ptr"), ("name", NAME, "ptr"), ("result", RESULT, "i64"), ("shift", SHIFT, "i64"), ("refuse", REFUSE, "ptr"),
+        ("logged", LOGGED, "ptr"), ("before", BEFORE, "ptr"), ("room", ROOM, "ptr"), ("left", LEFT, "ptr"), ("cost", COST, "ptr"),
+        ("refuse", REFUSE, "ptr"),
     )
 )  # fmt: skip
 TAKE = f"""\
@@ -119,7 +119,7 @@ COUNT_ACCESSES = f"""\
   %accesses.at = getelementptr i64, ptr %cost, i64 {ACCESSES}
   store i64 0, ptr %accesses.at
   %is.logged = icmp ne ptr %logged, null
-  br i1 %is.logged, label %count_logged, label %take_value
+  br i1 %is.logged, label %count_logged, label %leave
 count_logged:
   %all = load i64, ptr %logged
   %earlier = load i64, ptr %before
@@ -128,43 +128,39 @@ count_logged:
   store i64 %accesses, ptr %accesses.at
   %most = load i64, ptr %room
   %are.too.many = icmp sgt i64 %all, %most
-  br i1 %are.too.many, label %fail, label %take_value
+  br i1 %are.too.many, label %fail, label %leave
 """
-LEAVE = f"""\
-take_value:
+MAKE_VALUE = f"""\
+{field("cost", COST, "ptr")}{field("result", RESULT, "i64")}{field("shift", SHIFT, "i64")}\
   %whole.at = getelementptr i64, ptr %cost, i64 {VALUE}
   %whole = load i64, ptr %whole.at
   %upper = shl i64 %whole, %shift
-  switch i64 %result, label %leave [
+  switch i64 %result, label %nothing [
     i64 {Result.SIGNED:d}, label %signed i64 {Result.UNSIGNED:d}, label %unsigned i64 {Result.FLOAT:d}, label %floating
   ]
 signed:
   %signed.value = ashr i64 %upper, %shift
   %signed.object = call ptr @PyLong_FromLongLong(i64 %signed.value)
-  br label %set
+  ret ptr %signed.object
 unsigned:
   %unsigned.value = lshr i64 %upper, %shift
   %unsigned.object = call ptr @PyLong_FromLongLong(i64 %unsigned.value)
-  br label %set
+  ret ptr %unsigned.object
 floating:
   %low = trunc i64 %whole to i32
   %single.value = bitcast i32 %low to float
   %double.value = fpext float %single.value to double
   %floating.object = call ptr @PyFloat_FromDouble(double %double.value)
-  br label %set
-set:
-  %value.object = phi ptr [ %signed.object, %signed ], [ %unsigned.object, %unsigned ], [ %floating.object, %floating ]
-  %was.set = call i32 @PyObject_SetAttr(ptr %left, ptr %name, ptr %value.object)
-  call void @Py_DecRef(ptr %value.object)
-  br label %leave
-leave:
-  call void @Py_IncRef(ptr %left)
-  ret ptr %left
+  ret ptr %floating.object
+nothing:
+  call void @Py_IncRef(ptr @_Py_NoneStruct)
+  ret ptr @_Py_NoneStruct
 """
 INTERRUPTED_IN = "in a kernel that does not end"
 MODULE = f"""
 @bfsim_interruption = global ptr null
 @bfsim_interrupted = internal constant [{len(INTERRUPTED_IN) + 1} x i8] c"{INTERRUPTED_IN}\\00"
+@_Py_NoneStruct = external global i8
 declare ptr @PyBytes_AsString(ptr)
 declare i64 @PyLong_AsLongLong(ptr)
 declare ptr @PyLong_FromLongLong(i64)
@@ -188,7 +184,25 @@ declare float @llvm.fabs.f32(float)
 define ptr @{BOUND}(ptr %self, ptr %arguments, i64 %count) {{
   %block = call ptr @PyBytes_AsString(ptr %self)
   %left = call ptr @{ENTRY}(ptr %block, ptr %arguments, i64 %count)
+  %has.failed = icmp eq ptr %left, null
+  br i1 %has.failed, label %done, label %set
+set:
+  call void @{SET_VALUE}(ptr %block)
+  br label %done
+done:
   ret ptr %left
+}}
+
+define void @{SET_VALUE}(ptr %block) {{
+{field("left", LEFT, "ptr")}{field("name", NAME, "ptr")}\
+  %value = call ptr @{GET_VALUE}(ptr %block)
+  %was.set = call i32 @PyObject_SetAttr(ptr %left, ptr %name, ptr %value)
+  call void @Py_DecRef(ptr %value)
+  ret void
+}}
+
+define ptr @{GET_VALUE}(ptr %block) {{
+{MAKE_VALUE}\
 }}
 
 define ptr @{ENTRY}(ptr %block, ptr %arguments, i64 %count) {{
@@ -241,10 +255,13 @@ fail:
   ret ptr %raised
 done:
 {COUNT_ACCESSES}\
-{LEAVE}\
+leave:
+  call void @Py_IncRef(ptr %left)
+  ret ptr %left
 }}
 """
-"""It has CALLED leave the numbers in COST and returns LEFT, or what REFUSE returns or raises.
+"""ENTRY has CALLED leave the numbers in COST and returns LEFT, or what REFUSE returns or raises. Of the call that was made last GET_VALUE
+makes what it returned, and SET_VALUE puts that where Python looks for it.
 
 Meanwhile other threads have Python, unless the call was short the last time. Where a signal ends a kernel that never ends (`endless`), it
 raises what Python's handler of the signal raises, and says where if that is KeyboardInterrupt.
@@ -253,7 +270,7 @@ raises what Python's handler of the signal raises, and says where if that is Key
 
 @cache
 def caller() -> int:
-    """Return the address of the function that Python calls. It calls ENTRY, with the words themselves in place of `self`."""
+    """Return the address of the function that Python calls. It calls ENTRY, with the words themselves in place of `self`, and SET_VALUE."""
     add_leavable_calls()
     machine_code.add(native_code(MODULE))
     interruption = ctypes.c_int64.from_address(machine_code.address_of("bfsim_interruption"))

@@ -12,8 +12,8 @@ from bfsim.kernel.calls import work as numbers
 from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
-from bfsim.machine_code.asking import Noted
 from bfsim.machine_code.built_in import built_in
+from bfsim.machine_code.going_on import Noted
 
 MOST_OPERATIONS, MOST_ACCESSES = w.MAX_OPERATIONS // 2, 1 << 16
 """What a tape has when it is full. Its room is larger, for a core cannot meet the others at every operation."""

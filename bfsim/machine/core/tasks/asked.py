@@ -12,7 +12,8 @@ from bfsim.kernel import Kernel, Work
 from bfsim.machine.bus.tape import Tape, note_access, note_run
 from bfsim.machine.calls.call_cache import CallCache, KnownCall
 from bfsim.machine.calls.ready_calls import ALWAYS, find_call
-from bfsim.machine_code.asking import ASKED, LEFT, NOTE, NUMBER, Found, Noted, asking, going_on
+from bfsim.machine_code.asking import ASKED, LEFT, NOTE, NUMBER, Found, asking
+from bfsim.machine_code.going_on import Noted, going_on
 
 
 class Asked:

@@ -19,7 +19,7 @@ from bfsim.machine.core.tasks.asked import Asked
 from bfsim.machine.core.waits import Wait, name_of
 from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
-from bfsim.machine_code.asking import OVER
+from bfsim.machine_code.going_on import OVER
 from bfsim.trace import REST, StallReason
 
 NO_KEYWORDS = "machine code() takes no keyword arguments"
@@ -37,7 +37,7 @@ class Run(Protocol):
 class Tasks:
     """What the firmware of core `name` does, one thing after the other.
 
-    Calls that nobody can meet are made and noted by machine code (`machine_code.asking`); the others, and each for the first time, here.
+    Calls that nobody can meet are made and noted by machine code (`machine_code.asking`, `going_on`); the others, and each for the first time, here.
     """
 
     def __init__(
