@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -54,7 +54,17 @@ class NativeEntry:
 
     def address(self) -> int:
         """Return the host address of its machine code, which is compiled or taken from the cache; once per process."""
-        return _loaded(self)
+        return self._address
+
+    @cached_property
+    def _address(self) -> int:
+        code = store.load(_key(self.symbol))
+        if code is None:
+            kept = store.shipped(__package__, self.digest())
+            code = machine_code.host_code(self.ir() if kept is None else kept.decode())
+            store.save(_key(self.symbol), code)
+        machine_code.add(code)
+        return machine_code.address_of(self.symbol)
 
     def digest(self) -> str:
         """Return the name under which its IR is kept: a digest of what that is made of."""
@@ -74,17 +84,6 @@ class NativeEntry:
 def native_entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]], NativeEntry]:
     """Make a function an entry; types are those of numba, pointers with a star: "int64*"."""
     return lambda function: NativeEntry(function, result, arguments)
-
-
-@cache
-def _loaded(each: NativeEntry) -> int:
-    code = store.load(_key(each.symbol))
-    if code is None:
-        kept = store.shipped(__package__, each.digest())
-        code = machine_code.host_code(each.ir() if kept is None else kept.decode())
-        store.save(_key(each.symbol), code)
-    machine_code.add(code)
-    return machine_code.address_of(each.symbol)
 
 
 def _key(symbol: str) -> str:

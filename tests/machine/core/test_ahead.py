@@ -166,3 +166,21 @@ def test_calls_that_meet_nobody_end_a_stretch_before_its_room_does(monkeypatch: 
     monkeypatch.setattr(tape, "MOST_OPERATIONS", 20)
     assert outcome(deeds) == whole == in_step
     assert 20 < max(lengths) < 30
+
+
+def test_rings_whose_ends_are_the_same_have_lines_of_their_own() -> None:
+    """They are found by their first and last rows, and are two."""
+    seen: list[list[int]] = []
+
+    def work(core: Core, _: Frame) -> Play:
+        rows = core.rows("image")
+        for row, value in zip(rows, range(4), strict=False):
+            row.array[0] = value
+        for second in (1, 2, 1):
+            ring, found = core.input_ring([rows[0], rows[second], rows[3]], "in_ring"), []
+            for _line in range(3):
+                found.append((yield core.run(first, (yield from ring.line()))))
+            seen.append(found)
+
+    load(every_frame(work)).run(noise(3))
+    assert seen == 3 * [[0, 1, 3], [0, 2, 3], [0, 1, 3]]

@@ -44,8 +44,8 @@ class CopiesAhead:
     """`LineCopies` of a core that runs ahead: bytes are moved at once, and it is noted when that was asked for."""
 
     def __init__(self, core: Ahead, lines: Lines, in_step: LineCopies) -> None:
+        self.lines = lines
         self._core = core
-        self._lines = lines
         self._in_step = in_step
         self._words = np.full(HEAD + len(lines) * COPY_WORDS, w.NONE, np.int64)
         cclk = core.programming_cclk(COPY_WRITES, COPY_READS)
@@ -72,7 +72,7 @@ class CopiesAhead:
 
     def plan(self, *numbers: int) -> None:
         """Plan the copies of lines that have no plan yet, and of those behind them; there may be no such line."""
-        lines = self._lines
+        lines = self.lines
         for number in numbers:
             if number < len(lines) and self._words[HEAD + number * COPY_WORDS + PLAN] == w.NONE:
                 lines.rows(number)  # raises here what is wrong with it
@@ -184,13 +184,21 @@ class Ahead:
     # ---- copies
 
     def copies(self, lines: Lines) -> LineCopies:
-        """Return what makes them ahead, the same for the same rows."""
-        key = lines.stream, lines.sources, lines.destinations
-        if key not in self._copies:
+        """Return what makes them ahead, the same for the same rows as the last time."""
+        sources, destinations = lines.sources, lines.destinations
+        kind = (
+            lines.stream,
+            sources[0],
+            sources[-1],
+            destinations[0],
+            destinations[-1],
+        )  # short, to be found by
+        copies = self._copies.get(kind)
+        if copies is None or copies.lines != lines:
             if len(self._copies) == MOST_COPIES:
                 self._copies.clear()
-            self._copies[key] = CopiesAhead(self, lines, self._in_step.copies(lines))
-        return self._copies[key]
+            copies = self._copies[kind] = CopiesAhead(self, lines, self._in_step.copies(lines))
+        return copies
 
     def planned(self, stream: MdmaStream, copies: Iterable[tuple[Row, Row]]) -> list[int]:
         """Return copies as the tape has them in a table: each by the number of its plan, which those of its kind share."""
