@@ -13,9 +13,9 @@ from bfsim.machine.bus.state import State
 @native
 def bytes_of(state: State, kind: int) -> int:
     """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
-    if kind in (log.LOAD, log.STORE, log.TEST_AND_SET):
-        return w.CORE_WORD_BYTES
-    return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
+    if kind == log.FETCH:
+        return w.FETCH_BYTES
+    return state[w.LINE_BYTES] if kind in (log.FILL, log.WRITE_BACK) or kind == log.FETCH_LINE else w.CORE_WORD_BYTES
 
 
 @native

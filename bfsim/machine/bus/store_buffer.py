@@ -111,6 +111,6 @@ def is_among(state: State, job: int, head: int, stores: int, offset: int, nbytes
     for number in range(stores):
         entry = state[job + w.STORE_QUEUE + (head + number) % w.MAX_STORES]
         size = max(nbytes, bytes_of(state, kind_of(entry)))
-        if ((entry ^ offset) & log.OFFSET_MASK) // size == 0:
+        if (entry ^ offset) & log.OFFSET_MASK < size:
             return True
     return False

@@ -39,14 +39,13 @@ NEEDS_NOTHING, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS, IMDMA_FIRST = -10_000
 @native
 def rank_of(state: State, number: int, at: int) -> int:
     """Return the rank of a master's request at tick `at`."""
+    if number >= w.STORES_A:
+        return rank_of_core(state, number)
     master = w.MASTERS_AT + number
     rank = state[master + w.RANK]
     uses = state[master + w.USES]
     if uses == w.NOTHING:
         return rank + NEEDS_NOTHING
-    if number >= w.STORES_A:  # the cores take turns, with their loads and with their stores
-        last = state[w.LAST_CORE] if uses == w.SDRAM else state[w.LAST_CORE_AT_L2]
-        return rank + (HAD_THE_BUS if last == (number - w.STORES_A) % w.CORES else 0)
     if uses == w.L2:
         return rank + (-IMDMA_FIRST if state[w.IMDMA_HAD_L2] else IMDMA_FIRST)
     if state[w.DEB_LEFT] > 0 and state[master + w.WRITES] != state[w.LAST_WRITE]:
@@ -54,6 +53,17 @@ def rank_of(state: State, number: int, at: int) -> int:
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
         rank += HAD_ITS_TURN
     return rank + (URGENT if is_urgent(state, master, at) else 0)
+
+
+@native
+def rank_of_core(state: State, number: int) -> int:
+    """Return the rank of what a core or its store buffer asks for: the cores take turns, with their loads and with their stores."""
+    master = w.MASTERS_AT + number
+    rank, uses = state[master + w.RANK], state[master + w.USES]
+    if uses == w.NOTHING:
+        return rank + NEEDS_NOTHING
+    last = state[w.LAST_CORE] if uses == w.SDRAM else state[w.LAST_CORE_AT_L2]
+    return rank + (HAD_THE_BUS if last == (number - w.STORES_A) % w.CORES else 0)
 
 
 @native
@@ -76,27 +86,49 @@ def count_direction(state: State, before: int) -> None:
 
 
 @native
-def first_request(state: State, masters: int, until: int) -> tuple[int, int]:
-    """Return who, of `masters` and those behind it, can be served first, and when; NONE if nobody before tick `until`."""
-    sdram_free, l2_free = state[w.COMMAND_FREE], state[w.L2_FREE]
-    first, first_at, first_rank = w.NONE, until, w.NEVER
-    for number in range(masters, w.MASTERS):
+def first_request(state: State, until: int) -> tuple[int, int]:
+    """Return whose request can be served first, and when; NONE if nobody's before tick `until`."""
+    first, first_at = first_of_cores(state, until)
+    for number in range(w.STORES_A):
         master = w.MASTERS_AT + number
         at = state[master + w.READY]
-        if at >= until:
-            continue
-        if at < sdram_free and state[master + w.USES] == w.SDRAM:
-            at = sdram_free
-        elif at < l2_free and state[master + w.USES] == w.L2:
-            at = l2_free
-        if at < first_at:
-            first, first_at, first_rank = number, at, w.NEVER
-        elif at == first_at and first != w.NONE:
-            if first_rank == w.NEVER:
-                first_rank = rank_of(state, first, at)
-            rank = rank_of(state, number, at)
-            if rank < first_rank:
-                first, first_rank = number, rank
+        if at <= first_at:
+            at = max(at, free_for(state, state[master + w.USES]))
+            if at < first_at or (
+                at == first_at and first != w.NONE and rank_of(state, number, at) < rank_of(state, first, at)
+            ):
+                first, first_at = number, at
+    return first, first_at
+
+
+@native
+def free_for(state: State, uses: int) -> int:
+    """Return when what a request needs is free."""
+    if uses == w.NOTHING:
+        return 0
+    return state[w.L2_FREE] if uses == w.L2 else state[w.COMMAND_FREE]
+
+
+@native
+def first_of_cores(state: State, until: int) -> tuple[int, int]:
+    """Return the same of the cores and their store buffers."""
+    first, at = sooner(state, w.CORE_A, w.NONE, until)
+    first, at = sooner(state, w.CORE_B, first, at)
+    first, at = sooner(state, w.STORES_A, first, at)
+    return sooner(state, w.STORES_B, first, at)
+
+
+@native
+def sooner(state: State, number: int, first: int, first_at: int) -> tuple[int, int]:
+    """Return who comes first, and when: a core or its store buffer, or the `first` of others, which can be served at a tick."""
+    ready = state[w.MASTERS_AT + number + w.READY]
+    if ready > first_at:
+        return first, first_at
+    at = max(ready, free_for(state, state[w.MASTERS_AT + number + w.USES]))
+    if at < first_at or (
+        at == first_at and first != w.NONE and rank_of_core(state, number) < rank_of_core(state, first)
+    ):
+        return number, at
     return first, first_at
 
 
@@ -157,7 +189,7 @@ def serve_cores(state: State, until: int) -> int:
     At the port of L2 they go ahead of the DMAs that use the SDRAM bus: neither keeps the other waiting. Where buffers or code lie
     outside of L1 most requests are the cores'; this saves looking at everybody each time.
     """
-    number, at = first_request(state, w.STORES_A, until)
+    number, at = first_of_cores(state, until)
     if number == w.NONE:
         return w.NONE
     l2_until, sdram_until = l2_left_until(state, w.NONE, until), until
@@ -171,7 +203,7 @@ def serve_cores(state: State, until: int) -> int:
             woken = serve_core_or_stores(state, number, at, l2_until)
             if woken != w.NONE:
                 return woken
-        number, at = first_request(state, w.STORES_A, l2_until)
+        number, at = first_of_cores(state, l2_until)
     return w.NONE
 
 
@@ -219,7 +251,7 @@ def grant(state: State, memory: Memory, until: int) -> int:
         woken = serve_cores(state, until)
         if woken != w.NONE:
             return woken
-        first, at = first_request(state, w.PPI0, until)
+        first, at = first_request(state, until)
         if first == w.NONE:
             return w.NONE
         if state[w.MASTERS_AT + first + w.USES] == w.SDRAM and hold_up(state, at):
