@@ -15,7 +15,10 @@ def bytes_of(state: State, kind: int) -> int:
     """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
     if kind == log.FETCH:
         return w.FETCH_BYTES
-    return state[w.LINE_BYTES] if kind in (log.FILL, log.WRITE_BACK) or kind == log.FETCH_LINE else w.CORE_WORD_BYTES
+    is_line = (
+        kind in (log.FILL, log.WRITE_BACK) or kind == log.FETCH_LINE
+    )  # three in a tuple are a loop in compiled code
+    return state[w.LINE_BYTES] if is_line else w.CORE_WORD_BYTES
 
 
 @native

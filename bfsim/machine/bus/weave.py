@@ -111,7 +111,7 @@ def free_for(state: State, uses: int) -> int:
 
 @native
 def first_of_cores(state: State, until: int) -> tuple[int, int]:
-    """Return the same of the cores and their store buffers."""
+    """Return which of the cores and their store buffers that is."""
     first, at = sooner(state, w.CORE_A, w.NONE, until)
     first, at = sooner(state, w.CORE_B, first, at)
     first, at = sooner(state, w.STORES_A, first, at)
