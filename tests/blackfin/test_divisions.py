@@ -8,6 +8,7 @@ from random import Random
 import pytest
 
 from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.execution.subroutines import CHECKED
 from bfsim.blackfin.instructions.registers import SLOTS
 from bfsim.blackfin.timing.tables import ADI, GNU, Timing
 from bfsim.blackfin.translation.divisions import LARGEST_DIVISOR, division
@@ -48,7 +49,16 @@ def test_registers_flags_and_counts_are_those_of_the_loop(timing: Timing) -> Non
         assert ended(at_once, dividend, divisor) == ended(by_turns, dividend, divisor), (dividend, divisor)
         if divisor:
             assert at_once.state["R0"] == dividend // divisor
-    assert any(map(division, at_once.prepared().code.blocks.values()))
+    assert any(division(each, keeps_overflow=True) for each in at_once.prepared().code.blocks.values())
+
+
+def test_where_nobody_asks_for_overflow_quotient_and_counts_are_those_of_the_loop() -> None:
+    at_once, by_turns = processor(UDIVSI3, fuel=None), processor(UDIVSI3, fuel=100)
+    at_once.contract = CHECKED
+    for dividend, divisor in PAIRS:
+        counts = ended(at_once, dividend, divisor)[1]
+        assert counts == ended(by_turns, dividend, divisor)[1], (dividend, divisor)
+        assert at_once.state["R0"] == by_turns.state["R0"], (dividend, divisor)
 
 
 def test_a_loop_of_fewer_turns_is_made_turn_by_turn() -> None:

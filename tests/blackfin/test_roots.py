@@ -9,6 +9,7 @@ from random import Random
 import pytest
 
 from bfsim.blackfin.execution.processor import Processor
+from bfsim.blackfin.execution.subroutines import CHECKED
 from bfsim.blackfin.instructions.registers import SLOTS
 from bfsim.blackfin.timing.tables import ADI, GNU, Timing
 from bfsim.blackfin.translation.roots import FIRST_BIT, root
@@ -43,7 +44,7 @@ def ended(core: Processor, square: int) -> tuple[Sequence[int], list[int]]:
 def found(core: Processor) -> bool:
     """Whether a root is found in the code of a core."""
     code = core.prepared().code
-    return any(root(code, each) for each in code.blocks.values())
+    return any(root(code, each, keeps_overflow=True) for each in code.blocks.values())
 
 
 @pytest.mark.parametrize("timing", [GNU, ADI], ids=lambda each: each.name)
@@ -54,6 +55,14 @@ def test_registers_flags_and_counts_are_those_of_the_loop(code: str, timing: Tim
         assert ended(at_once, square) == ended(by_turns, square), square
         assert at_once.state["R0"] == math.isqrt(square)
     assert found(at_once)
+
+
+def test_where_nobody_asks_for_overflow_root_and_counts_are_those_of_the_loop() -> None:
+    at_once, by_turns = processor(ISQRT, fuel=None), processor(ISQRT, fuel=1000)
+    at_once.contract = CHECKED
+    for square in SQUARES:
+        assert ended(at_once, square)[1] == ended(by_turns, square)[1], square
+        assert at_once.state["R0"] == math.isqrt(square)
 
 
 @pytest.mark.parametrize("code", NOT_ROOTS.values(), ids=NOT_ROOTS)

@@ -29,22 +29,24 @@ TURNS = 32
 AHEAD = TURNS - 1
 """How many turns are made at once."""
 LARGEST_DIVISOR = 1 << 30
-"""With a larger one a difference may overflow, which the flag VS remembers."""
+"""With a larger one, or none, a difference may overflow, which the flag VS remembers."""
 
 
-def division(block: Block) -> Division | None:
+def division(block: Block, *, keeps_overflow: bool) -> Division | None:
     """Return the division that a block is all turns of, if it is one."""
     if len(block.instructions) != len(LOOP) or tuple(map(text, block.instructions)) != LOOP:
         return None
-    return Division(HardwareLoop(block.start, block.instructions[-1].address, 0), (block,))
+    loop = HardwareLoop(block.start, block.instructions[-1].address, 0)
+    return Division(loop, (block,), keeps_overflow)
 
 
 @dataclass(frozen=True, slots=True)
 class Division:
-    """The loop of a division (`AtOnce`)."""
+    """The loop of a division (`AtOnce`). `keeps_overflow`: its turns are made one by one where VS might be set."""
 
     loop: HardwareLoop
     blocks: tuple[Block, ...]
+    keeps_overflow: bool
 
     @property
     def registers(self) -> tuple[str, ...]:
@@ -52,15 +54,21 @@ class Division:
         return *DIVIDING, *self.loop.registers
 
     def can_be_made(self, registers: Registers) -> Value:
-        """Return whether registers are as at the loop's beginning, with a divisor that is neither 0 nor too large."""
+        """Return whether registers are as at the loop's beginning, with a divisor that is neither 0 nor too large for VS."""
         is_first = self.loop.has_turns(registers, TURNS) & registers["R3"].equals(0)
-        return is_first & (registers["R1"] - 1).below(LARGEST_DIVISOR)
+        return is_first & (registers["R1"] - 1).below(LARGEST_DIVISOR) if self.keeps_overflow else is_first
 
     def before_last_turn(self, registers: Registers) -> dict[str, Value]:
-        """Return registers as they are before the loop's last turn, made of those at its beginning."""
+        """Return registers as they are before the loop's last turn, made of those at its beginning.
+
+        Nothing is below a divisor of 0: all bits of the quotient are 1 then.
+        """
         divisor = registers["R1"]
         upper = registers["R0"].shift_right(1)  # the lowest bit comes down in the last turn
-        quotient = Value(upper.builder, upper.builder.udiv(upper.ir, divisor.ir))
+        is_none = divisor.equals(0)
+        some = is_none.choose(divisor.constant(1), divisor)
+        divided = Value(upper.builder, upper.builder.udiv(upper.ir, some.ir))
+        quotient = is_none.choose(divided.constant((1 << AHEAD) - 1), divided)
         inverted = ~quotient
         first_in = registers["CC"].zero_extended().shift_left(AHEAD - 1)
         return {

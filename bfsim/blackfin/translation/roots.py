@@ -38,7 +38,7 @@ FIRST_BIT = 1 << 30
 DOUBLE = ir.DoubleType()
 
 
-def root(code: Code, block: Block) -> Root | None:
+def root(code: Code, block: Block, *, keeps_overflow: bool) -> Root | None:
     """Return the root whose loop begins with a block, if it is one."""
     blocks = tuple(_one_behind_the_other(code, block))
     if len(blocks) < BLOCKS or not block.branches:
@@ -53,7 +53,7 @@ def root(code: Code, block: Block) -> Root | None:
     if len(set(names)) < len(names):
         return None
     _, found, bit, rest = names
-    return Root(HardwareLoop(block.start, last, counters[0]), blocks, found, bit, rest)
+    return Root(HardwareLoop(block.start, last, counters[0]), blocks, found, bit, rest, keeps_overflow)
 
 
 def _one_behind_the_other(code: Code, first: Block) -> Iterator[Block]:
@@ -69,13 +69,17 @@ def _one_behind_the_other(code: Code, first: Block) -> Iterator[Block]:
 
 @dataclass(frozen=True, slots=True)
 class Root:
-    """The loop of a root (`AtOnce`), its blocks, and the registers of the root, of the bit and of the rest."""
+    """The loop of a root (`AtOnce`), its blocks, and the registers of the root, of the bit and of the rest.
+
+    `keeps_overflow`: its turns are made one by one where VS might be set.
+    """
 
     loop: HardwareLoop
     blocks: tuple[Block, ...]
     root: str
     bit: str
     rest: str
+    keeps_overflow: bool
 
     @property
     def registers(self) -> tuple[str, ...]:
@@ -83,9 +87,10 @@ class Root:
         return self.root, self.bit, self.rest, *self.loop.registers
 
     def can_be_made(self, registers: Registers) -> Value:
-        """Return whether registers are as at the loop's beginning, with a square of which no difference overflows: VS remembers that."""
+        """Return whether registers are as at the loop's beginning, with a square of which no difference overflows where VS is kept."""
         is_first = self.loop.has_turns(registers, TURNS) & registers[self.root].equals(0)
-        return is_first & registers[self.bit].equals(FIRST_BIT) & (registers[self.rest] >= 0)
+        is_first &= registers[self.bit].equals(FIRST_BIT)
+        return is_first & (registers[self.rest] >= 0) if self.keeps_overflow else is_first
 
     def before_last_turn(self, registers: Registers) -> dict[str, Value]:
         """Return registers as they are before the loop's last turn, made of those at its beginning."""
@@ -119,5 +124,5 @@ class Root:
         square = registers[self.rest]
         builder = square.builder
         function = builder.module.declare_intrinsic("llvm.sqrt", [DOUBLE])
-        found = builder.call(function, [builder.sitofp(square.ir, DOUBLE)])
+        found = builder.call(function, [builder.uitofp(square.ir, DOUBLE)])
         return Value(builder, builder.fptosi(found, square.ir.type)).shift_right(1)

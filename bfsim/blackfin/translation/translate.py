@@ -27,7 +27,7 @@ from bfsim.blackfin.translation.counters import Counted
 from bfsim.blackfin.translation.counting import Counting
 from bfsim.blackfin.translation.host_places import HostPlaces
 from bfsim.blackfin.translation.jumps import Jumps
-from bfsim.blackfin.translation.loops_at_once import loops_at_once
+from bfsim.blackfin.translation.loops_at_once import OVERFLOW, loops_at_once
 from bfsim.blackfin.translation.native_function import NativeFunction
 from bfsim.blackfin.translation.reports import reports_of
 from bfsim.blackfin.translation.tracing import Tracing
@@ -101,7 +101,7 @@ class _Translation:
             self.counting,
             returns=returns(of.code) if goes_back or is_small(of.code) else {},
             is_closed=goes_back,
-            at_once={} if fuel else loops_at_once(of.code),
+            at_once={} if fuel else loops_at_once(of.code, is_asked=OVERFLOW in self.read),
             says_from=is_checked,
         )
         self.values: dict[str, ir.Value] = {}
