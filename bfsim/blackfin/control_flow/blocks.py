@@ -36,6 +36,7 @@ SAVED_RETS = 4
 """[PRM] How far from FP LINK saves RETS."""
 LOOP_ENDS = {"LB0": 0, "LB1": 1}
 """The registers that say where a hardware loop ends, with the numbers of their counters."""
+LOOP_BOUNDS = frozenset({*LOOP_ENDS, "LT0", "LT1"})
 MEMORY = {
     *("load", "store", "load_half", "store_half", "load_indexed", "store_indexed"),
     *("push", "pop", "push_multiple", "pop_multiple", "link", "unlink", "test_and_set"),
@@ -203,6 +204,14 @@ class Code:
 def does(instruction: Instruction) -> str:
     """Return what an instruction does; of a bundle, what its DSP instruction does."""
     return instruction.operations[0].form.does
+
+
+def sets_up_loops(code: Code) -> bool:
+    """Whether LSETUP alone says where the loops of the hardware begin and end: nothing else names their registers."""
+    operations = (
+        each for block in code.blocks.values() for one in block.instructions for each in one.operations
+    )
+    return all(LOOP_BOUNDS.isdisjoint(map(str, each.operands.values())) for each in operations)
 
 
 def is_clocked(instruction: Instruction) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from llvmlite import ir
 
-from bfsim.blackfin.control_flow.blocks import Block, Code
+from bfsim.blackfin.control_flow.blocks import Block, Code, sets_up_loops
 from bfsim.blackfin.control_flow.flow import Edge, Way
 from bfsim.blackfin.instructions.effects import I32, Flow
 from bfsim.blackfin.instructions.event import Event
@@ -45,6 +45,7 @@ class Jumps:
     ) -> None:
         self._function, self._code, self._counting = function, code, counting
         self._returns, self._at_once, self._says_from = returns, at_once, says_from
+        self._sets_up = sets_up_loops(code)
         self._is_closed, self._unknown = is_closed, function.new_block("unknown")
         self.at: Blocks = {start: function.new_block(f"at_{start:08x}") for start in code.blocks}
         self.last_turns: list[Blocks] = []
@@ -137,6 +138,10 @@ class Jumps:
 
     def _repeat(self, builder: ir.IRBuilder, target: ir.Value, source: Block, likely: set[int]) -> None:
         """Go to a computed address, which is most likely the start of one of a few loops that end with the block `source`."""
+        if self._sets_up and len(likely) == 1:
+            (start,) = likely
+            self._go_along(builder, Edge(source.start, start, Way.REPEATS))
+            return
         ways = {each: self._function.new_block("repeats") for each in sorted(likely)}
         self._jump(builder, source, target, ways)
         for each, way in ways.items():
