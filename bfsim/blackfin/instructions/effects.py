@@ -57,6 +57,8 @@ class Effects:
     pending: dict[str, Value] = field(default_factory=dict)
     flow: Flow | None = None
     report: Report | None = None
+    frame: Callable[[], ir.Value | None] | None = None
+    """Returns where the next access goes in place of memory, if it is to a stack frame that is kept elsewhere."""
     mark: Any = None
     """What the host's accesses to memory are marked with, if they are."""
     aligns: bool = False
@@ -193,6 +195,8 @@ class Effects:
         self.builder.debug_metadata = None
 
     def _place(self, address: Value) -> ir.Value:
+        if self.frame and (kept := self.frame()):
+            return kept
         return self.builder.gep(self.memory, [address.zero_extended(64).ir], source_etype=I8)
 
     def _status(self) -> Value:

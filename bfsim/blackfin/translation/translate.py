@@ -15,6 +15,7 @@ from llvmlite import ir
 from bfsim.blackfin.control_flow.blocks import Block, Code, accesses_memory
 from bfsim.blackfin.control_flow.convention import GIVEN, Contract
 from bfsim.blackfin.control_flow.flow import is_closed, returns
+from bfsim.blackfin.control_flow.frames import frame_places
 from bfsim.blackfin.control_flow.implied import implied
 from bfsim.blackfin.instructions.decode import Instruction
 from bfsim.blackfin.instructions.effects import I32, I64, POINTER, Effects
@@ -25,6 +26,7 @@ from bfsim.blackfin.instructions.value import Value
 from bfsim.blackfin.translation.alignment import Alignment
 from bfsim.blackfin.translation.counters import Counted
 from bfsim.blackfin.translation.counting import Counting
+from bfsim.blackfin.translation.frame import Frame
 from bfsim.blackfin.translation.host_places import HostPlaces
 from bfsim.blackfin.translation.jumps import Jumps
 from bfsim.blackfin.translation.loops_at_once import OVERFLOW, loops_at_once
@@ -88,6 +90,7 @@ class _Translation:
         goes_back = contract is not None and contract.is_trusted and is_closed(of.code)
         self.function = NativeFunction(symbol, keeps_state=is_large(of.code))
         self.places = HostPlaces(self.function.module, self.function.function) if is_checked else None
+        self.frame = Frame(self.function, frame_places(of.code, *of.code.entries) if goes_back else {})
         self.alignment = Alignment(self.function) if is_checked else None
         self.reports = None
         if tracing:
@@ -165,6 +168,7 @@ class _Translation:
             lambda: self.counting.clock(builder),
             instruction.address,
             lambda: self._following(builder, instruction),
+            frame=self.frame.places_of(builder, instruction.address),
             report=partial(self._access, builder, instruction, block, cclk),
             mark=self.places.of(instruction.address)
             if self.places and accesses_memory(instruction)
@@ -222,5 +226,6 @@ class _Translation:
     def _enter(self) -> None:
         builder = ir.IRBuilder(self.function.entry)
         self.function.fetch_registers(builder, self.given)
+        self.frame.begin(builder)
         self.counting.begin(builder, self.function.read(builder, "CLOCK"))
         builder.branch(self.function.dispatch)

@@ -1,0 +1,113 @@
+"""Which accesses are to the stack frame of code that is called as one function, and to which of its bytes.
+
+They are known where the stack pointer is as far from where it was at first on every way to an instruction, and where no other address in
+the frame is computed, or stored. What a compiler keeps on the stack may then be kept in registers of the host.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NoReturn
+
+from bfsim.blackfin.control_flow.blocks import CALLS, Code, does
+from bfsim.blackfin.control_flow.convention import KEPT
+from bfsim.blackfin.control_flow.flow import Edge, Way, edges
+from bfsim.blackfin.instructions.decode import Instruction
+from bfsim.blackfin.instructions.origins import Origin, made_by
+
+Places = Mapping[int, tuple[int | None, ...]]
+"""Of each instruction with accesses, by its address: how far each of them is from the stack pointer of the entry; None elsewhere."""
+_State = dict[str, int | None]
+"""How far registers are from there, those that point into the frame; None if they may."""
+SAVING = frozenset({"link", "push", "push_multiple"})
+"""What saves registers for a caller: who has saved an address does nothing with it."""
+
+
+class _UnknownError(Exception):
+    """An address in the frame is not known."""
+
+
+def frame_places(code: Code, entry: int) -> Places:
+    """Return the accesses of the code of a function, and of those that it calls; none if it is not known which are to the frame."""
+    try:
+        return _Frames(code).followed(entry)
+    except _UnknownError:
+        return {}
+
+
+class _Frames:
+    """Follows the pointers to the frame through code."""
+
+    def __init__(self, code: Code) -> None:
+        self._code = code
+        self._ways: dict[int, list[Edge]] = {}
+        for each in edges(code):
+            self._ways.setdefault(each.source, []).append(each)
+        self._begins: dict[int, _State] = {}
+        self._waiting: list[int] = []
+        self._found: dict[int, tuple[int | None, ...]] = {}
+
+    def followed(self, entry: int) -> Places:
+        """Return all accesses."""
+        self._come(entry, {"SP": 0})
+        while self._waiting:
+            start = self._waiting.pop()
+            state = dict(self._begins[start])
+            block = self._code.blocks[start]
+            for each in block.instructions:
+                self._execute(each, state)
+            for way in self._ways.get(start, ()):
+                returns = way.way is Way.RETURNS
+                self._come(way.target, {name: state[name] for name in state if not returns or name in KEPT})
+            if block.instructions and does(block.instructions[-1]) in CALLS:
+                if not block.calls:
+                    _give_up()
+                self._come(block.calls[0], state)
+        return self._found
+
+    def _come(self, start: int, state: _State) -> None:
+        """Come to a block: a register that does not point to the same place on every way to it may do so."""
+        before = self._begins.get(start)
+        if before is None:
+            self._begins[start] = dict(state)
+            self._waiting.append(start)
+        elif before != state:
+            names = before.keys() | state.keys()
+            both = {name: each if (each := before.get(name)) == state.get(name) else None for name in names}
+            if both != before:
+                self._begins[start] = both
+                self._waiting.append(start)
+
+    def _execute(self, instruction: Instruction, state: _State) -> None:
+        made = made_by(instruction)
+        places: list[int | None] = []
+        for each in made.accesses:
+            places.append(_place(each.address, state))
+            if each.stored and not (does(instruction) in SAVING and each.stored.base in KEPT):
+                _refuse(each.stored, state)
+        if places:
+            self._found[instruction.address] = tuple(places)
+        written = {name: _place(origin, state) for name, origin in made.writes.items()}
+        for name, place in written.items():
+            state.pop(name, None)
+            if place is not None:
+                state[name] = place
+
+
+def _place(origin: Origin, state: _State) -> int | None:
+    """Return to which place in the frame a value points, if it does."""
+    place = state.get(origin.base)
+    if place is not None:
+        return place + origin.offset
+    _refuse(origin, state)
+    return None
+
+
+def _refuse(origin: Origin, state: _State) -> None:
+    """Give up if a value may be made of a pointer into the frame."""
+    if not state.keys().isdisjoint((*origin.of, *origin.less)):
+        _give_up()
+
+
+def _give_up() -> NoReturn:
+    raise _UnknownError
