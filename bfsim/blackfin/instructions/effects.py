@@ -19,6 +19,7 @@ from bfsim.blackfin.instructions.value import Value
 
 I8, I32, I64 = ir.IntType(8), ir.IntType(32), ir.IntType(64)
 POINTER = ir.PointerType()
+WORD_BYTES = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +138,9 @@ class Effects:
             self.report(address, nbytes, writes=False)
         kind, place = ir.IntType(8 * nbytes), self._place(address)
         with self._marked():
-            return Value(self.builder, self.builder.load(place, typ=kind, align=1))
+            loaded = self.builder.load(place, typ=kind, align=1)
+        is_part = nbytes < WORD_BYTES and self.mark is None
+        return Value(self.builder, _frozen(self.builder, loaded) if is_part else loaded)
 
     def store(self, address: Value, value: Value) -> None:
         """Store a value of 8, 16 or 32 bits, little-endian."""
@@ -217,6 +220,18 @@ class Effects:
             self.write(register[:2], upper | whole & 0xFFFFFFFF)
         else:
             self.write(register[:2], whole & ~0xFFFFFFFF | value.zero_extended(64))
+
+
+def _frozen(builder: ir.IRBuilder, loaded: ir.Value) -> ir.Value:
+    """Return what was loaded, so that LLVM does not load it where ways meet, from an address that is chosen by the way.
+
+    From neighbouring addresses several turns of a loop are loaded at once, of bytes and half-words, whatever way each of them goes; from
+    chosen ones they are not.
+    """
+    frozen = ir.Instruction(builder.block, loaded.type, "freeze", [loaded])
+    builder.block.instructions.append(frozen)
+    builder.position_at_end(builder.block)
+    return frozen
 
 
 def _counts(syscfg: Value) -> Value:
