@@ -54,7 +54,7 @@ def _expected(kernel: Kernel, arguments: tuple) -> Counter:
     arrays = [np.array(arguments[each]) for each in kernel.array_positions]
     kernel.prepare(code, arrays, totals).run(*arguments)
     found: Counter = Counter()
-    for events, counter in zip(totals.tolist(), code.counters, strict=True):
+    for events, counter in zip(totals.tolist(), code.counters, strict=False):
         for each in counter.accesses:
             found[each.array, each.writes] += each.times(events)
     return +found

@@ -17,6 +17,7 @@ from bfsim.blackfin.execution.guard import runner
 from bfsim.blackfin.instructions.event import Event
 from bfsim.blackfin.instructions.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing.tables import GNU, Timing
+from bfsim.blackfin.translation.room import new_counts
 from bfsim.blackfin.translation.tracing import Tracing
 from bfsim.errors import BfsimError
 from bfsim.files import store
@@ -167,7 +168,7 @@ class Processor:
         found = self.counted()
         octets = native_code(*self._module(found, NAME))
         native = machine_code.loaded(octets)
-        counts = np.zeros(len(found.counters), np.int64)
+        counts = new_counts(len(found.counters))
         return Translated(native.get_function_address(NAME), octets, native, counts, lambda: found)
 
     def _kept(self, name: str) -> Translated:
@@ -181,7 +182,7 @@ class Processor:
         octets = kept[COUNT_BYTES:]
         if not machine_code.address_of(symbol):
             machine_code.add(octets)
-        counts = np.zeros(int.from_bytes(kept[:COUNT_BYTES], "little"), np.int64)
+        counts = new_counts(int.from_bytes(kept[:COUNT_BYTES], "little"))
         return Translated(machine_code.address_of(symbol), octets, None, counts, self.counted)
 
     def _module(self, found: Counted, symbol: str) -> tuple[str, Effort]:

@@ -1,6 +1,7 @@
 """What native code counts while it runs, and the cycles that this makes.
 
-The counts lie in memory (`counts`); some follow from others, and are worked out when the function is left.
+The counts lie in memory (`counts`); some follow from others, and are worked out when the function is left. Behind them are the cycles and
+the waits that they made then (SUMS words): what has passed since is that of the next call, whose counts need not be looked at twice.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ from bfsim.blackfin.instructions.effects import I64
 from bfsim.blackfin.instructions.value import Value
 from bfsim.blackfin.timing.stalls import Waits
 from bfsim.blackfin.translation.counters import Counted
-from bfsim.blackfin.translation.counts import add, make_writable, sum_of, without, work_out
+from bfsim.blackfin.translation.counts import Counts, sum_of, without
 from bfsim.blackfin.translation.native_function import NativeFunction
 from bfsim.blackfin.translation.reports import Reports
+from bfsim.blackfin.translation.room import SUMS
 
 
 class Counting:
@@ -27,8 +29,9 @@ class Counting:
     def __init__(
         self, function: NativeFunction, counted: Counted, implied: Iterable[Implied], reports: Reports | None
     ) -> None:
-        self._counts, self._counters, self._reports = function.counts, counted.counters, reports
-        make_writable(self._counts, len(self._counters))
+        self._address, self._counters, self._reports = function.counts, counted.counters, reports
+        self._counts = Counts(function.entry, self._address)
+        self._counts.make_writable(len(self._counters) + SUMS)
         self._numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(self._counters)
         }
@@ -37,8 +40,7 @@ class Counting:
             function.module, "clock", [each.cclk + each.stall_cclk for each in self._counters]
         )
         self._waited = self._sum(function.module, "waited", [each.stall_cclk for each in self._counters])
-        entry = ir.IRBuilder(function.entry)
-        self._cclk_before, self._waited_before = entry.alloca(I64), entry.alloca(I64)
+        self._cclk_before = ir.IRBuilder(function.entry).alloca(I64)
 
     def _sum(self, module: ir.Module, name: str, factors: Iterable[int]) -> ir.Function:
         """Return the function that adds up all counts, each times its factor."""
@@ -82,22 +84,24 @@ class Counting:
 
     def clock(self, builder: ir.IRBuilder) -> Value:
         """Add up the cycles of all that was executed: those before this call, and those of the counts; a function adds up these."""
-        counted = builder.call(self._clock, [self._counts])
+        counted = builder.call(self._clock, [self._address])
         return Value(builder, builder.add(builder.load(self._cclk_before), counted))
 
     def begin(self, builder: ir.IRBuilder, clock: ir.Value) -> None:
-        """Take note of the cycles before this call, less those of earlier counts, and of the waits of these."""
-        builder.store(builder.sub(clock, builder.call(self._clock, [self._counts])), self._cclk_before)
-        builder.store(builder.call(self._waited, [self._counts]), self._waited_before)
+        """Take note of the cycles before this call, less those of earlier counts."""
+        before = self._counts.read(builder, len(self._counters))
+        builder.store(builder.sub(clock, before), self._cclk_before)
 
-    def work_out(self, builder: ir.IRBuilder) -> None:
-        """Store the counts that follow from others."""
-        work_out(builder, self._counts, self._implied.values(), self._numbers)
-
-    def waited(self, builder: ir.IRBuilder) -> ir.Value:
-        """Return the cycles of waits in this call."""
-        waited = builder.call(self._waited, [self._counts])
-        return builder.sub(waited, builder.load(self._waited_before))
+    def end(self, builder: ir.IRBuilder) -> tuple[ir.Value, ir.Value]:
+        """Store the counts that follow from others, and the sums; return the cycles of all that was executed, and the waits in this call."""
+        self._counts.work_out(builder, self._implied.values(), self._numbers)
+        cclk = builder.call(self._clock, [self._address])
+        waited = builder.call(self._waited, [self._address])
+        number = len(self._counters)
+        waited_before = self._counts.read(builder, number + 1)
+        self._counts.write(builder, number, cclk)
+        self._counts.write(builder, number + 1, waited)
+        return builder.add(builder.load(self._cclk_before), cclk), builder.sub(waited, waited_before)
 
     def _add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
-        add(builder, self._counts, number, amount)
+        self._counts.add(builder, number, amount)

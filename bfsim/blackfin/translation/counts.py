@@ -15,39 +15,58 @@ Numbers = Mapping[tuple[int, bool, Edge | None], int]
 """Of counters, by the address of the block, whether its branch is taken, and the way along which it is entered."""
 
 
-def make_writable(counts: ir.Argument, number: int) -> None:
-    """Tell LLVM that all counts may be stored to at any time, so that it can keep those of a loop in registers meanwhile.
+class Counts:
+    """The counts at an address. Where each of them is, is said once, in the block `entry`: LLVM looks at what is used often less closely."""
 
-    Then a short block in the loop need not be branched around for its count's sake.
-    """
-    counts.attributes.align = COUNT_BYTES
-    counts.attributes.dereferenceable = COUNT_BYTES * number
-    set.add(counts.attributes, "writable")  # llvmlite's own `add` does not know that one
+    def __init__(self, entry: ir.Block, address: ir.Value) -> None:
+        self._entry, self._address = entry, address
+        self._places: dict[int, ir.Value] = {}
 
+    def make_writable(self, number: int) -> None:
+        """Tell LLVM that so many words may be stored to at any time, so that it can keep those of a loop in registers meanwhile.
 
-def add(builder: ir.IRBuilder, counts: ir.Value, number: int, amount: ir.Value) -> None:
-    """Add to a count."""
-    place = _place(builder, counts, number)
-    builder.store(builder.add(_at(builder, place), amount), place, align=COUNT_BYTES)
+        Then a short block in the loop need not be branched around for its count's sake.
+        """
+        attributes = self._address.attributes
+        attributes.align = COUNT_BYTES
+        attributes.dereferenceable = COUNT_BYTES * number
+        set.add(attributes, "writable")  # llvmlite's own `add` does not know that one
 
+    def read(self, builder: ir.IRBuilder, number: int) -> ir.Value:
+        """Return a count."""
+        return builder.load(self._place(number), typ=I64, align=COUNT_BYTES)
 
-def work_out(builder: ir.IRBuilder, counts: ir.Value, implied: Iterable[Implied], numbers: Numbers) -> None:
-    """Store the counts that follow from others."""
-    known: dict[int, ir.Value] = {}
+    def write(self, builder: ir.IRBuilder, number: int, count: ir.Value) -> None:
+        """Store a count."""
+        builder.store(count, self._place(number), align=COUNT_BYTES)
 
-    def count(number: int) -> ir.Value:
-        if number not in known:
-            known[number] = _at(builder, _place(builder, counts, number))
-        return known[number]
+    def add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
+        """Add to a count."""
+        self.write(builder, number, builder.add(self.read(builder, number), amount))
 
-    for each in implied:
-        own = numbers[each.block, False, None]
-        for number, times in terms(each, numbers):
-            if own not in known:
-                known[own] = count(number)  # the first term is always added
-            else:
-                known[own] = (builder.add if times > 0 else builder.sub)(known[own], count(number))
-        builder.store(known[own], _place(builder, counts, own), align=COUNT_BYTES)
+    def work_out(self, builder: ir.IRBuilder, implied: Iterable[Implied], numbers: Numbers) -> None:
+        """Store the counts that follow from others."""
+        known: dict[int, ir.Value] = {}
+
+        def count(number: int) -> ir.Value:
+            if number not in known:
+                known[number] = self.read(builder, number)
+            return known[number]
+
+        for each in implied:
+            own = numbers[each.block, False, None]
+            for number, times in terms(each, numbers):
+                if own not in known:
+                    known[own] = count(number)  # the first term is always added
+                else:
+                    known[own] = (builder.add if times > 0 else builder.sub)(known[own], count(number))
+            self.write(builder, own, known[own])
+
+    def _place(self, number: int) -> ir.Value:
+        if number not in self._places:
+            place = ir.IRBuilder(self._entry).gep(self._address, [I64(COUNT_BYTES * number)], source_etype=I8)
+            self._places[number] = place
+        return self._places[number]
 
 
 def terms(implied: Implied, numbers: Numbers) -> Iterator[tuple[int, int]]:
@@ -73,19 +92,13 @@ def sum_of(module: ir.Module, name: str, factors: Iterable[int]) -> ir.Function:
     """Add a function that returns the sum of all counts, each times its factor."""
     function = ir.Function(module, ir.FunctionType(I64, (POINTER,)), name)
     function.linkage = "internal"
-    builder = ir.IRBuilder(function.append_basic_block())
+    entry, body = function.append_basic_block(), function.append_basic_block()
+    builder, counts = ir.IRBuilder(body), Counts(entry, function.args[0])
     total = I64(0)
     for number, factor in enumerate(factors):
         if factor:
-            count = _at(builder, _place(builder, function.args[0], number))
-            total = builder.add(total, builder.mul(count, I64(factor)))
+            counted = builder.mul(counts.read(builder, number), I64(factor))
+            total = builder.add(total, counted)
     builder.ret(total)
+    ir.IRBuilder(entry).branch(body)
     return function
-
-
-def _place(builder: ir.IRBuilder, counts: ir.Value, number: int) -> ir.Value:
-    return builder.gep(counts, [I64(COUNT_BYTES * number)], source_etype=I8)
-
-
-def _at(builder: ir.IRBuilder, place: ir.Value) -> ir.Value:
-    return builder.load(place, typ=I64, align=COUNT_BYTES)

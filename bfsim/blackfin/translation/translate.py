@@ -217,9 +217,8 @@ class _Translation:
 
     def _leave(self) -> None:
         builder = ir.IRBuilder(self.function.leave)
-        self.counting.work_out(builder)
-        self.function.write(builder, "CLOCK", self.counting.clock(builder).ir)
-        self.function.write(builder, "WAITED", self.counting.waited(builder))
+        for register, value in zip(("CLOCK", "WAITED"), self.counting.end(builder), strict=True):
+            self.function.write(builder, register, value)
         self.function.give_registers_back(builder, self.read)
         builder.ret(builder.load(self.function.event))
 

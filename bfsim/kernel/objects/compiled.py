@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bfsim.blackfin.execution.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing.tables import Timing
+from bfsim.blackfin.translation.room import new_counts
 from bfsim.blackfin.translation.tracing import Tracing
 from bfsim.files import store
 from bfsim.kernel import keys
@@ -68,7 +69,7 @@ class CompiledObject:
 
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter."""
-        return np.zeros(max(1, self.tables.counters), np.int64)
+        return new_counts(self.tables.counters)
 
 
 def compiled_object(
