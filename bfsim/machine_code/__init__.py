@@ -87,7 +87,8 @@ def _new_machine(effort: Effort) -> llvm.TargetMachine:
     llvm.initialize_native_asmprinter()
     # what has no line in a table of lines does not take that of what is before it
     llvm.set_option("bfsim", "-use-unknown-locations=Enable")
-    # counts are used often, but nobody keeps their address: so those of a loop are in registers meanwhile
+    # counts are used often, but nobody keeps their address: so those of a loop are in registers meanwhile, of code with up to some 70 of
+    # them; more would be moved from one place on the stack to another
     llvm.set_option("bfsim", "-capture-tracking-max-uses-to-explore=300")
     return llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
