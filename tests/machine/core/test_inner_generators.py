@@ -1,22 +1,19 @@
-"""Generators of firmware that wait for others: what these return and raise comes out of them as Python has it, though values are not sent through all."""
+"""Generators of firmware that wait for others: what these return and raise comes out of them as Python has it, though machine code goes on with them."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Generator, Iterator
-from contextlib import contextmanager
-from types import FrameType
+from collections.abc import Generator
 from typing import Any
 
 import pytest
 
 from bfsim.api import Core, Frame
 from bfsim.errors import FirmwareError
-from tests.machine.kernels import first, spin
+from tests.machine.kernels import first
 from tests.machine.rig import Play, every_frame, run
 
 CALLS = 100
-"""Enough that those inside are sent to at once."""
+"""Enough that machine code makes most of them."""
 FRAMES = 4
 """Machine code makes the calls from the second picture on."""
 
@@ -42,7 +39,7 @@ def nested(core: Core, depth: int, calls: int) -> Generator[Any, Any, tuple[int,
 
 @pytest.mark.parametrize("depth", [0, 3, 40])
 def test_what_is_returned_comes_out(depth: int) -> None:
-    """Also out of more generators than are known one in the other."""
+    """Out of many generators, too."""
     given: list[tuple[int, ...]] = []
 
     def work(core: Core, frame: Frame) -> Play:
@@ -94,33 +91,3 @@ def test_the_innermost_line_of_what_nobody_handles_is_told() -> None:
     line = failing.__code__.co_firstlineno + 3
     with pytest.raises(FirmwareError, match=rf"LookupError: not there \({__file__}:{line}\)"):
         run(every_frame(work), frames=FRAMES)
-
-
-@contextmanager
-def resumed(code: Any) -> Iterator[list[int]]:
-    """Count in a list of one how often a generator of this code goes on."""
-    times = [0]
-
-    def count(frame: FrameType, event: str, _: Any) -> None:
-        times[0] += event == "call" and frame.f_code is code
-
-    sys.setprofile(count)
-    yield times
-    sys.setprofile(None)
-
-
-def test_values_do_not_go_through_all() -> None:
-    """A generator that only waits for another one goes on now and then, not at each of its calls."""
-
-    def waiting(core: Core) -> Play:
-        for _ in range(CALLS):
-            yield core.run(spin, 1)
-
-    def work(core: Core, frame: Frame) -> Play:
-        yield from begun(core, frame)
-        yield from waiting(core)
-
-    with resumed(work.__code__) as times:
-        run(every_frame(work), frames=FRAMES)
-    of_the_first = CALLS + 1  # which Python makes
-    assert times[0] < of_the_first + (FRAMES - 1) * CALLS / 2
