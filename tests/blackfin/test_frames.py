@@ -20,8 +20,13 @@ UNKNOWN = {
     "an address is stored": "c66f 4e32 4193 71a0 466c 1000",
     "an address is computed": "c66f 4e32 415a 089b 70a0 466c 1000",
     "the stack is as deep as a number says": "000c 0218 4001 3193 1000",
+    "an address is returned": "6701 e66f 4630 00e3 0700 1032 1091 266c 2701 1000 0832 0993 1000",
+    "an address stays in a register over a call": "6701 e66f 4e32 00e3 0700 0893 0191 266c 2701 1000 0000 1000",
 }
-"""`P1 = SP; [P0] = P1;`, `P1 = SP; P1 = P1 + P0; B[P1] = R0;` and `IF CC JUMP over; [--SP] = R0; over: [SP] = R1;`."""
+"""`P1 = SP; [P0] = P1;`, `P1 = SP; P1 = P1 + P0; B[P1] = R0;`, `IF CC JUMP over; [--SP] = R0; over: [SP] = R1;`,
+`R0 = SP; CALL g; P2 = R0; R0 = [P2];`, and `P1 = SP; CALL g; [P1] = R0;`, where g leaves P1 as it was."""
+PARTS = "4e32 88e4 0d00 49aa 0850 1000"
+"""`P1 = SP; R0 = B[P1 + 13] (Z); R1 = W[P1 + 18] (X); R0 = R0 + R1;`: parts of the fourth and the fifth argument."""
 ARGUMENT = 12
 """How far above the stack pointer the fourth argument is."""
 
@@ -52,6 +57,15 @@ def test_results_and_counts_are_those_of_a_frame_in_memory(timing: Timing) -> No
         ends = [_ended(each, first, second, fourth) for each in (kept, in_memory)]
         assert ends[0] == ends[1]
         assert ends[0][0] == (first + second + (second + 1) % 256 + fourth) % (1 << 32)
+
+
+def test_parts_of_arguments_are_those_that_the_caller_gave() -> None:
+    core = processor(PARTS, fuel=None)
+    core.entries, core.contract = {CODE}, TRUSTED
+    core.state["SP"] = top = DATA + NBYTES - 20
+    core.space.at(top + ARGUMENT, 8)[:] = list(bytes.fromhex("11223344 55667788"))
+    core.call(CODE)
+    assert core.state["R0"] == (0x22 + 0x8877 - 0x10000) & 0xFFFFFFFF
 
 
 def test_a_frame_that_is_kept_is_not_in_memory() -> None:

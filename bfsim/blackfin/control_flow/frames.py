@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import NoReturn
 
 from bfsim.blackfin.control_flow.blocks import CALLS, Code, does
-from bfsim.blackfin.control_flow.convention import KEPT
+from bfsim.blackfin.control_flow.convention import KEPT, RESULT
 from bfsim.blackfin.control_flow.flow import Edge, Way, edges
 from bfsim.blackfin.instructions.decode import Instruction
 from bfsim.blackfin.instructions.origins import Origin, made_by
@@ -56,9 +56,10 @@ class _Frames:
             block = self._code.blocks[start]
             for each in block.instructions:
                 self._execute(each, state)
+            if block.returns and RESULT in state:
+                _give_up()
             for way in self._ways.get(start, ()):
-                returns = way.way is Way.RETURNS
-                self._come(way.target, {name: state[name] for name in state if not returns or name in KEPT})
+                self._come(way.target, _behind_call(state) if way.way is Way.RETURNS else state)
             if block.instructions and does(block.instructions[-1]) in CALLS:
                 if not block.calls:
                     _give_up()
@@ -92,6 +93,11 @@ class _Frames:
             state.pop(name, None)
             if place is not None:
                 state[name] = place
+
+
+def _behind_call(state: _State) -> _State:
+    """Return what is known where a call comes back to: what was there and is not kept may be there yet (GCC's -fipa-ra)."""
+    return {name: place if name in KEPT else None for name, place in state.items()}
 
 
 def _place(origin: Origin, state: _State) -> int | None:

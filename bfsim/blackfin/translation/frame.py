@@ -13,14 +13,14 @@ from bfsim.blackfin.translation.native_function import NativeFunction
 
 
 class Frame:
-    """The bytes round the stack pointer of the entry that are accessed at known `places`."""
+    """The words round the stack pointer of the entry of which some byte is accessed, at known `places`."""
 
     def __init__(self, function: NativeFunction, places: Places) -> None:
         self._function, self._places = function, places
-        known = [each for one in places.values() for each in one if each is not None]
-        self._first, self._end = min(known, default=0), max(known, default=-WORD_BYTES) + WORD_BYTES
+        words = {each & -WORD_BYTES for one in places.values() for each in one if each is not None}
+        self._first, self._end = min(words, default=0), max(words, default=0) + WORD_BYTES
         self._kept: ir.Value | None = None
-        if known:
+        if words:
             kind = ir.ArrayType(I8, self._end - self._first)
             self._kept = ir.IRBuilder(function.entry).alloca(kind, name="frame")
             self._kept.align, self._kept.type = WORD_BYTES, POINTER
@@ -36,7 +36,7 @@ class Frame:
             return
         builder.store(ir.Constant(self._kept.allocated_type, None), self._kept)
         stack = self._function.read(builder, "SP")
-        for place in range(0, self._end, WORD_BYTES):
+        for place in range(max(self._first, 0), self._end, WORD_BYTES):
             address = builder.zext(builder.add(stack, stack.type(place)), I64)
             word = builder.load(
                 builder.gep(self._function.memory, [address], source_etype=I8), typ=stack.type, align=1
