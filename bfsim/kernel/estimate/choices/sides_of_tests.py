@@ -68,7 +68,9 @@ def _on_sides(flow: ControlFlow, choice: Instruction, moved: Sequence[Instructio
             put_between(blocks, label, home, side)
         *rows, end = blocks[side].instructions
         for each in moved:
-            own = f"{each.result}.{number}"
+            own = (
+                f"{each.result}.on.{number}"  # LLVM numbers the copies of a loop so, but for the word between
+            )
             rows.append(replace(renamed(each, names), result=own))
             names[each.result or ""] = own
         results[side] = names[last.result or ""]
