@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -154,6 +155,53 @@ def test_ctrl_c_ends_a_kernel_that_does_not_end_in_a_script(tmp_path: Path, code
     told = {"call": "", "run": "True , "}[what]
     place = {"call": "", "run": f" ({tmp_path}/endless.py:{line})"}[what]
     assert out == f"{told}in a kernel that does not end{place}\n0\n"
+
+
+IN_A_THREAD = """
+from multiprocessing import get_context
+from threading import Thread
+from endless import fw
+from bfsim.run import simulate
+
+def run():
+    print(simulate(firmware=fw).interrupted_at, flush=True)
+
+def run_in_a_fork():
+    child = get_context("fork").Process(target=run)
+    child.start()
+    child.join()
+
+if __name__ == "__main__":
+    thread = Thread(target={target}, daemon={target} is run)
+    thread.start()
+    try:
+        thread.join()
+    except KeyboardInterrupt:
+        print("heard", flush=True)
+"""
+"""A run in a thread, which no signal ends, or in the main thread of a process that was forked there, which one does."""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
+@pytest.mark.parametrize("target", ["run", "run_in_a_fork"])
+def test_ctrl_c_is_heard_while_another_thread_is_in_a_kernel_that_does_not_end(
+    tmp_path: Path, target: str
+) -> None:
+    """The kernel was short before: it kept Python, and nobody heard."""
+    (tmp_path / "endless.py").write_text(ENDLESS)
+    (tmp_path / "script.py").write_text(IN_A_THREAD.replace("{target}", target))
+    command = [sys.executable, "script.py"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        while process.poll() is None and not (tmp_path / "begun").exists():
+            time.sleep(0.05)
+        time.sleep(1)
+        os.killpg(process.pid, signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+    line = ENDLESS.splitlines().index("        yield core.run(spin, 1)") + 1
+    told = f", in a kernel that does not end ({tmp_path}/endless.py:{line})"
+    assert sorted(out.splitlines()) == (["heard"] if target == "run" else [told, "heard"])
 
 
 NATIVE = """

@@ -12,6 +12,7 @@ import pytest
 
 from bfsim.kernel import VDSP_O2
 from bfsim.machine_code.caller import SHORT_CCLK
+from bfsim.machine_code.endless import ended_by_signals
 from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.run import simulate
 from tests.machine.kernels import spin
@@ -65,7 +66,8 @@ def test_others_run_beside_a_call_that_took_long_the_last_time(turns: int) -> No
     thread = Thread(target=other)
     thread.start()
     waits.release()
-    call(300 * SHORT_CCLK)
+    with ended_by_signals():
+        call(300 * SHORT_CCLK)
     ended = time.monotonic()
     thread.join()
     assert (others[0] < ended) == bool(turns)

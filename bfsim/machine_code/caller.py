@@ -11,7 +11,7 @@ from enum import IntEnum
 from functools import cache
 
 from bfsim import machine_code
-from bfsim.machine_code.endless import CALL, add_leavable_calls
+from bfsim.machine_code.endless import CALL, MAIN_THREAD, add_leavable_calls
 from bfsim.machine_code.left import ACCESSES, INTERRUPTED, NO_ROOM, UNFIT, VALUE, Result
 from bfsim.machine_code.native_code import native_code
 
@@ -160,7 +160,9 @@ INTERRUPTED_IN = "in a kernel that does not end"
 MODULE = f"""
 @bfsim_interruption = global ptr null
 @bfsim_interrupted = internal constant [{len(INTERRUPTED_IN) + 1} x i8] c"{INTERRUPTED_IN}\\00"
+@{MAIN_THREAD} = external global i64
 @_Py_NoneStruct = external global i8
+declare i64 @pthread_self()
 declare ptr @PyBytes_AsString(ptr)
 declare i64 @PyLong_AsLongLong(ptr)
 declare ptr @PyLong_FromLongLong(i64)
@@ -215,7 +217,11 @@ take:
   %cclk.before = load i64, ptr %cost
   %less.one = sub i64 %cclk.before, 1
   %is.short = icmp ult i64 %less.one, {SHORT_CCLK}
-  br i1 %is.short, label %alone, label %beside
+  %this.thread = call i64 @pthread_self()
+  %main.thread = load i64, ptr @{MAIN_THREAD}
+  %is.main = icmp eq i64 %this.thread, %main.thread
+  %keeps = and i1 %is.short, %is.main
+  br i1 %keeps, label %alone, label %beside
 alone:
   %status.alone = call i64 @{CALL}(ptr %called, ptr %data, ptr %handed, ptr %cost)
   br label %has_run
@@ -263,8 +269,8 @@ leave:
 """ENTRY has CALLED leave the numbers in COST and returns LEFT, or what REFUSE returns or raises. Of the call that was made last GET_VALUE
 makes what it returned, and SET_VALUE puts that where Python looks for it.
 
-Meanwhile other threads have Python, unless the call was short the last time. Where a signal ends a kernel that never ends (`endless`), it
-raises what Python's handler of the signal raises, and says where if that is KeyboardInterrupt.
+Meanwhile other threads have Python, unless the call was short the last time and is the main thread's, which a signal ends (`endless`).
+Where one ends a kernel that never ends, ENTRY raises what Python's handler of the signal raises, and says where if that is KeyboardInterrupt.
 """
 
 

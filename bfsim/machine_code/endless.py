@@ -27,10 +27,10 @@ SOON_US = 10_000
 ENDING = sum(1 << getattr(signal, each) for each in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, each))
 """The signals that end a call, a bit each."""
 
-CALL = "bfsim_call_leavable"
+CALL, MAIN_THREAD, TURNS = "bfsim_call_leavable", "bfsim_main_thread", "bfsim_turns"
 MODULE = f"""
-@bfsim_main_thread = global i64 0
-@bfsim_turns = global i64 0
+@{MAIN_THREAD} = global i64 0
+@{TURNS} = global i64 0
 @bfsim_way_out = internal global [512 x i8] zeroinitializer, align 16
 declare i64 @pthread_self()
 declare i32 @_setjmp(ptr) returns_twice
@@ -38,7 +38,7 @@ declare void @longjmp(ptr, i32) noreturn
 
 define i64 @{CALL}(ptr %called, ptr %data, ptr %handed, ptr %cost) {{
   %self = call i64 @pthread_self()
-  %main = load i64, ptr @bfsim_main_thread
+  %main = load i64, ptr @{MAIN_THREAD}
   %is.main = icmp eq i64 %self, %main
   br i1 %is.main, label %enter, label %elsewhere
 elsewhere:
@@ -46,16 +46,16 @@ elsewhere:
   ret i64 %plain
 enter:
   %jumped = call i32 @_setjmp(ptr @bfsim_way_out) returns_twice
-  %before = load volatile i64, ptr @bfsim_turns
+  %before = load volatile i64, ptr @{TURNS}
   %begun = add i64 %before, 1
-  store volatile i64 %begun, ptr @bfsim_turns
+  store volatile i64 %begun, ptr @{TURNS}
   %is.left = icmp ne i32 %jumped, 0
   br i1 %is.left, label %left, label %run
 run:
   %status = call i64 %called(ptr %data, ptr %handed, ptr %cost)
-  %running = load volatile i64, ptr @bfsim_turns
+  %running = load volatile i64, ptr @{TURNS}
   %ended = add i64 %running, 1
-  store volatile i64 %ended, ptr @bfsim_turns
+  store volatile i64 %ended, ptr @{TURNS}
   ret i64 %status
 left:
   ret i64 {INTERRUPTED}
@@ -63,9 +63,9 @@ left:
 
 define void @bfsim_leave(i32 %number) {{
   %self = call i64 @pthread_self()
-  %main = load i64, ptr @bfsim_main_thread
+  %main = load i64, ptr @{MAIN_THREAD}
   %is.main = icmp eq i64 %self, %main
-  %turns = load volatile i64, ptr @bfsim_turns
+  %turns = load volatile i64, ptr @{TURNS}
   %is.running = trunc i64 %turns to i1
   %is.deaf = and i1 %is.main, %is.running
   br i1 %is.deaf, label %leave, label %go_on
@@ -108,22 +108,22 @@ look:
   br i1 %ends, label %soon, label %wait
 soon:
   %slept.1 = call i32 @usleep(i32 {SOON_US})
-  %call = load volatile i64, ptr @bfsim_turns
+  %call = load volatile i64, ptr @{TURNS}
   %is.running = trunc i64 %call to i1
   br i1 %is.running, label %hope, label %wait
 hope:
   %slept.2 = call i32 @usleep(i32 {DEAF_US})
-  %still = load volatile i64, ptr @bfsim_turns
+  %still = load volatile i64, ptr @{TURNS}
   %is.deaf = icmp eq i64 %still, %call
   br i1 %is.deaf, label %leave, label %wait
 leave:
-  %main = load i64, ptr @bfsim_main_thread
+  %main = load i64, ptr @{MAIN_THREAD}
   %set = call i32 @sigaction(i32 {signal.SIGINT:d}, ptr %leaves, ptr %before)
   %sent = call i32 @pthread_kill(i64 %main, i32 {signal.SIGINT:d})
   br label %until_left
 until_left:
   %slept.3 = call i32 @usleep(i32 {SOON_US})
-  %now = load volatile i64, ptr @bfsim_turns
+  %now = load volatile i64, ptr @{TURNS}
   %is.in.it = icmp eq i64 %now, %call
   br i1 %is.in.it, label %until_left, label %has_left
 has_left:
@@ -131,7 +131,7 @@ has_left:
   br label %wait
 }}
 """
-"""A call of the main thread, which has the odd ones of `bfsim_turns` while it runs; in other threads nobody hears of signals. What watches for
+"""A call of the main thread, which has the odd ones of TURNS while it runs; in other threads nobody hears of signals. What watches for
 them is told where Python's own part of a handler writes the signal's number.
 """
 
@@ -140,7 +140,6 @@ them is told where Python's own part of a handler writes the signal's number.
 def add_leavable_calls() -> None:
     """Add the function CALL to this process."""
     machine_code.add(native_code(MODULE))
-    ctypes.c_int64.from_address(machine_code.address_of("bfsim_main_thread")).value = main_thread().ident or 0
 
 
 @contextmanager
@@ -164,6 +163,8 @@ class _Watcher:
 
     def __init__(self) -> None:
         add_leavable_calls()
+        for name, value in (MAIN_THREAD, main_thread().ident or 0), (TURNS, 0):  # a fork may have others
+            ctypes.c_int64.from_address(machine_code.address_of(name)).value = value
         pressed, self.woken_by = os.pipe()
         os.set_blocking(self.woken_by, False)
         self.hands_on_to = ctypes.c_int32.from_address(machine_code.address_of("bfsim_hands_on_to"))
