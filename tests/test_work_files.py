@@ -131,6 +131,25 @@ def test_memory_and_counters_that_are_not_there_are_refused(work: Path, folder: 
             simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
 
 
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (("next_frame", (0, 0.5)), "must be as it was recorded"),
+        (("prepare", ("\x1b[31m", [])), r"kernel '\\x1b\[31m' must stand in a module"),
+    ],
+)
+def test_a_call_of_what_is_none_is_refused(
+    work: Path, folder: Path, call: tuple[str, Any], message: str
+) -> None:
+    """It is not the firmware that has failed then, and the terminal is told nothing."""
+
+    def change(done: FrameWork) -> None:
+        object.__setattr__(done, "calls", (call, *done.calls[1:]))
+
+    with pytest.raises(WorkError, match=message):
+        simulate(frames=FRAMES, work=changed(work, folder / "call.work", change))
+
+
 def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
     """Its fetches are recorded, and those of others are not."""
     other = rewritten(work, folder / "less.work", lambda run: run["routines_outside"].pop())

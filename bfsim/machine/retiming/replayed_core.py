@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import BfsimError, WorkError
+from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
 from bfsim.kernel.types import ArrayType, IntType
 from bfsim.machine.buffers import FrameSize
@@ -79,7 +79,13 @@ class ReplayedCore(Core):
                 yield from self._play_work(work)
             except BfsimError:
                 raise
-            except (LookupError, TypeError, ValueError, OverflowError) as error:  # a file may hold anything
+            except (
+                LookupError,
+                TypeError,
+                ValueError,
+                AttributeError,
+                OverflowError,
+            ) as error:  # a file may hold anything
                 raise not_there(self.name, error) from error
 
     def _play_work(self, work: PackedWork) -> Wait:
@@ -182,7 +188,7 @@ class ReplayedCore(Core):
         kernel = self._kernels.get(symbol)
         if kernel is None:
             raise WorkError(
-                f"kernel {symbol} must stand in a module of the firmware to be found again: {NOT_THE_SAME}"
+                f"kernel {shown(symbol)} must stand in a module of the firmware to be found again: {NOT_THE_SAME}"
             )
         parameters = kernel.function.parameters
         rows = iter(places)
