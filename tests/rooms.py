@@ -49,7 +49,7 @@ MAY_IMPORT = _sets(
         "checking": "errors shipped report loading running run planning",
         "pytest_plugin": "errors seen report result run checking",
         "sweeping": (
-            "errors process files trace shipped fields report loading running result run planning checking"
+            "errors process files trace shipped fields machine_code report loading running result run planning checking"
         ),
         "cli": (
             "errors process files trace seen spans shipped fields chip compiling recording report "

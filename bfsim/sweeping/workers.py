@@ -13,11 +13,11 @@ from functools import partial
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
-from threading import Thread
 from typing import Any
 
 from bfsim.errors import BfsimWarning
 from bfsim.files.store import can_keep
+from bfsim.machine_code.leash import end_with
 from bfsim.report.check.baseline import Configuration
 from bfsim.sweeping.running import Outcome, Work, run_point
 
@@ -96,10 +96,4 @@ def _begin(leash: Connection) -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for each in (1, 2):
         os.dup2(nowhere, each)
-    Thread(target=_end_with, args=(leash,), daemon=True).start()
-
-
-def _end_with(leash: Connection) -> None:
-    with suppress(EOFError, OSError):
-        leash.recv()
-    os._exit(1)
+    end_with(os.dup(leash.fileno()))

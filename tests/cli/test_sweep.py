@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,6 +22,7 @@ from bfsim.cli.main import main
 from bfsim.errors import ConfigError
 from tests.eyes import FIRMWARE, record
 from tests.sweeping.rig import BASE, FILE, Here, home_in, swept
+from tests.test_ctrl_c import ENDLESS
 
 HELD = FIRMWARE.replace(
     "def main(core):\n",
@@ -223,6 +224,26 @@ def test_ctrl_c_ends_it_cleanly(tmp_path: Path, number: int, exit_code: int) -> 
     reported = sum(bool(row["frame_rate Hz"]) for row in table(file))
     assert 2 <= kept == reported < 12
     assert len(swept(file)[1]) == 12 - kept
+
+
+@pytest.mark.exhaustive
+def test_ctrl_c_ends_processes_whose_kernel_does_not_end(tmp_path: Path) -> None:
+    """It was short before, and keeps Python: the process hears nothing, and ends when it is let go."""
+    (tmp_path / "fw_endless.py").write_text(ENDLESS.replace('"begun"', repr(str(tmp_path / "begun"))))
+    file = tmp_path / "endless.toml"
+    file.write_text('[base]\nframes = 1\nfirmware = "fw_endless.py:fw"\n[axes]\nset.sdram.nRP = [2]\n')
+    command = [sys.executable, "-m", "bfsim", "sweep", str(file), "--workers", "1"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+        while process.poll() is None and not (tmp_path / "begun").exists():
+            time.sleep(0.05)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        try:
+            process.communicate(timeout=30)
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+    assert process.returncode == 130
 
 
 @pytest.mark.parametrize("folder", ["", ".", "/"])
