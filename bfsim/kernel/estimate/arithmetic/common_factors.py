@@ -90,7 +90,7 @@ class _Block:
 def _added(name: str, terms: list[str], at: Instruction) -> Iterator[Instruction]:
     before = terms[0]
     for number, term in enumerate(terms[1:], 1):
-        result = name if number == len(terms) - 1 else f"{name}.{number}"
+        result = name if number == len(terms) - 1 else f"{name}{COMMON}.{number}"  # not as LLVM names copies
         yield _computed("add", result, before, term, at)
         before = result
 
