@@ -65,9 +65,9 @@ def test_others_run_beside_a_call_that_took_long_the_last_time(turns: int) -> No
     waits.acquire()
     thread = Thread(target=other)
     thread.start()
-    waits.release()
     with ended_by_signals():
+        waits.release()  # from here on nothing but the call can let the other thread have Python
         call(300 * SHORT_CCLK)
-    ended = time.monotonic()
+        ended = time.monotonic()
     thread.join()
     assert (others[0] < ended) == bool(turns)
