@@ -100,4 +100,4 @@ def _add() -> None:
 def going_on(asked: int, noted: Noted) -> Callable[[Generator[Any, Any, Any], object], Any]:
     """Return `go_on`, which returns what a generator has yielded if that is no call to be noted, or OVER."""
     _add()
-    return bound_to(GO_ON, (asked, *noted, id(OVER)), None)
+    return bound_to(GO_ON, (asked, *noted, id(OVER)), OVER)

@@ -16,7 +16,7 @@ def line_ring(rows: Sequence[Row], height: int) -> Lines:
     return tuple(islice(cycle(rows), height))
 
 
-def windows(lines: Sequence[Row], reach: int = 1) -> Sequence[Lines]:
+def windows(lines: Sequence[Row], reach: int = 1) -> Sequence[tuple[Row, ...]]:
     """Return for each line of a picture `reach` lines above it, itself, and as many below; the first and the last line repeat."""
     padded = (*lines[:1] * reach, *lines, *lines[-1:] * reach)
     return tuple(zip(*(padded[step:] for step in range(2 * reach + 1)), strict=False))

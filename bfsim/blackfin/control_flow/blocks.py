@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from bfsim.blackfin.control_flow.halves import PutTogether
-from bfsim.blackfin.instructions.decode import Instruction, InstructionError, decode
+from bfsim.blackfin.instructions.decode import Instruction, InstructionError, Operation, decode
 
 Fetch = Callable[[int], bytes]
 """Returns the 8 bytes of code at an address, or as many as there are."""
@@ -208,10 +208,12 @@ def does(instruction: Instruction) -> str:
 
 def sets_up_loops(code: Code) -> bool:
     """Whether LSETUP alone says where the loops of the hardware begin and end: nothing else names their registers."""
-    operations = (
-        each for block in code.blocks.values() for one in block.instructions for each in one.operations
-    )
-    return all(LOOP_BOUNDS.isdisjoint(map(str, each.operands.values())) for each in operations)
+    return all(LOOP_BOUNDS.isdisjoint(map(str, each.operands.values())) for each in operations_of(code))
+
+
+def operations_of(code: Code) -> Iterator[Operation]:
+    """Yield the operations of all instructions."""
+    return (each for block in code.blocks.values() for one in block.instructions for each in one.operations)
 
 
 def is_clocked(instruction: Instruction) -> bool:

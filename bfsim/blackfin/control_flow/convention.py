@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
-WORD_BYTES = 4
 REGISTERS = ("R0", "R1", "R2")
 """Have the first arguments."""
 RESULT = "R0"

@@ -13,9 +13,10 @@ from heapq import heappop, heappush
 from itertools import groupby
 
 from bfsim.blackfin.control_flow.blocks import CALLS, Code, does
-from bfsim.blackfin.control_flow.convention import KEPT, REGISTERS, WORD_BYTES
+from bfsim.blackfin.control_flow.convention import KEPT, REGISTERS
 from bfsim.blackfin.control_flow.flow import Way, edges
 from bfsim.blackfin.instructions.origins import Made, Origin, made_by
+from bfsim.blackfin.instructions.registers import WORD_BYTES
 
 
 @dataclass(frozen=True, slots=True)

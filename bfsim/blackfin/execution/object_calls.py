@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.control_flow.convention import REGISTERS, STACK, STACK_BYTES, WORD_BYTES
+from bfsim.blackfin.control_flow.convention import REGISTERS, STACK, STACK_BYTES
 from bfsim.blackfin.execution import object_caller as w
 from bfsim.blackfin.execution.guard import runner
 from bfsim.blackfin.execution.placed import Placed
 from bfsim.blackfin.execution.subroutines import Subroutine
+from bfsim.blackfin.instructions.registers import WORD_BYTES
 from bfsim.machine_code.calling import Called, Log, Taken, bound_call
 from bfsim.machine_code.left import Left
 

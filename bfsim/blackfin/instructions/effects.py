@@ -14,12 +14,11 @@ from typing import Any, Protocol
 from llvmlite import ir
 
 from bfsim.blackfin.instructions.event import Event
-from bfsim.blackfin.instructions.registers import ASTAT_UNUSED, COPIES, FLAGS, width
+from bfsim.blackfin.instructions.registers import ASTAT_UNUSED, COPIES, FLAGS, WORD_BYTES, width
 from bfsim.blackfin.instructions.value import Value
 
 I8, I32, I64 = ir.IntType(8), ir.IntType(32), ir.IntType(64)
 POINTER = ir.PointerType()
-WORD_BYTES = 4
 
 
 @dataclass(frozen=True, slots=True)

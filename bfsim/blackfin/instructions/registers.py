@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+WORD_BYTES = 4
+"""Of a register, and of a word in memory."""
+
 DATA = tuple(f"R{number}" for number in range(8))
 POINTERS = (*(f"P{number}" for number in range(6)), "SP", "FP")
 DAG = tuple(f"{bank}{number}" for bank in "IMBL" for number in range(4))

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from llvmlite import ir
 
-from bfsim.blackfin.control_flow.convention import WORD_BYTES
 from bfsim.blackfin.control_flow.frames import Places
 from bfsim.blackfin.instructions.effects import I8, I64, POINTER
+from bfsim.blackfin.instructions.registers import WORD_BYTES
 from bfsim.blackfin.translation.native_function import NativeFunction
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.blackfin.control_flow.blocks import Code
+from bfsim.blackfin.control_flow.blocks import Code, operations_of
 from bfsim.blackfin.instructions.registers import FLAGS
 from bfsim.blackfin.translation.at_once import AtOnce
 from bfsim.blackfin.translation.divisions import division
@@ -30,10 +30,7 @@ def loops_at_once(code: Code, *, is_asked: bool) -> dict[int, AtOnce]:
 
 def asks_for_overflow(code: Code) -> bool:
     """Whether an instruction reads the flag OVERFLOW, or ASTAT, which has it."""
-    operations = (
-        each for block in code.blocks.values() for one in block.instructions for each in one.operations
-    )
     return any(
         "ASTAT" in each.operands.values() or each.form.given.get("place") == FLAGS[OVERFLOW]
-        for each in operations
+        for each in operations_of(code)
     )

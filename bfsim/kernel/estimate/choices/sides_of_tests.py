@@ -68,9 +68,8 @@ def _on_sides(flow: ControlFlow, choice: Instruction, moved: Sequence[Instructio
             put_between(blocks, label, home, side)
         *rows, end = blocks[side].instructions
         for each in moved:
-            own = (
-                f"{each.result}.on.{number}"  # LLVM numbers the copies of a loop so, but for the word between
-            )
+            # with a word between, for LLVM numbers the copies of a loop's turns without one
+            own = f"{each.result}.on.{number}"
             rows.append(replace(renamed(each, names), result=own))
             names[each.result or ""] = own
         results[side] = names[last.result or ""]

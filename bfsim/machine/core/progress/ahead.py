@@ -186,13 +186,8 @@ class Ahead:
     def copies(self, lines: Lines) -> LineCopies:
         """Return what makes them ahead, the same for the same rows as the last time."""
         sources, destinations = lines.sources, lines.destinations
-        kind = (
-            lines.stream,
-            sources[0],
-            sources[-1],
-            destinations[0],
-            destinations[-1],
-        )  # short, to be found by
+        # its rows are many, and hashing all of them takes longer than to compare them
+        kind = lines.stream, sources[0], sources[-1], destinations[0], destinations[-1]
         copies = self._copies.get(kind)
         if copies is None or copies.lines != lines:
             if len(self._copies) == MOST_COPIES:
