@@ -23,7 +23,7 @@ from bfsim.machine.calls.code_fetches import fetch_lines, fetch_singly
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
 from bfsim.machine.calls.ledger import charge_events, charge_sites
 from bfsim.machine.calls.ready_calls import find_call
-from bfsim.machine.retiming.laid_sorts import lay_sorts
+from bfsim.machine.retiming.laid_dictionaries import lay_dictionaries
 from bfsim.machine.retiming.left_stage import end_stretch, leave_stage
 from bfsim.machine.retiming.passed_mark import pass_mark
 from bfsim.machine.retiming.written_stretch import write_stretch
@@ -49,7 +49,7 @@ ENTRIES = (
     charge_events,
     charge_sites,
     write_stretch,
-    lay_sorts,
+    lay_dictionaries,
     pass_mark,
     end_stretch,
     leave_stage,

@@ -14,8 +14,8 @@ import numpy as np
 from bfsim.machine.bus import state as w
 from bfsim.machine.retiming.packed_work import (
     BYTE_STEP,
+    ENTRY,
     PACKED,
-    SORT,
     STEP,
     PackedWork,
 )
@@ -34,17 +34,17 @@ from bfsim.running.work_file import compressed, decompressed
 
 def unpacked(work: PackedWork) -> FrameWork:
     """Return the tables of a packed work."""
-    of_operations, operation_sorts, packed, access_sorts, events = (
+    of_operations, operation_dictionary, packed, access_dictionary, events = (
         np.column_stack([work.column(first + number, work.rows[name]) for number in range(PACKED[name])])
         .astype(np.int64)
         .reshape(-1, PACKED[name])
         for name, first in zip(PACKED, accumulate(PACKED.values(), initial=0), strict=False)
     )
-    operations = operation_sorts[of_operations[:, 0]]
+    operations = operation_dictionary[of_operations[:, 0]]
     copies = operations[:, 0] == w.COPY
     operations[copies, 1] = np.cumsum(operations[copies, 1])
     accesses = np.empty((len(packed), ACCESS_COLUMNS), np.int64)
-    accesses[:, [KIND, OWNER, SITE]] = access_sorts[packed[:, SORT]]
+    accesses[:, [KIND, OWNER, SITE]] = access_dictionary[packed[:, ENTRY]]
     begin = 0
     for count in operations[operations[:, 0] == w.ACCESS, 3]:
         accesses[begin : begin + count, STAMP] = np.cumsum(packed[begin : begin + count, STEP])

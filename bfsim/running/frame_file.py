@@ -61,19 +61,19 @@ def _tables(work: FrameWork) -> dict[str, list[NDArray[np.int64]]]:
     operations = work.operations.copy()
     copies_made = operations[:, 0] == w.COPY
     operations[copies_made, 1] = _steps(operations[copies_made, 1])
-    operation_sorts, of_operations = _sorts([*operations.T])
-    access_sorts, of_accesses = _sorts([accesses[KIND], accesses[OWNER], accesses[SITE]])
+    operation_dictionary, of_operations = _dictionary([*operations.T])
+    access_dictionary, of_accesses = _dictionary([accesses[KIND], accesses[OWNER], accesses[SITE]])
     return {
         "operations": [of_operations],
-        "operation_sorts": operation_sorts,
+        "operation_dictionary": operation_dictionary,
         "accesses": [steps, of_accesses, byte_steps],
-        "access_sorts": access_sorts,
+        "access_dictionary": access_dictionary,
         "events": [events[0], _steps(events[1]), events[2]],
         "copies": [_steps(each) if number in COPY_STEPS else each for number, each in enumerate(copies)],
     }
 
 
-def _sorts(columns: list[NDArray[np.int64]]) -> tuple[list[NDArray[np.int64]], NDArray[np.int64]]:
+def _dictionary(columns: list[NDArray[np.int64]]) -> tuple[list[NDArray[np.int64]], NDArray[np.int64]]:
     """Return the different rows of some columns, and which of them each row is."""
     number, numbers = np.zeros(len(columns[0]), np.int64), 1
     for each in columns:  # all in one number, which numpy sorts in a tenth of the time that it takes for rows
@@ -84,8 +84,8 @@ def _sorts(columns: list[NDArray[np.int64]]) -> tuple[list[NDArray[np.int64]], N
             numbers = len(found)
         number = number * size + each - least
         numbers *= size
-    _, examples, sort_of = np.unique(number, return_index=True, return_inverse=True)
-    return [each[examples] for each in columns], sort_of
+    _, examples, entry_of = np.unique(number, return_index=True, return_inverse=True)
+    return [each[examples] for each in columns], entry_of
 
 
 def _steps(column: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -30,7 +30,7 @@ from bfsim.recording.stereo.stereo_check import Counts
 from bfsim.running import frame_file
 from bfsim.running.identifying import KnownFrames
 
-FORMAT = 8
+FORMAT = 9
 PACKED_HOW_WELL = 3
 """Of 1 to 12: each further step packs 3 % better, in 1.3 to 2 times the time."""
 LOCAL_HEAD, ENCRYPTED = struct.Struct("<26xHH"), 1

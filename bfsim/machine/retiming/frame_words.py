@@ -19,10 +19,10 @@ NOT_THERE, NO_CODE, NO_ROOM, ODD = -1, -2, -3, -4
     MMR_WRITE, MMR_READ,  # cycles of a core for a register
     IS_AT_CALL,        # whether a call of firmware comes behind what was written last
     COPY,              # the copy that was written last
-    OPERATION_SORT_ROWS, ACCESS_SORT_ROWS,  # sorts of both; the words of each are from SORTS_AT on (`laid_sorts`)
+    OPERATION_DICTIONARY_ROWS, ACCESS_DICTIONARY_ROWS,  # of both; the words of their entries are from DICTIONARIES_AT on (`laid_dictionaries`)
 ) = range(19)  # fmt: skip
 FRAME_WORDS = 19
-SORTS_AT = FRAME_WORDS + PACKED_COLUMNS * COLUMN_WORDS
+DICTIONARIES_AT = FRAME_WORDS + PACKED_COLUMNS * COLUMN_WORDS
 Words = MutableSequence[int]
 
 

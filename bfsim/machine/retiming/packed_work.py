@@ -21,15 +21,15 @@ BEGIN, WIDTH = range(2)
 """Words of a column: its first byte, and the number of its width."""
 COLUMN_WORDS = 2
 PACKED = {
-    "operations": 1, "operation_sorts": OPERATION_COLUMNS, "accesses": 3, "access_sorts": 3, "events": EVENT_COLUMNS,
+    "operations": 1, "operation_dictionary": OPERATION_COLUMNS, "accesses": 3, "access_dictionary": 3, "events": EVENT_COLUMNS,
 }  # fmt: skip
 """The tables, and how many columns each has."""
-OPERATIONS, OPERATION_SORTS, ACCESSES, ACCESS_SORTS, EVENTS, PACKED_COLUMNS = accumulate(
+OPERATIONS, OPERATION_DICTIONARY, ACCESSES, ACCESS_DICTIONARY, EVENTS, PACKED_COLUMNS = accumulate(
     PACKED.values(), initial=0
 )
 """The first column of each, and the one behind all."""
-STEP, SORT, BYTE_STEP = range(3)
-"""Columns of an access, whose kind, owner and site are those of its sort."""
+STEP, ENTRY, BYTE_STEP = range(3)
+"""Columns of an access, whose kind, owner and site are those of its entry in the dictionary."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,8 +38,8 @@ class PackedWork:
 
     `columns`: words as above of each of their columns; `rows` says how many there are of each table. Of accesses
     each stamp is the difference to the one before it in its call, and each byte that to the one before it; so is each counter of events.
-    What many have in common is a row of *sorts*: the numbers of an operation, with the number of a copy as the difference to that of the
-    copy before; and kind, owner and site of an access.
+    What many have in common is an entry of a *dictionary*, as column stores have it: the numbers of an operation, with the number of a
+    copy as the difference to that of the copy before; and kind, owner and site of an access.
     """
 
     core: str

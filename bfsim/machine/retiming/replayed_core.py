@@ -20,7 +20,7 @@ from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.synchronisation.semaphore import Semaphore
 from bfsim.machine.core.synchronisation.spin_lock import SpinLock
 from bfsim.machine.memories import Row
-from bfsim.machine.retiming.laid_sorts import IN_L1
+from bfsim.machine.retiming.laid_dictionaries import IN_L1
 from bfsim.machine.retiming.packed_work import PackedWork
 from bfsim.machine.retiming.replayed_copies import ReplayedCopies
 from bfsim.machine.retiming.replayed_places import ReplayedPlaces

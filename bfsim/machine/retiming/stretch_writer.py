@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from bfsim.chip.block_spec import EventSpec
 from bfsim.machine.retiming.frame_words import (
+    ACCESS_DICTIONARY_ROWS,
     ACCESS_ROWS,
-    ACCESS_SORT_ROWS,
     ACCOUNTS,
     COPIES,
+    DICTIONARIES_AT,
     EVENT_ROWS,
     FRAME_WORDS,
     IS_AT_CALL,
@@ -23,13 +24,12 @@ from bfsim.machine.retiming.frame_words import (
     NO_ROOM,
     NOT_THERE,
     ODD,
-    OPERATION_SORT_ROWS,
+    OPERATION_DICTIONARY_ROWS,
     OWNERS,
     ROWS,
-    SORTS_AT,
     STAGES,
 )
-from bfsim.machine.retiming.laid_sorts import ACCESS_SORT_WORDS, lay_sorts
+from bfsim.machine.retiming.laid_dictionaries import ACCESS_ENTRY_WORDS, lay_dictionaries
 from bfsim.machine.retiming.packed_work import WIDTHS, PackedWork
 from bfsim.machine.retiming.passed_mark import pass_mark
 from bfsim.machine.retiming.work import OPERATION_COLUMNS, Table
@@ -53,7 +53,7 @@ class StretchWriter:
     def __init__(self, state: Any, core: int, firsts: NDArray[np.int64], events: EventSpec) -> None:
         self._at = np.asarray(state).ctypes.data, core
         self._firsts, self._events = firsts, events
-        self._words = self._room(SORTS_AT)
+        self._words = self._room(DICTIONARIES_AT)
         self._work: PackedWork
         self._views_at: tuple[int, ...] = ()
         self.counters_at = 0, 0
@@ -63,7 +63,7 @@ class StretchWriter:
         """Make room for so many words."""
         words = np.zeros(count, np.int64)
         at, self._numbers = words.ctypes.data, words.data
-        self._lay = built_in(lay_sorts.address(), 5, at)
+        self._lay = built_in(lay_dictionaries.address(), 5, at)
         self._pass = built_in(pass_mark.address(), 6, at)
         self._write = built_in(write_stretch.address(), 8, *self._at, at)
         return words
@@ -74,20 +74,20 @@ class StretchWriter:
         Raises ValueError for what is not there.
         """
         rows = work.rows
-        operation_sorts, access_sorts = rows["operation_sorts"], rows["access_sorts"]
-        count = SORTS_AT + access_sorts * ACCESS_SORT_WORDS + operation_sorts * OPERATION_COLUMNS
+        operations, accesses = rows["operation_dictionary"], rows["access_dictionary"]
+        count = DICTIONARIES_AT + accesses * ACCESS_ENTRY_WORDS + operations * OPERATION_COLUMNS
         if count > len(self._words):
             self._words = self._room(2 * count)
         words, events = self._words, self._events
         words[:FRAME_WORDS] = 0
         for word, number in (
             (ROWS, rows["operations"]), (ACCESS_ROWS, rows["accesses"]), (EVENT_ROWS, rows["events"]),
-            (OPERATION_SORT_ROWS, operation_sorts), (ACCESS_SORT_ROWS, access_sorts),
+            (OPERATION_DICTIONARY_ROWS, operations), (ACCESS_DICTIONARY_ROWS, accesses),
             (COPIES, len(copies)), (ACCOUNTS, accounts), (OWNERS, len(self._firsts)), (STAGES, stages),
             (MMR_WRITE, events.mmr_write_cclk), (MMR_READ, events.mmr_read_cclk),
         ):  # fmt: skip
             self._numbers[word] = number
-        words[FRAME_WORDS:SORTS_AT] = work.columns.reshape(-1)
+        words[FRAME_WORDS:DICTIONARIES_AT] = work.columns.reshape(-1)
         self._work, self._copies_at = work, copies.ctypes.data
         self._views_at = (np.frombuffer(work.octets, np.int8).ctypes.data,) * len(WIDTHS)
         if problem := self._lay(*self._views_at, self._firsts.ctypes.data):

@@ -48,8 +48,8 @@ def is_access(stamp: int, byte: int) -> bool:
 
 
 @native
-def is_sort(kind: int, site: int) -> bool:
-    """Whether these are numbers of a sort of accesses."""
+def is_access_entry(kind: int, site: int) -> bool:
+    """Whether these are numbers of an entry of accesses."""
     return 0 <= kind <= log.FETCHES and 0 <= site < w.MAX_SITES
 
 

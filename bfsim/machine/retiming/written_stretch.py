@@ -10,11 +10,12 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.retiming.frame_words import (
     ACCESS,
+    ACCESS_DICTIONARY_ROWS,
     ACCESS_ROWS,
-    ACCESS_SORT_ROWS,
     ACCOUNTS,
     COPIES,
     COPY,
+    DICTIONARIES_AT,
     IS_AT_CALL,
     MMR_READ,
     MMR_WRITE,
@@ -23,26 +24,25 @@ from bfsim.machine.retiming.frame_words import (
     NO_ROOM,
     NOT_THERE,
     ODD,
-    OPERATION_SORT_ROWS,
+    OPERATION_DICTIONARY_ROWS,
     PLACE,
     ROWS,
-    SORTS_AT,
     STAGES,
     Words,
     at_column,
 )
-from bfsim.machine.retiming.laid_sorts import (
-    ACCESS_SORT_WORDS,
-    ENTRY,
+from bfsim.machine.retiming.laid_dictionaries import (
+    ACCESS_ENTRY_WORDS,
     IN_L1,
+    LOGGED,
     SITE,
-    operation_sort_at,
+    operation_entry_at,
 )
 from bfsim.machine.retiming.packed_work import (
     ACCESSES,
     BYTE_STEP,
+    ENTRY,
     OPERATIONS,
-    SORT,
     STEP,
     Views,
     number_at,
@@ -68,10 +68,10 @@ def is_there(frame: Words, kind: int, one: int, three: int, four: int, calls: in
 @native
 def write_accesses(state: w.State, core: int, frame: Words, views: Views, count: int, logged: int) -> int:
     """Write the next `count` accesses of a frame behind those that are `logged`, without those to L1; return how many are logged then."""
-    entries = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
-    (stamps, stamp_width), (sorts, sort_width) = (
+    into = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
+    (stamps, stamp_width), (entries, entry_width) = (
         at_column(frame, ACCESSES + STEP),
-        at_column(frame, ACCESSES + SORT),
+        at_column(frame, ACCESSES + ENTRY),
     )
     steps, step_width = at_column(frame, ACCESSES + BYTE_STEP)
     access, stamp, byte = frame[ACCESS], 0, frame[PLACE]
@@ -82,21 +82,21 @@ def write_accesses(state: w.State, core: int, frame: Words, views: Views, count:
     for number in range(access, access + count):
         stamp += number_at(views, stamps, stamp_width, number)
         byte += number_at(views, steps, step_width, number)
-        sort = number_at(views, sorts, sort_width, number)
-        if not is_access(stamp, byte) or not 0 <= sort < frame[ACCESS_SORT_ROWS]:
+        entry = number_at(views, entries, entry_width, number)
+        if not is_access(stamp, byte) or not 0 <= entry < frame[ACCESS_DICTIONARY_ROWS]:
             return ODD
-        at = SORTS_AT + sort * ACCESS_SORT_WORDS
-        entry, site = frame[at + ENTRY], frame[at + SITE]
-        if entry != IN_L1:
+        at = DICTIONARIES_AT + entry * ACCESS_ENTRY_WORDS
+        word, site = frame[at + LOGGED], frame[at + SITE]
+        if word != IN_L1:
             if (
-                entry & FROM_KIND == log.FETCHES << log.KIND_BIT
+                word & FROM_KIND == log.FETCHES << log.KIND_BIT
                 and state[site_at(core, site) + w.CODE_WORDS] == 0
             ):
                 return NO_CODE
-            if (entry & log.OFFSET_MASK) + byte > log.OFFSET_MASK:
+            if (word & log.OFFSET_MASK) + byte > log.OFFSET_MASK:
                 return NOT_THERE
-            state[entries + logged] = (stamp << log.STAMP_BIT) + entry + byte
-            state[entries + w.LOG_ENTRIES + logged] = site
+            state[into + logged] = (stamp << log.STAMP_BIT) + word + byte
+            state[into + w.LOG_ENTRIES + logged] = site
             logged += 1
     frame[ACCESS], frame[PLACE] = access + count, byte
     return logged
@@ -129,14 +129,14 @@ def write_stretch(
     views = words_at(octets_at), words_at(halves_at), words_at(words_in_at), words_at(longs_at)
     copies, kinds = words_at(copies_at), words_at(kinds_at)
     at, rows = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS, frame[ROWS]
-    sorts, sort_width = at_column(frame, OPERATIONS)
+    entries, entry_width = at_column(frame, OPERATIONS)
     written = logged = 0
     frame[IS_AT_CALL] = 0
     while frame[NEXT] < rows and written < w.MAX_OPERATIONS:
-        sort = number_at(views, sorts, sort_width, frame[NEXT])
-        if not 0 <= sort < frame[OPERATION_SORT_ROWS]:
+        entry = number_at(views, entries, entry_width, frame[NEXT])
+        if not 0 <= entry < frame[OPERATION_DICTIONARY_ROWS]:
             return ODD
-        numbers = operation_sort_at(frame, sort)
+        numbers = operation_entry_at(frame, entry)
         kind, one, two, three, four = (
             frame[numbers], frame[numbers + 1], frame[numbers + 2], frame[numbers + 3], frame[numbers + 4],
         )  # fmt: skip
