@@ -131,6 +131,12 @@ class Rule(StrEnum):
     CROSS_JUMPS = "what ends two blocks stands in the code once, if it is all of one"
     EITHER_BANK = "a value that may be in either bank gives way where one is full"
     INDEX_REGISTERS = "a pointer that only walks over half-words is in an index register where a pointer register would have to be saved for it"
+    HALF_WORD_POINTERS = (
+        "a pointer to half-words that a sum of its own steps is in the data register that it comes in"
+    )
+    SHIFTED_COUNTS = (
+        "a number of iterations that is shifted takes a pointer register beside that of its bound"
+    )
     SPILLED_SUMS = "a sum that has no data register is added to in an I register"
     FIELD_ADDRESSES = "a field of a record that is loaded and stored has an address of its own"
     POINTER_DIFFERENCES = (
@@ -179,6 +185,8 @@ GCC: dict[Rule, str] = {
     Rule.FIRST_ITERATIONS: "profitable_path_p in tree-ssa-threadbackward.cc",
     Rule.EITHER_BANK: "find_costs_and_classes in ira-costs.cc",
     Rule.INDEX_REGISTERS: "assign_hard_reg in ira-color.cc",
+    Rule.HALF_WORD_POINTERS: "find_costs_and_classes in ira-costs.cc",
+    Rule.SHIFTED_COUNTS: "find_reg in reload1.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
     Rule.POINTER_DIFFERENCES: "determine_group_iv_cost_generic in tree-ssa-loop-ivopts.cc",
@@ -293,6 +301,8 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.CROSS_JUMPS: (),  # tests/kernel/estimate/loops/test_ends_of_loops.py
     Rule.EITHER_BANK: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_either_bank.py
     Rule.INDEX_REGISTERS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_index_registers.py
+    Rule.HALF_WORD_POINTERS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_half_word_pointers.py
+    Rule.SHIFTED_COUNTS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_iteration_counts.py
     Rule.SPILLED_SUMS: (),
     Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_field_addresses.py
     Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_pointer_differences.py

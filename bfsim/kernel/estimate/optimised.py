@@ -19,10 +19,11 @@ from bfsim.kernel.estimate.registers.registers import allocate
 from bfsim.kernel.estimate.scheduling.bundles import bundled
 from bfsim.kernel.estimate.scheduling.schedule import Issue, issues
 from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.estimate.selection.iteration_counts import IterationCounts
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction
 from bfsim.kernel.estimate.selection.select import select
 from bfsim.kernel.ir.control_flow import BACK, Loop
-from bfsim.kernel.ir.text import BasicBlock, Routine, SourceLine, is_number
+from bfsim.kernel.ir.text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.operations import COSTS, Op
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -40,6 +41,7 @@ class _OptimisedLowering:
     def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
         self.context = Context(routine, profile)
         self.flow, self.profile = self.context.flow, profile
+        self.counts = IterationCounts(self.context)
         self.code = select(self.context)
         self.allocation = allocate(self.context, self.code)
         self.frame = FrameCosts(self.allocation, profile)
@@ -185,29 +187,13 @@ class _OptimisedLowering:
             line = self.flow.blocks[loop.header].instructions[-1].line
             line = self.flow.blocks[loop.latch].terminator.line or line
             if block.label == self.flow.entering(loop):
-                cost.charges += [charge(each, line) for each in self._iteration_count(loop)]
-                if any(
-                    variable.loop is loop and abs(variable.increment.constant) > 1
-                    for variable in self.context.induction_variables.all
-                ):
-                    cost.charges += [charge(Op.ALU, line)] * 3
+                cost.charges += [charge(each, line) for each in self.counts.operations(loop)]
                 if loop.header in self.hardware.all:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
                     if self.hardware.begins_with_copies(loop) and self.branches.falls(
                         block.label, loop.header
                     ):
                         cost.charges.append(charge(Op.JUMP, line))
-
-    def _iteration_count(self, loop: Loop) -> Iterator[Op]:
-        """What computes how often a counted loop iterates; once, where it may be less than that [niter_for_exit in loop-iv.cc]."""
-        yield Op.MOVE
-        if self.context.evolution.iterations(loop) is not None:
-            return
-        start = self.context.evolution.counter_start(loop)
-        if start is not None and not is_number(start):
-            yield Op.ALU
-        if self.context.evolution.may_end_at_once(loop):
-            yield from (Op.ALU, Op.COMPARE, Op.IMM, Op.COND_MOVE)
 
     def _leave_block(self, block: BasicBlock, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label

@@ -15,7 +15,9 @@ def tied_webs(webs: Webs) -> frozenset[str]:
     tied = set(webs.context.parameters())
     for block in webs.code.of.values():
         for each in block:
-            if not _is_free(each):
+            if each.op is Op.MOVE and each.bank is not RegisterBank.ANY:
+                tied.add(each.result or "")  # what is copied may come from either
+            elif not _is_free(each):
                 tied |= {*(name for name, _ in each.uses), each.result or ""}
     return frozenset(map(webs.find, tied))
 

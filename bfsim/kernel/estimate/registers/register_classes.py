@@ -3,6 +3,7 @@
 An addition can also be done in an I register, I0 += M0 [addsi3 in bfin.md]. So the first pass finds that a sum that is only added to costs
 nothing in the class IPREGS, which has no data registers in it, and to the second pass, an addition on data registers needs a move. What is
 free to be in either bank, such as a word that is loaded, goes to a pointer register then; the sum itself is in a data register in the end.
+But what a load without a step loads for one use stays in memory until that, rather than to have a register saved [update_equiv_regs in ira.cc].
 """
 
 from __future__ import annotations
@@ -55,9 +56,13 @@ class RegisterClasses:
         self.costs: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         self.behind: defaultdict[str, set[str]] = defaultdict(set)
         """Of each value that is added in a chain: the sums."""
+        self.waiting: set[str] = set()
+        """Words that may stay in memory until they are used."""
         for label in self.flow.order:
             for instruction in self.code.of[label]:
                 self._note(instruction, int(webs.frequency[label] * 1000) + 1)
+                if self._may_wait(instruction, label):
+                    self.waiting.add(webs.find(instruction.result or ""))
         for label in self.flow.order:
             for instruction in filter(self.is_sum, self.code.of[label]):
                 self._note_bytes(instruction)
@@ -68,6 +73,20 @@ class RegisterClasses:
         total = self.webs.find(instruction.result or "")
         if total in names and any(self.values[name].strict[DATA] for name in names):
             self.values[total].is_plain = True
+
+    def _may_wait(self, instruction: MachineInstruction, label: str) -> bool:
+        """Whether an instruction loads a word by a pointer that it does not step, and what follows it in its block is the only one to use that."""
+        access = instruction.access
+        if instruction.op is not Op.LOAD32 or access is None:
+            return False
+        variable = self.webs.context.induction_variables.of.get(id(access))
+        stepping = variable.stepping if variable is not None and variable.steps_free else None
+        users = self.flow.users.get(access.result or "", [])
+        return (
+            (stepping is None or stepping.instruction is not access)
+            and len(users) == 1
+            and self.flow.defined.get(users[0].result or "", ("",))[0] == label
+        )
 
     def is_sum(self, instruction: MachineInstruction) -> bool:
         """Whether an instruction adds two values that may be in either bank."""
@@ -143,7 +162,7 @@ class RegisterClasses:
     def _to_pointers(self, web: str, room: _Room) -> None:
         value = self.values[web]
         may_be = value.is_free or value.is_between
-        if may_be and self.webs.bank[web] is DATA and room.has(web):
+        if may_be and self.webs.bank[web] is DATA and room.has(web, saves=web not in self.waiting):
             self.webs.bank[web] = POINTER
 
     def _tied(self, instruction: MachineInstruction) -> set[str]:
@@ -180,11 +199,12 @@ class _Room:
                 alive.update(webs.find(name) for name, _ in instruction.uses if not name.startswith("#"))
                 self.points.append((set(alive), counters))
 
-    def has(self, web: str) -> bool:
-        """Whether a pointer register is free wherever a value is alive."""
-        return all(
-            sum(self.webs.bank.get(name) is POINTER for name in alive) + counters
-            <= operations.POINTER_REGISTERS
+    def has(self, web: str, *, saves: bool) -> bool:
+        """Whether a pointer register is free wherever a value is alive; if it `saves` none more, one that is scratch or taken elsewhere."""
+        taken = [
+            (web in alive, sum(self.webs.bank.get(name) is POINTER for name in alive) + counters)
             for alive, counters in self.points
-            if web in alive
-        )
+        ]
+        most = max(operations.SCRATCH_POINTER_REGISTERS, *(number for _, number in taken))
+        room = operations.POINTER_REGISTERS + 1 if saves else most
+        return all(number < room for is_alive, number in taken if is_alive)

@@ -12,6 +12,7 @@ from bfsim.kernel import operations
 from bfsim.kernel.estimate.registers.argument_loads import load_where_used
 from bfsim.kernel.estimate.registers.byte_addresses import add_in_data_registers
 from bfsim.kernel.estimate.registers.expansion_order import order_as_expanded
+from bfsim.kernel.estimate.registers.half_word_pointers import HalfWordPointers
 from bfsim.kernel.estimate.registers.index_registers import IndexRegisters
 from bfsim.kernel.estimate.registers.moves import Moves
 from bfsim.kernel.estimate.registers.pressure import Pressure
@@ -52,6 +53,8 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
     webs = Webs(context, code)
     if context.profile.applies(Rule.SUM_CLASSES):
         RegisterClasses(webs).place()
+    if context.profile.applies(Rule.HALF_WORD_POINTERS):
+        HalfWordPointers(webs).place()
     moves = Moves(webs)
     if context.profile.applies(Rule.INDEX_REGISTERS):
         IndexRegisters(webs).place()

@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping
 from bfsim.kernel import operations
 from bfsim.kernel.estimate.registers.pressure import POINTERS, Pressure
 from bfsim.kernel.estimate.registers.webs import Webs
+from bfsim.kernel.estimate.selection.iteration_counts import IterationCounts
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
@@ -23,6 +24,8 @@ from bfsim.kernel.rules import Rule
 DATA, POINTER = RegisterBank.DATA, RegisterBank.POINTER
 SCRATCH = {DATA: operations.SCRATCH_DATA_REGISTERS, POINTER: operations.SCRATCH_POINTER_REGISTERS}
 AVAILABLE = {DATA: operations.DATA_REGISTERS, POINTER: POINTERS}
+COUNTER = "count "
+"""In front of the names of what counts iterations."""
 SELDOM = 2
 """Uses for each time that the function is entered: as many accesses as a register takes that is saved."""
 
@@ -32,6 +35,7 @@ class TakenRegisters:
 
     def __init__(self, webs: Webs, pressure: Pressure) -> None:
         self.webs, self.flow, self.code, self.bank = webs, webs.flow, webs.code, webs.bank
+        self.counts = IterationCounts(webs.context)
         self.in_loops = defaultdict[str, set[str]](set)
         """Of each block: constants that loops around it have in registers, which are loaded before the outermost one."""
         for loop in self.flow.loops:
@@ -65,11 +69,37 @@ class TakenRegisters:
 
     def _points(self, bank: RegisterBank) -> list[set[str]]:
         """What takes registers of a bank, at each point of the routine."""
-        points = [taken | self.in_loops[label] for label in self.flow.blocks for taken in self._taken(label)]
+        points = [
+            taken | self.in_loops[label] | self._counters(label)
+            for label in self.flow.blocks
+            for taken in self._taken(label)
+        ]
         of_bank = {name for name in set[str]().union(*points) if self._bank(name) is bank} - self.staying
         return [taken & of_bank for taken in points]
 
+    def _counters(self, label: str) -> set[str]:
+        """Counters of counted loops, which are in pointer registers until they are the hardware's [loop_end in bfin.md]."""
+        if not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS):
+            return set()
+        counted = self.webs.context.counters.counted
+        return {f"{COUNTER}{each.header}" for each in self.flow.loops_of(label) if each.header in counted}
+
+    def _counts(self, label: str) -> set[str]:
+        """What takes pointer registers while it is computed how often the loop behind a block iterates.
+
+        The bound is moved to one that is not that of the result [find_reg in reload1.cc].
+        """
+        found = set[str]()
+        for loop in self.flow.loops if self.webs.context.profile.applies(Rule.SHIFTED_COUNTS) else ():
+            if self.flow.entering(loop) == label and loop.header in self.webs.context.counters.counted:
+                argument = self.counts.shifted_argument(loop)
+                if argument is not None and self._bank(argument) is DATA:
+                    found |= {f"{COUNTER}{loop.header}", f"{COUNTER}{argument}"}
+        return found
+
     def _bank(self, name: str) -> RegisterBank | None:
+        if name.startswith(COUNTER):
+            return POINTER
         return DATA if name.startswith("#") else self.bank.get(self.webs.find(name))
 
     def _key(self, name: str) -> str:
@@ -79,7 +109,7 @@ class TakenRegisters:
     def _taken(self, label: str) -> Iterator[set[str]]:
         """What takes registers behind and during each instruction of a block, the last one first."""
         alive = {self._key(name) for name in self.webs.live.out[label]}
-        yield set(alive)
+        yield set(alive) | self._counts(label)
         in_loop = self.flow.innermost(label) is not None
         constants = self._constants(label)
         for number, instruction in reversed([*enumerate(self.code.of[label])]):
@@ -124,7 +154,8 @@ class TakenRegisters:
 
     def _last(self, taken: set[str], frequency: Mapping[str, float]) -> set[str]:
         """Arguments on the stack that get a register only after what else is `taken`, and are used seldom."""
-        others = min((frequency[name] for name in taken - self.on_stack), default=0.0)
+        rivals = (name for name in taken - self.on_stack if not name.startswith(COUNTER))
+        others = min((frequency[name] for name in rivals), default=0.0)
         return {name for name in taken & self.on_stack if frequency[name] <= min(others, 1 + SELDOM)}
 
     def _frequencies(self) -> defaultdict[str, float]:

@@ -203,8 +203,10 @@ class Context:
         return kept
 
     def parameters(self) -> list[str]:
-        """Parameters of the C function, in order."""
-        return [each for each in self.routine.parameters if not each.endswith(HIDDEN)]
+        """Parameters of the C function, in order: behind them come the lengths that it asks for."""
+        lengths = [each for each in self.routine.parameters if each.endswith(HIDDEN)]
+        own = [each for each in self.routine.parameters if each not in lengths]
+        return [*own, *(each for each in lengths if each in self.flow.users)]
 
     def is_there(self, value: str, number: int, call: Instruction) -> bool:
         """Whether a value is in the register of argument `number` already: computed there, or passed on in its place."""

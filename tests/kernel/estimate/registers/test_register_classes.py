@@ -27,6 +27,14 @@ def f(a: {0}[:], b: i32[:], n: i32) -> i32:
         s += {1}
     return s
 """
+CHOSEN = """
+def f(a: u8[:], b: i32[:], n: i32) -> i32:
+    s = 0
+    for i in range(n):
+        if a[i] > 99:
+            s += b[i]
+    return s
+"""
 NARROW = """
 def f(a: i16[:], o: i16[:], n: i32) -> None:
     for i in range(n):
@@ -74,6 +82,7 @@ CASES = {
     "a counter that few want": (CENTRE, 6043, 0.06),
     "more pointers than registers": (MANY, 3045, 0.03),
     "one place on both sides of a test": (EITHER, 2872, 0.05),
+    "words of some iterations wait in memory": (CHOSEN, 2545, 0.005),
     "two words": (WORDS.format("(a[i] + b[i]) >> 2"), 1041, 0.04),
     "a word less": (WORDS.format("(a[i] + b[i] - c[i]) >> 2"), 1442, 0.03),
     "a half-word and a word in a total": (TOTAL.format("i16", "a[i] + b[i]"), 842, 0.04),

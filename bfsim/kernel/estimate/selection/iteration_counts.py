@@ -1,0 +1,98 @@
+"""How often a loop iterates whose iterations a register counts: what computes that before it [niter_for_exit in loop-iv.cc of GCC 12].
+
+Where nothing but the loop's end wants the counter, the first of the loop's pointers is compared in its place [may_eliminate_iv in
+tree-ssa-loop-ivopts.cc]. Of one that walks by more than a byte, the bytes from its start to its end are shifted, in pointer registers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.kernel import operations
+from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.selection.context import Context
+from bfsim.kernel.ir.control_flow import Loop
+from bfsim.kernel.ir.text import is_number
+from bfsim.kernel.operations import Op
+
+
+class IterationCounts:
+    """Those of the loops of one routine."""
+
+    def __init__(self, context: Context) -> None:
+        self.context, self.evolution = context, context.evolution
+
+    def operations(self, loop: Loop) -> Iterator[Op]:
+        """What computes how often `loop` iterates; once, where it may be less than that."""
+        yield Op.MOVE
+        if self._is_known(loop):
+            return
+        if self._is_shifted(loop):
+            yield from (Op.ALU, Op.ALU, Op.ALU)
+        if self.evolution.iterations(loop) is not None:
+            return
+        start = self.evolution.counter_start(loop)
+        if start is not None and not is_number(start):
+            yield Op.ALU
+        if self.evolution.may_end_at_once(loop):
+            yield from (Op.ALU, Op.COMPARE, Op.IMM, Op.COND_MOVE)
+
+    def shifted_argument(self, loop: Loop) -> str | None:
+        """Return the argument in a register that is shifted to find where the pointer that ends `loop` ends, if one is."""
+        test, pointer = (
+            self.context.flow.instruction(self.evolution.exit_test(loop) or ""),
+            self._pointer(loop),
+        )
+        if test is None or pointer is None or self.evolution.iterations(loop) is not None:
+            return None
+        if abs(pointer.increment.constant) <= self._step(loop):
+            return None  # nothing is shifted to the left
+        terms = [name for name, _ in self.evolution.affine(test.operands[1]).terms]
+        able = set(self.context.parameters()[: operations.REGISTER_ARGUMENTS]) - self._in_addresses(loop)
+        return terms[0] if len(terms) == 1 and terms[0] in able else None
+
+    def _in_addresses(self, loop: Loop) -> set[str]:
+        """What the addresses are computed from that the pointers of `loop` start at: in pointer registers."""
+        of_loop = (each for each in self.context.induction_variables.all if each.loop is loop)
+        return {name for each in of_loop for name, _ in self._terms(each)}
+
+    def _is_known(self, loop: Loop) -> bool:
+        """Whether a number is loaded: in a loop in another one, unless the pointer's start and end are computed before both."""
+        if self.evolution.iterations(loop) is None:
+            return False
+        pointer, around = self._pointer(loop), self.context.flow.around(loop)
+        if pointer is None or around is None:
+            return True
+        gains = (self.evolution.increment(name, around) for name, _ in self._terms(pointer))
+        return any(gain is not None and gain.moves for gain in gains)
+
+    def _is_shifted(self, loop: Loop) -> bool:
+        """Whether what ends `loop` advances by more than one."""
+        pointer = self._pointer(loop)
+        if pointer is not None:
+            return abs(pointer.increment.constant) > 1
+        return self._step(loop) > 1
+
+    def _step(self, loop: Loop) -> int:
+        """By how much the counter that ends `loop` advances, if it does not end where it is known to."""
+        test = self.context.flow.instruction(self.evolution.exit_test(loop) or "")
+        start = self.evolution.counter_start(loop)
+        if test is None or start is None or all(map(is_number, (start, test.operands[1]))):
+            return 1
+        gain = self.evolution.increment(test.operands[0], loop)
+        return abs(gain.constant) if gain is not None else 1
+
+    def _pointer(self, loop: Loop) -> InductionVariable | None:
+        """The pointer that is compared in place of the counter, if nothing else wants that: the first one that starts most simply [cheaper_cost_pair]."""
+        test = self.context.flow.instruction(self.evolution.exit_test(loop) or "")
+        counters = [name for name, _ in self.evolution.affine(test.operands[0]).terms] if test else []
+        made = [self.context.flow.instruction(each) for each in counters]
+        if any(each is not None and self.context.demanded.emits(each) for each in made):
+            return None
+        of_loop = (each for each in self.context.induction_variables.all if each.loop is loop)
+        steady = (each for each in of_loop if not each.increment.symbolic)
+        return min(steady, key=lambda each: len(self._terms(each)), default=None)
+
+    def _terms(self, pointer: InductionVariable) -> tuple[tuple[str, int], ...]:
+        """What its address is the sum of, with factors."""
+        return self.evolution.affine(pointer.accesses[0].instruction.operands[-1]).terms
