@@ -169,7 +169,7 @@ ESTIMATE = _sets(
         "induction_variables": "loops ranges",
         "jump_threading": "choices conditions loops switches ranges",
         "prediction": "loops ranges",
-        "inlining": "ranges prediction",
+        "inlining": "arithmetic ranges prediction",
         "redundancies": "choices conditions loops prediction",
         "loop_copies": "conditions loops arithmetic memory jump_threading prediction inlining",
         "selection": (
@@ -178,7 +178,8 @@ ESTIMATE = _sets(
         ),
         "registers": "memory induction_variables selection",
         "rewrites": (
-            "choices conditions loops arithmetic memory switches jump_threading redundancies loop_copies"
+            "choices conditions loops arithmetic memory switches induction_variables jump_threading redundancies "
+            "loop_copies"
         ),
         "layout": "conditions loops switches prediction selection registers",
         "scheduling": "selection registers",

@@ -137,6 +137,7 @@ class Rule(StrEnum):
     SHIFTED_COUNTS = (
         "a number of iterations that is shifted takes a pointer register beside that of its bound"
     )
+    STEPPED_VALUES = "a multiple or sum of a counter is a variable of its own, which the loop steps"
     SPILLED_SUMS = "a sum that has no data register is added to in an I register"
     FIELD_ADDRESSES = "a field of a record that is loaded and stored has an address of its own"
     POINTER_DIFFERENCES = (
@@ -187,6 +188,7 @@ GCC: dict[Rule, str] = {
     Rule.INDEX_REGISTERS: "assign_hard_reg in ira-color.cc",
     Rule.HALF_WORD_POINTERS: "find_costs_and_classes in ira-costs.cc",
     Rule.SHIFTED_COUNTS: "find_reg in reload1.cc",
+    Rule.STEPPED_VALUES: "determine_iv_cost in tree-ssa-loop-ivopts.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
     Rule.POINTER_DIFFERENCES: "determine_group_iv_cost_generic in tree-ssa-loop-ivopts.cc",
@@ -303,6 +305,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.INDEX_REGISTERS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_index_registers.py
     Rule.HALF_WORD_POINTERS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_half_word_pointers.py
     Rule.SHIFTED_COUNTS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_iteration_counts.py
+    Rule.STEPPED_VALUES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_stepped_values.py
     Rule.SPILLED_SUMS: (),
     Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_field_addresses.py
     Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_pointer_differences.py

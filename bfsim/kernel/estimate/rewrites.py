@@ -30,6 +30,7 @@ from bfsim.kernel.estimate.conditions.narrow_tests import with_narrow_tests
 from bfsim.kernel.estimate.conditions.next_values import with_tests_of_next_values
 from bfsim.kernel.estimate.conditions.range_tests import with_range_tests
 from bfsim.kernel.estimate.conditions.short_circuits import split_tests
+from bfsim.kernel.estimate.induction_variables.stepped_values import with_stepped_values
 from bfsim.kernel.estimate.jump_threading.known_answers import with_known_answers
 from bfsim.kernel.estimate.loop_copies.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.estimate.loops.final_values import with_final_values
@@ -91,6 +92,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     sink,
     hoist_loads,
     with_final_values,
+    with_stepped_values,
     with_predictive_commoning,
     with_bit_tests,
     with_narrow_sums,
@@ -114,6 +116,7 @@ SWITCHES = {
     copy_breaks: Rule.COPIED_BREAKS,
     with_final_values: Rule.FINAL_VALUES,
     with_predictive_commoning: Rule.PREDICTIVE_COMMONING,
+    with_stepped_values: Rule.STEPPED_VALUES,
     with_reduced_strength: Rule.STRENGTH_REDUCTION,
     with_summed_indices: Rule.SUMMED_INDICES,
     with_even_addresses: Rule.EVEN_ADDRESSES,

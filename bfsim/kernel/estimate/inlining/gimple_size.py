@@ -17,6 +17,8 @@ import llvmlite.binding as llvm
 from bfsim.files import store
 from bfsim.kernel import function_keys
 from bfsim.kernel.emitting.emit import emit_alone
+from bfsim.kernel.estimate.arithmetic.bits_set import STATEMENTS as WORD_COUNT
+from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
 from bfsim.kernel.estimate.inlining.statements import statement_size
 from bfsim.kernel.estimate.prediction.frequencies import frequencies
 from bfsim.kernel.estimate.prediction.predict import Likelihood
@@ -213,7 +215,8 @@ class _Estimator:
         if each.is_call:
             callee = self.callees[_callee(each)]
             return 1 + len(callee.parameters) + len(callee.measured) + int(each.result in self.flow.users)
-        return statement_size(self.flow, each)
+        size = statement_size(self.flow, each)
+        return size if counted_word(self.flow, each) is None else size - WORD_COUNT + 1
 
     def _time(self, each: Instruction, size: int) -> int:
         if each.is_call:
