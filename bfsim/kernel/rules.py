@@ -138,6 +138,7 @@ class Rule(StrEnum):
         "a number of iterations that is shifted takes a pointer register beside that of its bound"
     )
     STEPPED_VALUES = "a multiple or sum of a counter is a variable of its own, which the loop steps"
+    ROW_POINTERS = "a loop around steps where the pointers of a loop in it start"
     SPILLED_SUMS = "a sum that has no data register is added to in an I register"
     FIELD_ADDRESSES = "a field of a record that is loaded and stored has an address of its own"
     POINTER_DIFFERENCES = (
@@ -189,6 +190,7 @@ GCC: dict[Rule, str] = {
     Rule.HALF_WORD_POINTERS: "find_costs_and_classes in ira-costs.cc",
     Rule.SHIFTED_COUNTS: "find_reg in reload1.cc",
     Rule.STEPPED_VALUES: "determine_iv_cost in tree-ssa-loop-ivopts.cc",
+    Rule.ROW_POINTERS: "find_interesting_uses in tree-ssa-loop-ivopts.cc",
     Rule.SPILLED_SUMS: "addsi3 in bfin.md",
     Rule.FIELD_ADDRESSES: "try_combine in combine.cc",
     Rule.POINTER_DIFFERENCES: "determine_group_iv_cost_generic in tree-ssa-loop-ivopts.cc",
@@ -306,6 +308,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.HALF_WORD_POINTERS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_half_word_pointers.py
     Rule.SHIFTED_COUNTS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_iteration_counts.py
     Rule.STEPPED_VALUES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_stepped_values.py
+    Rule.ROW_POINTERS: (),
     Rule.SPILLED_SUMS: (),
     Rule.FIELD_ADDRESSES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_field_addresses.py
     Rule.POINTER_DIFFERENCES: (),  # from kernels that are not measured here: tests/kernel/estimate/induction_variables/test_pointer_differences.py

@@ -16,11 +16,9 @@ from bfsim.kernel.estimate.loops.same_values import is_same
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import (
-    BasicBlock,
     Instruction,
     Routine,
     arms_of,
-    is_number,
     phi_of,
     renamed,
     written,
@@ -48,7 +46,9 @@ class _Wanted:
 def with_stepped_values(routine: Routine) -> Routine:
     """Return `routine` with a variable in place of each sum that GCC makes one of."""
     for header in [loop.header for loop in ControlFlow(routine).loops]:
-        for phi in [each for each in ControlFlow(routine).blocks[header].instructions if each.opcode == "phi"]:
+        for phi in [
+            each for each in ControlFlow(routine).blocks[header].instructions if each.opcode == "phi"
+        ]:
             routine = _SteppedValues(ControlFlow(routine), header, phi).rewritten()
     return routine
 
@@ -218,13 +218,15 @@ class _SteppedValues:
             if _width(made) == WORD:
                 self.renamed[each] = name
             else:
-                self.computed[each] = written(
-                    each, f"trunc i{WORD} {name} to i{_width(made)}", (name,), made
-                )
+                self.computed[each] = written(each, f"trunc i{WORD} {name} to i{_width(made)}", (name,), made)
 
     def _compute(self, wanted: _Wanted, operation: str, other: str, number: int) -> None:
         """Compute a sum of another one at the start of each iteration."""
-        name, at, operands = f"{wanted.names[0]}{MARK}", self.flow.defined[wanted.names[0]][1], (other, str(number))
+        name, at, operands = (
+            f"{wanted.names[0]}{MARK}",
+            self.flow.defined[wanted.names[0]][1],
+            (other, str(number)),
+        )
         self.first.append(written(name, f"{operation} i{WORD} {', '.join(operands)}", operands, at))
         self._take(wanted, name)
 

@@ -74,6 +74,12 @@ class RegisterClasses:
         if total in names and any(self.values[name].strict[DATA] for name in names):
             self.values[total].is_plain = True
 
+    def _steps(self, instruction: MachineInstruction) -> bool:
+        """Whether an instruction adds a number to a variable, which can be done in either bank."""
+        names = [self.webs.find(name) for name, _ in instruction.uses if not name.startswith("#")]
+        is_either = instruction.bank is ANY and all(bank is ANY for _, bank in instruction.uses)
+        return instruction.op is Op.ALU and is_either and names == [self.webs.find(instruction.result or "")]
+
     def _may_wait(self, instruction: MachineInstruction, label: str) -> bool:
         """Whether an instruction loads a word by a pointer that it does not step, and what follows it in its block is the only one to use that."""
         access = instruction.access
@@ -100,6 +106,8 @@ class RegisterClasses:
         )
 
     def _note(self, instruction: MachineInstruction, weight: int) -> None:
+        if instruction.op is Op.IMM or self._steps(instruction):
+            return
         is_sum, find = self.is_sum(instruction), self.webs.find
         for name, bank in instruction.uses:
             if not name.startswith("#") and bank is not ANY:

@@ -95,6 +95,9 @@ class TakenRegisters:
                 argument = self.counts.shifted_argument(loop)
                 if argument is not None and self._bank(argument) is DATA:
                     found |= {f"{COUNTER}{loop.header}", f"{COUNTER}{argument}"}
+                    found |= {
+                        self._key(phi) for phi in self.webs.phis if self.flow.defined[phi][0] == loop.header
+                    }
         return found
 
     def _bank(self, name: str) -> RegisterBank | None:

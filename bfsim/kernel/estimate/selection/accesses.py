@@ -8,6 +8,7 @@ from bfsim.kernel import operations
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.estimate.selection.row_pointers import RowPointers
 from bfsim.kernel.ir.control_flow import EITHER, pointee_nbytes
 from bfsim.kernel.ir.text import Instruction, is_number
 from bfsim.kernel.operations import Op
@@ -24,6 +25,7 @@ class Accesses:
     def __init__(self, emitter: Emitter) -> None:
         self.emitter, self.append = emitter, emitter.append
         self.context, self.flow = emitter.context, emitter.context.flow
+        self.rows = RowPointers(emitter)
         self.beside: dict[str, list[str]] = {}
         """Blocks in which the pointer of a variable is computed from its neighbour's."""
         self.ahead: dict[str, str] = {}
@@ -222,6 +224,8 @@ class Accesses:
     def _set_up(self, variable: InductionVariable) -> None:
         """Compute where a pointer starts, before its loop."""
         entering, total = self.flow.entering(variable.loop), self.context.name(variable.root)
+        if self.rows.start(variable):
+            return
         if not variable.start:
             start = MachineInstruction(
                 Op.MOVE, variable.line, variable.name, POINTER, ((variable.root, ANY),)

@@ -14,6 +14,7 @@ from bfsim.kernel.estimate.selection.context import Context
 from bfsim.kernel.ir.control_flow import Loop
 from bfsim.kernel.ir.text import is_number
 from bfsim.kernel.operations import Op
+from bfsim.kernel.rules import Rule
 
 
 class IterationCounts:
@@ -25,10 +26,12 @@ class IterationCounts:
     def operations(self, loop: Loop) -> Iterator[Op]:
         """What computes how often `loop` iterates; once, where it may be less than that."""
         yield Op.MOVE
-        if self._is_known(loop):
+        if self.is_known(loop):
             return
         if self._is_shifted(loop):
             yield from (Op.ALU, Op.ALU, Op.ALU)
+        if self._ends_before(loop):
+            yield Op.MOVE
         if self.evolution.iterations(loop) is not None:
             return
         start = self.evolution.counter_start(loop)
@@ -41,7 +44,7 @@ class IterationCounts:
         """Return the argument in a register that is shifted to find where the pointer that ends `loop` ends, if one is."""
         test, pointer = (
             self.context.flow.instruction(self.evolution.exit_test(loop) or ""),
-            self._pointer(loop),
+            self.pointer(loop),
         )
         if test is None or pointer is None or self.evolution.iterations(loop) is not None:
             return None
@@ -56,19 +59,27 @@ class IterationCounts:
         of_loop = (each for each in self.context.induction_variables.all if each.loop is loop)
         return {name for each in of_loop for name, _ in self._terms(each)}
 
-    def _is_known(self, loop: Loop) -> bool:
+    def is_known(self, loop: Loop) -> bool:
         """Whether a number is loaded: in a loop in another one, unless the pointer's start and end are computed before both."""
         if self.evolution.iterations(loop) is None:
             return False
-        pointer, around = self._pointer(loop), self.context.flow.around(loop)
+        pointer, around = self.pointer(loop), self.context.flow.around(loop)
         if pointer is None or around is None:
             return True
         gains = (self.evolution.increment(name, around) for name, _ in self._terms(pointer))
         return any(gain is not None and gain.moves for gain in gains)
 
+    def _ends_before(self, loop: Loop) -> bool:
+        """Whether start and end of the pointer are computed before the loop around: what is between them is computed anew each time."""
+        pointer, around = self.pointer(loop), self.context.flow.around(loop)
+        if pointer is None or around is None or not self.context.profile.applies(Rule.ROW_POINTERS):
+            return False
+        gains = [self.evolution.increment(name, around) for name, _ in self._terms(pointer)]
+        return not any(gain is not None and gain.moves for gain in gains)
+
     def _is_shifted(self, loop: Loop) -> bool:
         """Whether what ends `loop` advances by more than one."""
-        pointer = self._pointer(loop)
+        pointer = self.pointer(loop)
         if pointer is not None:
             return abs(pointer.increment.constant) > 1
         return self._step(loop) > 1
@@ -82,7 +93,7 @@ class IterationCounts:
         gain = self.evolution.increment(test.operands[0], loop)
         return abs(gain.constant) if gain is not None else 1
 
-    def _pointer(self, loop: Loop) -> InductionVariable | None:
+    def pointer(self, loop: Loop) -> InductionVariable | None:
         """The pointer that is compared in place of the counter, if nothing else wants that: the first one that starts most simply [cheaper_cost_pair]."""
         test = self.context.flow.instruction(self.evolution.exit_test(loop) or "")
         counters = [name for name, _ in self.evolution.affine(test.operands[0]).terms] if test else []
