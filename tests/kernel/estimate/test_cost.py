@@ -17,6 +17,7 @@ from tests.kernel.conftest import ImportText
 from tests.kernel.running import CALLING_GCC, CALLING_VDSP, line_executions, run
 
 RETURN = COSTS[Op.RETURN].cclk
+SAVED = GCC_O2.push_multiple_cclk + GCC_O2.pop_multiple_cclk
 SKIP, ENTER = COSTS[Op.BRANCH_TAKEN_BP].cclk, COSTS[Op.BRANCH_NOT_TAKEN_BP].cclk  # over a body, and into it
 COUNT_DOWN = 1 + 1 + COSTS[Op.BRANCH_TAKEN].cclk  # P -= 1; CC = P == 0; IF !CC JUMP
 
@@ -61,8 +62,8 @@ def test_a_copy_loop_costs_a_load_and_a_store_per_word() -> None:
     assert cost[2] - cost[1] == 2
     assert cost[320] - cost[1] == 2 * 319
     # the pointers (2) and the count (move, 3 to make it of the words' bytes) to P registers, parameters (2 + 1),
-    # the guard (compare, branch not taken), LSETUP
-    assert cost[1] == 2 + RETURN + (2 + 1 + 3) + 2 + 2 + 1
+    # the guard (compare, branch not taken), LSETUP; a fourth pointer register, in which the count is shifted, is saved
+    assert cost[1] == 2 + RETURN + (2 + 1 + 3) + 2 + 2 + 1 + SAVED
 
 
 def test_two_nested_counted_loops_are_hardware_loops() -> None:
@@ -77,7 +78,9 @@ def test_a_loop_whose_end_is_empty_counts_in_a_register() -> None:
     row = words(50)
     per_line = cclk(cost_kernels.flip_grid, row, 9, 20) - cclk(cost_kernels.flip_grid, row, 8, 20)
     guard = 1 + 1  # whether there are columns is known before: CC gets it back; branch not taken
-    set_up = 1 + (1 + 3) + 1  # pointer; count of words, to a P register and from bytes; LSETUP
+    set_up = (
+        1 + (2 + 3) + 1
+    )  # pointer; count of words, from what is known before both loops, to a P register; LSETUP
     assert per_line == 20 * 3 + guard + set_up + COUNT_DOWN
 
 

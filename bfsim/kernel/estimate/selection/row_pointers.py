@@ -33,7 +33,9 @@ class RowPointers:
     def start(self, variable: InductionVariable) -> bool:
         """Compute where a pointer starts, if the loop around steps that; return whether it does."""
         loop, around = variable.loop, self.flow.around(variable.loop)
-        if around is None or not self.context.profile.applies(Rule.ROW_POINTERS) or not self._moves(variable):
+        if around is None or not self.context.profile.applies(Rule.ROW_POINTERS):
+            return False
+        if not self._moves(variable) or (variable.increment.symbolic and self._is_beside(variable, around)):
             return False
         if self.counts.pointer(loop) is variable:
             self._start_counted(variable, around)
@@ -47,7 +49,8 @@ class RowPointers:
                 self._offset(variable, around),
             )
         else:
-            own = self._stepped(variable, around, f"{variable.name}.{ROW}", POINTER)
+            bank = DATA if variable.increment.symbolic else POINTER
+            own = self._stepped(variable, around, f"{variable.name}.{ROW}", bank)
             self._add(variable, self.flow.entering(loop), Op.MOVE, variable.name, own)
         return True
 
@@ -80,12 +83,20 @@ class RowPointers:
         return {
             name: times
             for name, times in terms
-            if name != variable.root and not self._is_counter(name, variable.loop)
+            if name != variable.root and not self._is_stepped(name, variable.loop)
         }
 
-    def _is_counter(self, name: str, loop: Loop) -> bool:
-        made = self.flow.instruction(name)
-        return made is not None and made.opcode == "phi" and self.flow.defined[name][0] == loop.header
+    def _is_stepped(self, name: str, loop: Loop) -> bool:
+        """Whether a value is a variable of `loop`, or a multiple of one."""
+        gain = self.evolution.increment(name, loop)
+        return gain is not None and (gain.moves or gain.symbolic)
+
+    def _is_beside(self, variable: InductionVariable, around: Loop) -> bool:
+        """Whether a pointer of the loop around walks along the same array: a column starts there."""
+        return any(
+            each.loop is around and each.root == variable.root
+            for each in self.context.induction_variables.all
+        )
 
     def _is_bytewise(self, variable: InductionVariable) -> bool:
         return abs(variable.increment.constant) == 1 or variable.accesses[0].instruction.bits == 8

@@ -38,7 +38,7 @@ CASES = {
     "a position and a flag": _case(1445, 0.01, TWO),
     "three are too many": _case(2687, 0.01, [*TWO, "    last = v"]),
     "one is tested": _case(1848, 0.01, ["if v > last:", "    k = i", "    last = v"]),
-    "one is what another one was": _case(2537, 0.01, ["if v > t:", "    k = last", "    last = v"], "k"),
+    "one is what another one was": _case(2537, 0.02, ["if v > t:", "    k = last", "    last = v"], "k"),
     "behind another test": _case(3297, 0.09, ["if on:", "    if v < t:", "        on = 0", "elif v > t + 20:", "    k = i", "    on = 1"]),
     "two ways to them": _case(4357, 0.11, ["if v > 200:", "    k = 1", "    last = v", "elif v < 40:", "    k = 2", "    last = i"], "k + last"),
     "numbers on both sides": _case(2044, 0.01, SIDES, "(v << k) ^ on"),

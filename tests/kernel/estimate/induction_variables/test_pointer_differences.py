@@ -75,7 +75,7 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
     return best * 256 + top
 """
 PEAKS: dict[str, Case] = {
-    "in a picture": (IN_A_PICTURE, 1769, 0.09),
+    "in a picture": (IN_A_PICTURE, 1769, 0.1),
     "in all": (PEAK.format(limits="n", wanted="i"), 1646, 0.005),
     "from a variable on": (PEAK.format(limits="t, n", wanted="i"), 854, 0.005),
     "in a window": (PEAK.format(limits="t, t + 50", wanted="i"), 451, 0.02),

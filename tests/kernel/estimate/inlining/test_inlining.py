@@ -226,3 +226,29 @@ def test_an_estimate_is_made_once_for_all_programs(tmp_path: Path, monkeypatch: 
     changed = kernels(text.replace("s = 0", "s = 1"), tmp_path).top.function
     assert [again(each) for each in (top, changed)] == [made, made]
     assert estimated == [changed]
+
+
+def test_bits_that_are_counted_are_one_statement(tmp_path: Path) -> None:
+    """So a helper that counts those of four words is small enough; with as many other operations it is not."""
+    count = """
+def count(a: u32[:], at: i32) -> i32:
+    total = 0
+    for k in range(4):
+        v = a[at + k] ^ a[k]
+        v = v - ((v >> 1) & 0x55555555)
+        v = (v & 0x33333333) + ((v >> 2) & 0x33333333)
+        v = (v + (v >> 4)) & 0x0F0F0F0F
+        total += i32((v * 0x01010101) >> 24)
+    return total
+
+
+def top(a: u32[:], out: i32[:]) -> i32:
+    least = 129
+    for i in range(len(out)):
+        out[i] = count(a, 4 * i)
+        least = min(least, count(a, i))
+    return least
+"""
+    assert decided(kernels(count, tmp_path).top)["count"].inlined
+    other = count.replace("0x01010101", "0x01010103")
+    assert not decided(kernels(other, tmp_path).top)["count"].inlined

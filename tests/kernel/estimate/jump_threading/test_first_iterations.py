@@ -52,7 +52,7 @@ CASES = {
     "a difference": _case(4975, 0.05, "if i > 0 and a[i] - a[i - 1] > t:\n    s += 1"),
     "more is done before": _case(1846, 0.12, "v = a[i] * 3\nif i > 0:\n    v -= o[i - 1]\no[i] = v\ns += v"),
     "as many as is known": _case(
-        327, 0.18, "if i == 0:\n    o[i] = a[i]\nelse:\n    o[i] = a[i] - a[i - 1]", bounds="64"
+        327, 0.19, "if i == 0:\n    o[i] = a[i]\nelse:\n    o[i] = a[i] - a[i - 1]", bounds="64"
     ),
     "what each iteration passes": _case(
         1410, 0.29, "if i == 1:\n    s += a[0] * 2\ns += a[i] * a[i - 1]\no[i] = s", bounds="1, n"

@@ -52,7 +52,7 @@ OTHERWISE = "else:\n            {}"
 CASES = {
     "room for so many": _case(2941, 0.05, then="o[k] = v\n            k += 1", rest=""),
     "their positions": _case(2976, 0.04, then="o[k] = i\n            k += 1", rest=""),
-    "a sum besides": _case(2673, 0.06),
+    "a sum besides": _case(2673, 0.09),
     "the room first": _case(3357, 0.005, bounds="k < 90 and i < n", rest=""),
     "a run that is set back": _case(3496, 0.08, bounds="i < n and k < 20", rest=OTHERWISE.format("k = 0")),
     "set back, up to a variable": _case(3538, 0.04, bounds="i < n and k < t", rest=OTHERWISE.format("k = 0")),

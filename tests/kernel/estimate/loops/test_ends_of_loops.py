@@ -158,7 +158,7 @@ CASES: dict[str, tuple[str, int, float]] = {
     ),
     "what is 0 if a loop does not run is so before the branch round it": (ROWS, 11892, 0.04),
     "one variable is set by two choices": (STATES, 6299, 0.05),
-    "where a loop has written to is computed of how often it went round": (COPIES, 6648, 0.03),
+    "where a loop has written to is computed of how often it went round": (COPIES, 6648, 0.05),
     "of a loop whose test is sure to hold at first, too": (BLOCKS, 804, 0.02),
     "a loop that goes on up to its bound, which may be the largest number, is not counted": (
         PROBES,

@@ -119,7 +119,7 @@ CASES = {
     "runs in rows": (RUNS_IN_ROWS, 3829, 0.02),
     "the sum of a window": (WINDOW.format("s += a[y * w + x]"), 258, 0.1),
     "the moment of a window": (WINDOW.format(MOMENT), 1039, 0.05),
-    "around a pixel": (AROUND, 7378, 0.02),
+    "around a pixel": (AROUND, 7378, 0.03),
     "a histogram": (HISTOGRAM.format("s += v"), 1838, 0.02),
     "a histogram of some": (HISTOGRAM.format("s = max(s, v)"), 1838, 0.02),
 }
@@ -169,7 +169,7 @@ def test_a_window_s_column_is_counted_beside_the_pointer(tmp_path: Path) -> None
     whole = WINDOW.format(MOMENT).replace("range(x0, x0 + w - 4)", "range(w)")
     assert "range(w)" in whole
     window = lowered(WINDOW.format(MOMENT), tmp_path, GCC_O2)
-    assert (window[Op.LOOP_SETUP], lowered(whole, tmp_path, GCC_O2)[Op.LOOP_SETUP]) == (1, 0)
+    assert (window[Op.LOOP_SETUP], lowered(whole, tmp_path, GCC_O2)[Op.LOOP_SETUP]) == (2, 1)
 
 
 def test_bits_that_are_counted_are_one_statement_of_a_header(tmp_path: Path) -> None:
