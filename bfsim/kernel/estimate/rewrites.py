@@ -18,6 +18,7 @@ from bfsim.kernel.estimate.arithmetic.strength_reduction import with_reduced_str
 from bfsim.kernel.estimate.arithmetic.subtractions import with_subtractions
 from bfsim.kernel.estimate.arithmetic.summed_indices import with_summed_indices
 from bfsim.kernel.estimate.choices.adjacent_numbers import with_adjacent_numbers
+from bfsim.kernel.estimate.choices.clamps import with_clamps
 from bfsim.kernel.estimate.choices.extremes import with_extremes
 from bfsim.kernel.estimate.choices.known_values import with_known_values
 from bfsim.kernel.estimate.choices.narrow_sums import with_narrow_sums
@@ -27,6 +28,7 @@ from bfsim.kernel.estimate.choices.sides_apart import with_sides_apart
 from bfsim.kernel.estimate.choices.sides_of_tests import with_operations_on_sides
 from bfsim.kernel.estimate.choices.wide_extremes import widen_extremes
 from bfsim.kernel.estimate.conditions.narrow_tests import with_narrow_tests
+from bfsim.kernel.estimate.conditions.nearer_bounds import with_nearer_bounds
 from bfsim.kernel.estimate.conditions.next_values import with_tests_of_next_values
 from bfsim.kernel.estimate.conditions.range_tests import with_range_tests
 from bfsim.kernel.estimate.conditions.short_circuits import split_tests
@@ -71,6 +73,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_summed_indices,
     with_even_addresses,
     without_saturations,
+    with_clamps,
     widen_extremes,
     without_lagging,
     factor_sums,
@@ -122,6 +125,7 @@ SWITCHES = {
     with_even_addresses: Rule.EVEN_ADDRESSES,
     with_shifted_products: Rule.SHIFTED_PRODUCTS,
     with_operations_on_sides: Rule.OWN_OPERATIONS,
+    with_clamps: Rule.EXTREMES,
     with_bit_tests: Rule.BIT_TESTS,
     with_narrow_sums: Rule.EXTREMES,
     with_jump_tables: Rule.JUMP_TABLES,
@@ -139,6 +143,8 @@ def rewritten_early(text: str, profile: CompilerProfile) -> str:
 
 def _rewritten_early(routine: Routine, profile: CompilerProfile) -> Routine:
     routine = without_repeated_loads(routine)
+    if profile.applies(Rule.EXTREMES):
+        routine = with_nearer_bounds(routine)
     if profile.applies(Rule.BIT_TESTS):
         routine = with_range_tests(routine)
     if profile.applies(Rule.ADJACENT_NUMBERS):

@@ -19,6 +19,7 @@ from bfsim.kernel.ir.widths import BYTE, WORD, widest
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
+MOVED = ("add", "sub", "shl", "and", "or", "xor")
 RENAMING = ("trunc", "zext", "sext", "freeze")
 
 
@@ -159,6 +160,21 @@ class IfConversion:
         """What a block does but for renaming and its branch."""
         return [each for each in self.flow.blocks[arm].instructions[:-1] if each.opcode not in RENAMING]
 
+    def _is_moved(self, arm: str, phi: Instruction) -> bool:
+        """Whether all that a side computes is the same in each iteration, and a narrow value: it is done before the loop [move_invariants in loop-invariant.cc].
+
+        Not so where it is computed into the variable that has been limited before: that is a word.
+        """
+        loop = self.flow.innermost(arm)
+        if loop is None or phi.bits >= WORD:
+            return False
+        limited = (self.flow.instruction(self._plain(value)) for value in phi.operands)
+        return all(
+            each.opcode in MOVED
+            and all(self.flow.is_invariant(self._plain(value), loop) for value in each.operands)
+            for each in self._work(arm)
+        ) and not any(each is not None and each.is_computation for each in limited)
+
     def _plain(self, value: str, phi: Instruction | None = None) -> str:
         """The 32-bit value behind one that LLVM has narrowed."""
         if is_number(value):
@@ -173,7 +189,7 @@ class IfConversion:
     def _of_choice(
         self, label: str, arms: frozenset[str], phi: Instruction, yes: str, no: str
     ) -> ConvertedIf | None:
-        work = [each for arm in arms for each in self._work(arm)]
+        work = [each for arm in arms if not self._is_moved(arm, phi) for each in self._work(arm)]
         test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
         is_flag = not work and {yes, no} in ({"1", "0"}, {*TRUTHS})
         if test is not None and is_flag and (test.opcode == "icmp" or (test.opcode, test.bits) == ("xor", 1)):
