@@ -44,6 +44,7 @@ from bfsim.kernel.estimate.memory.merged_stores import merge_stores
 from bfsim.kernel.estimate.memory.predictive_commoning import with_predictive_commoning
 from bfsim.kernel.estimate.memory.split_loads import split_loads
 from bfsim.kernel.estimate.memory.sunk_stores import with_sunk_stores
+from bfsim.kernel.estimate.redundancies.carried_operations import with_carried_operations
 from bfsim.kernel.estimate.redundancies.carried_values import carry_over
 from bfsim.kernel.estimate.redundancies.chosen_loads import with_chosen_loads
 from bfsim.kernel.estimate.redundancies.hoisted_code import with_hoisted_code
@@ -91,6 +92,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_preheaders,
     without_redundant_loads,
     carry_over,
+    with_carried_operations,
     with_early_loads,
     sink,
     hoist_loads,
@@ -126,6 +128,7 @@ SWITCHES = {
     with_shifted_products: Rule.SHIFTED_PRODUCTS,
     with_operations_on_sides: Rule.OWN_OPERATIONS,
     with_clamps: Rule.EXTREMES,
+    with_carried_operations: Rule.PARTIAL_REDUNDANCIES,
     with_bit_tests: Rule.BIT_TESTS,
     with_narrow_sums: Rule.EXTREMES,
     with_jump_tables: Rule.JUMP_TABLES,
