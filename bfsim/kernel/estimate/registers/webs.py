@@ -45,7 +45,9 @@ class Webs:
                     and not is_one
                 ):
                     found[each.result or ""] = [
-                        (self.context.name(value), label) for value, label in others if value != "poison"
+                        (self.context.chosen(each, value), label)
+                        for value, label in others
+                        if value != "poison"
                     ] + [(self.context.converted(conversion), conversion.label) for conversion in conversions]
         return found
 

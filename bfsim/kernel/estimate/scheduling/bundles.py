@@ -18,7 +18,7 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
     Blocks between which no branch is left are scheduled as one; what a test stood between is not brought together, for GCC may have kept it.
     """
     renews = {
-        context.name(value): each.result or ""
+        context.chosen(each, value): each.result or ""
         for block in context.flow.routine.blocks
         for each in block.instructions
         if each.opcode == "phi"
@@ -27,8 +27,7 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
     found = set[tuple[str, int]]()
     for labels in _merged(context):
         places = [(label, number) for label in labels for number in range(len(code.of[label]))]
-        # a copy of an old value is noted at the loop's end, and made before the new value is there
-        places.sort(key=lambda place: not is_kept(code.of[place[0]][place[1]]))
+        places = _with_copies_in_front(places, code, allocation)
         registers = LocalRegisters(
             [code.of[label][number] for label, number in places],
             allocation.bank.get,
@@ -38,6 +37,24 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
         pairs = BlockSchedule(registers, renews).paired()
         found |= {places[other] for wide, other in pairs if places[wide][0] == places[other][0]}
     return frozenset(found)
+
+
+def _with_copies_in_front(
+    places: list[tuple[str, int]], code: MachineCode, allocation: Allocation
+) -> list[tuple[str, int]]:
+    """Places of instructions, those of copies of old values before what computes the new ones: they are noted at the loop's end."""
+
+    def register(name: str | None) -> str:
+        return allocation.register.get(name or "", name or "")
+
+    found = [place for place in places if not is_kept(code.of[place[0]][place[1]])]
+    made = [register(code.of[label][number].result) for label, number in found]
+    for label, number in reversed([place for place in places if place not in found]):
+        old = register(code.of[label][number].uses[0][0])
+        at = made.index(old) if old in made else 0
+        found.insert(at, (label, number))
+        made.insert(at, "")
+    return found
 
 
 def _merged(context: Context) -> Iterator[list[str]]:

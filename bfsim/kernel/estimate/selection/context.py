@@ -179,6 +179,12 @@ class Context:
             return self.name(each.operands[0])
         return value
 
+    def chosen(self, phi: Instruction, value: str) -> str:
+        """The register of what a phi takes: of what is loaded narrow and extended apart, that of the word."""
+        load = self.flow.instruction(value)
+        is_word = load is not None and ALONG not in (phi.result or "") and self.narrow.extended_apart(load)
+        return f"{value}.wide" if is_word else self.name(value)
+
     def base(self, pointer: str) -> str:
         """The pointer behind constant offsets, as far as an access has them."""
         each, own = self.flow.instruction(pointer), self.fields.own if self.fields else ()
