@@ -75,15 +75,14 @@ MACHINE = _sets(
         "code": "program memories named_kernels",
         "stack": "memories",
         "bus": "timeline simulation memories pages",
-        "owner_costs": "",
-        "calls": "memories pages bus owner_costs",
+        "calls": "memories pages bus",
         "detailed": "simulation memories bus",
         "cameras": "timeline simulation buffers memories bus",
         "peripherals": "firmware_lines simulation program memories bus",
         "dma": "firmware_lines simulation memories bus core",  # core: the type of what a ring waits for
         "retiming": "buffers memories bus calls cameras dma core",
         "core": (
-            "firmware_lines timeline simulation buffers memories bus owner_costs calls cameras "
+            "firmware_lines timeline simulation buffers memories bus calls cameras "
             "peripherals dma"
         ),
         "symbols": "firmware_lines buffers program code",

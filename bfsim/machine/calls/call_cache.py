@@ -24,7 +24,7 @@ from bfsim.machine.calls.ready_calls import ReadyCalls
 from bfsim.machine.calls.records import CoreRecords
 from bfsim.machine.calls.watched_call import BeforeCall, WatchedCall
 from bfsim.machine.memories import Row
-from bfsim.machine.owner_costs import Owner
+from bfsim.trace.owner_costs import Owner
 from bfsim.machine_code.calling import words_at
 from bfsim.trace import REST
 

@@ -18,7 +18,7 @@ from bfsim.kernel.native.entries import NativeEntry, native, native_entry, words
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
-from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
+from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
 from bfsim.machine.pages import zeros
 from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason

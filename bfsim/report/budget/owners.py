@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
-from bfsim.report.budget.waits import waiting_cclk
-from bfsim.trace import OwnerCost, RunRecord
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.trace import RunRecord, StallReason
+from bfsim.trace.owner_costs import CALLS, COLUMN_OF, IDLE, Owner, OwnerCosts, OwnerNumbers
+
+WAITING = [IDLE, COLUMN_OF[StallReason.SEMAPHORE]]
+"""Columns of cycles in which a core only waited (`waits.waiting_cclk`)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,21 +32,50 @@ class OwnerFrames:
     waiting_cclk: tuple[int, ...]
 
 
+class _CoreOwners:
+    """The owners of one core, and their numbers frame by frame."""
+
+    def __init__(self) -> None:
+        self._numbers = OwnerNumbers()
+        self._parts: list[tuple[NDArray[np.int64], ...]] = []  # owner, frame, column and amount
+
+    def add(self, place: int, costs: OwnerCosts) -> list[Owner]:
+        """Add a frame; return the owners that come in it for the first time."""
+        known = len(self._numbers.owners)
+        owners = self._numbers.of(costs)
+        _, columns, amounts = costs.numbers()
+        self._parts.append((owners, np.full(len(owners), place), columns, amounts))
+        return list(islice(self._numbers.owners, known, None))
+
+    def in_frames(self, frames: int) -> dict[Owner, tuple[list[int], ...]]:
+        """Return calls, elapsed and waiting cycles of each owner in each of so many frames."""
+        owners, places, columns, amounts = map(np.concatenate, zip(*self._parts, strict=True))
+        tables = []
+        for kind in (columns == CALLS, columns != CALLS, np.isin(columns, WAITING)):
+            table = np.zeros((len(self._numbers.owners), frames), np.int64)
+            np.add.at(table, (owners[kind], places[kind]), amounts[kind])
+            tables.append(table.tolist())
+        return dict(zip(self._numbers.owners, zip(*tables, strict=True), strict=True))
+
+
 def owner_frames(run: RunRecord) -> Iterator[OwnerFrames]:
-    """Yield all owners of a run, core by core."""
-    found: dict[tuple[str, str, str, str], dict[int, OwnerCost]] = {}
-    for number, frame in enumerate(run.frames):
-        for core in frame.cores:
-            for each in core.owners:
-                found.setdefault((core.core, each.stage, each.owner, each.symbol), {})[number] = each
-    for (core_name, stage, owner, symbol), costs in found.items():
-        in_frames = [costs.get(number) for number in range(len(run.frames))]
+    """Yield all owners of a run in the order in which they come, core by core in each frame."""
+    cores = {core.core: _CoreOwners() for frame in run.frames for core in frame.cores}
+    found = [
+        (core.core, owner)
+        for place, frame in enumerate(run.frames)
+        for core in frame.cores
+        for owner in cores[core.core].add(place, OwnerCosts.of(core.owners))
+    ]
+    in_frames = {name: core.in_frames(len(run.frames)) for name, core in cores.items()}
+    for core_name, owner in found:
+        calls, elapsed_cclk, waiting_cclk = map(tuple, in_frames[core_name][owner])
         yield OwnerFrames(
             core=core_name,
-            stage=stage,
-            owner=owner,
-            symbol=symbol,
-            calls=tuple(each.calls if each else 0 for each in in_frames),
-            elapsed_cclk=tuple(each.elapsed_cclk if each else 0 for each in in_frames),
-            waiting_cclk=tuple(waiting_cclk(each) if each else 0 for each in in_frames),
+            stage=owner.stage,
+            owner=owner.name,
+            symbol=owner.symbol,
+            calls=calls,
+            elapsed_cclk=elapsed_cclk,
+            waiting_cclk=waiting_cclk,
         )

@@ -12,6 +12,7 @@ from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.library import in_callers
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.trace import CoreFrame, KernelRecord, Later, OwnerCost, RunRecord
+from bfsim.trace.owner_costs import sum_of_owners
 
 
 @dataclass(slots=True, kw_only=True)
@@ -91,9 +92,9 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
         for each in frame.stages:
             whole.add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
             costs.setdefault(each.stage, Cost()).add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
-        for owner in frame.owners:
-            if owner.stage in stages:
-                _add_owner(owners.setdefault(owner.stage, {}), owner)
+    for owner in sum_of_owners(frame.owners for frame in core_frames(run, cores)):
+        if owner.stage in stages:
+            _add_owner(owners.setdefault(owner.stage, {}), owner)
     _add_kernels(owners, [each for each in run.kernels if each.core in cores and each.symbol])
     return Profile(
         cores=cores,

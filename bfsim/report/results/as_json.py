@@ -10,7 +10,7 @@ from typing import Any
 
 from bfsim.report.budget.budget import budget_of
 from bfsim.report.budget.owners import owner_frames
-from bfsim.report.jsonable import jsonable
+from bfsim.report.jsonable import indented, jsonable
 from bfsim.report.run.warnings import warnings_of
 from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.trace import RunRecord, RunWarning
@@ -79,5 +79,4 @@ def json_chunks(run: RunRecord, seen: Seen | None = None) -> Iterator[str]:
 
 
 def _text(plain: Mapping[str, Any]) -> str:
-    text = json.dumps(plain, indent=2, ensure_ascii=False)
-    return _NUMBERS.sub(lambda found: f"[{', '.join(found[1].split())}]".replace(",,", ","), text)
+    return _NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", indented(plain))

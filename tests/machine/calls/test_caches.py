@@ -19,7 +19,7 @@ from bfsim.machine.board import Board
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.machine.owner_costs import COLUMN_OF
+from bfsim.trace.owner_costs import COLUMN_OF
 from bfsim.machine.symbols import symbols_of
 from bfsim.trace import BoardRecord, StallReason
 from tests.machine.kernels import copy, fill, first, spin, total

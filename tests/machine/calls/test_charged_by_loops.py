@@ -17,7 +17,7 @@ from bfsim.machine.calls.ledger import (
     charge_events,
     charge_sites,
 )
-from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE
+from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE
 from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason
 

@@ -14,7 +14,7 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS, REASON_OF_ACCOUNT
 from bfsim.machine.bus.transfer_plans import Played, Transfer
 from bfsim.machine.core.clock.accounts import KERNELS, FrameAccounts
-from bfsim.machine.owner_costs import COLUMN_OF, ISSUE
+from bfsim.trace.owner_costs import COLUMN_OF, ISSUE
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import CoreTimeline
 from bfsim.trace import StallReason
