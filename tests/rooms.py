@@ -81,10 +81,7 @@ MACHINE = _sets(
         "peripherals": "firmware_lines simulation program memories bus",
         "dma": "firmware_lines simulation memories bus core",  # core: the type of what a ring waits for
         "retiming": "buffers memories bus calls cameras dma core",
-        "core": (
-            "firmware_lines timeline simulation buffers memories bus calls cameras "
-            "peripherals dma"
-        ),
+        "core": ("firmware_lines timeline simulation buffers memories bus calls cameras peripherals dma"),
         "symbols": "firmware_lines buffers program code",
         "loader": "buffers program memories bus cameras symbols",
         "main_loop": "firmware_lines program core",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from bfsim.spans import NO_STALLS, Place, Span, SpanKind
 from bfsim.trace import REST, StallReason
@@ -71,8 +71,19 @@ class CoreTimeline:
         self._stage = REST
         self._entered_cclk = 0
         self._frame_cclk = 0
+        self.said: Place | None = None
+        """What the core's work is about from now on, as its firmware has said last."""
         self.place: Place | None = None
-        """What the core's work is about from now on."""
+        """What the work is about that is told."""
+        self.when_said: Callable[[Place | None], bool] | None = None
+        """Of a core that runs ahead: notes a place for what is told later; false if nothing is."""
+
+    def say(self, place: Place | None) -> None:
+        """Say what the core's work is about from now on."""
+        if place != self.said:
+            self.said = place
+            if not (self.when_said and self.when_said(place)):
+                self.place = place
 
     def call(
         self, kernel: str, begin_cclk: int, issue_cclk: int, stall_cclk: Mapping[StallReason, int]
@@ -103,6 +114,17 @@ class CoreTimeline:
                 (kind, self._where, name, begin_cclk, end_cclk, stage, issue_cclk, stall_cclk, 0, flow, place)
             )
         )
+
+    def tell_all(
+        self,
+        work: Iterable[tuple[SpanKind, str, int, Mapping[StallReason, int], int, int, int, Place | None]],
+    ) -> None:
+        """Tell calls and waits of one stage: each as kind, name, issue cycles, stalls, flow, begin, end, and what it was about."""
+        where, stage = self._where, self._stage
+        self._timeline.spans += [
+            _span((kind, where, name, begin_cclk, end_cclk, stage, issue_cclk, stall_cclk, 0, flow, place))
+            for kind, name, issue_cclk, stall_cclk, flow, begin_cclk, end_cclk, place in work
+        ]
 
     def level(self, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level of the core's own is from a cycle on."""

@@ -50,7 +50,9 @@ class OwnerCosts(Sequence[OwnerCost]):
         return len(np.unique(self.numbers()[0]))
 
     def __iter__(self) -> Iterator[OwnerCost]:
-        for row, group in groupby(zip(*(each.tolist() for each in self.numbers()), strict=True), lambda each: each[0]):
+        for row, group in groupby(
+            zip(*(each.tolist() for each in self.numbers()), strict=True), lambda each: each[0]
+        ):
             yield _cost(self.owners[row], {column: number for _, column, number in group})
 
     def numbers(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.int64]]:
@@ -93,7 +95,9 @@ class OwnerNumbers:
 
     def __init__(self) -> None:
         self.owners: dict[Owner, int] = {}
-        self._known: dict[int, tuple[tuple[Owner, ...], NDArray[np.int64]]] = {}  # by where a tuple of owners is
+        self._known: dict[
+            int, tuple[tuple[Owner, ...], NDArray[np.int64]]
+        ] = {}  # by where a tuple of owners is
 
     def of(self, costs: OwnerCosts) -> NDArray[np.int64]:
         """Return the owner's number for each number of `costs`."""

@@ -37,6 +37,9 @@ class MemoryOwners:
         """Where in the arena the memory of each owner begins, by its number."""
         self._write()
 
+    def __len__(self) -> int:
+        return len(self._owners)
+
     def __iter__(self) -> Iterator[MemoryOwner]:
         return iter(self._owners)
 

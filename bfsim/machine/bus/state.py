@@ -179,8 +179,9 @@ PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
     COPY,           # post a copy: its plan, and where it begins to read and to write
     AWAIT,          # wait for a copy: how many were posted since, why that is a stall, account
     MOMENT,         # let somebody do at this moment what the bus cannot do: a number for them
-) = range(7)  # fmt: skip
-OF_CALL = 5  # which call an ACCESS is, of those that were prepared
+    ABOUT,          # what follows is about another place of the picture: its number, for who tells it
+) = range(8)  # fmt: skip
+OF_CALL = 5  # which call an ACCESS is, or a RUN of one, of those that were prepared
 OPERATION_WORDS = 6
 MAX_OPERATIONS = 1 << 17
 
@@ -192,8 +193,18 @@ MAX_OPERATIONS = 1 << 17
     MOST,           # operations that it has room for, before the core must meet the others
     IS_FULL,        # whether the core must meet the others before it notes more
     TAKES_CALLS,    # whether calls are noted without Python
-) = range(6)  # fmt: skip
-TAPE_WORDS = 6
+    IS_TOLD,        # whether it is kept what each operation took (below), so that no two calls are noted as one
+) = range(7)  # fmt: skip
+TAPE_WORDS = 7
+
+# ---- What each operation took, by its number: where the core's clock was behind it, and more.
+UNTIL = 0
+COPIED, POSTED_AT = (
+    1,
+    2,
+)  # of a COPY and an AWAIT: the number of the transfer; of a COPY: the tick from which that may begin
+CALL_STALLS = 1  # of a call: its stalls on the bus, in the order above
+TOOK_WORDS = CALL_STALLS + STALLS
 PLAN_WORDS = TRANSFER_WORDS
 MAX_PLANS = 1 << 17
 
@@ -239,4 +250,5 @@ COPIES_AT = (
 )  # number and place of the latest copies of each core
 PLANS_AT = COPIES_AT + CORES * 2 * ENDS
 TAPES_AT = PLANS_AT + MAX_PLANS * PLAN_WORDS
-STATE_WORDS = TAPES_AT + CORES * TAPE_WORDS
+TOOK_AT = TAPES_AT + CORES * TAPE_WORDS
+STATE_WORDS = TOOK_AT + CORES * MAX_OPERATIONS * TOOK_WORDS

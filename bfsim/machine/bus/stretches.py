@@ -68,7 +68,7 @@ def act(state: State, core: int, now: int) -> int:
                 return w.NONE
         if not do(state, core, at, now):
             break
-        state[play + w.OPERATION] += 1
+        go_on(state, core, at)
     state[play + w.ACTS_AT] = w.NEVER
     state[w.DONE_AT] = now
     return end_of_stretch(core)
@@ -138,7 +138,30 @@ def end_wait(state: State, core: int, now: int) -> None:
     else:
         wait_until(state, core, now)
     state[play + w.AWAITED] = w.NONE
-    state[play + w.OPERATION] += 1
+    go_on(state, core, at)
+
+
+@native
+def go_on(state: State, core: int, at: int) -> None:
+    """Go on to a core's next operation; keep what the one that stands `at` took, if it is told."""
+    play = w.PLAYS_AT + core * w.PLAY_WORDS
+    number, kind = state[play + w.OPERATION], state[at]
+    state[play + w.OPERATION] = number + 1
+    if state[w.TAPES_AT + core * w.TAPE_WORDS + w.IS_TOLD] == 0:
+        return
+    took = w.TOOK_AT + (core * w.MAX_OPERATIONS + number) * w.TOOK_WORDS
+    state[took + w.UNTIL] = state[play + w.CLOCK]
+    if kind == w.COPY:
+        copy = copy_before(state, core, 1)
+        state[took + w.COPIED] = state[copy]
+        state[took + w.POSTED_AT] = state[w.TRANSFERS_AT + state[copy + 1] * w.TRANSFER_WORDS + w.AT]
+    elif kind == w.AWAIT:
+        state[took + w.COPIED] = state[copy_before(state, core, state[at + 1])]
+    elif kind == w.ACCESS:
+        has_met_bus = state[at + 3] != state[at + 4]
+        for reason in range(w.STALLS):
+            stall = state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason]
+            state[took + w.CALL_STALLS + reason] = stall if has_met_bus else 0
 
 
 @native

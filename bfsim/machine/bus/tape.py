@@ -48,17 +48,17 @@ def note(state_at: Any, core: int, kind: int, one: int, two: int, three: int, fo
 
 
 @native_entry("int64", "int64*", "int64", "int64*", "int64")
-def note_run(state_at: Any, core: int, work_at: Any, _call: int) -> int:
-    """Note a call, by the numbers of its `Work`, that has met nobody, as one with those just before it; return how many operations were noted before: if none, it is not noted."""
+def note_run(state_at: Any, core: int, work_at: Any, call: int) -> int:
+    """Note a call, by the numbers of its `Work` and its own, that has met nobody, as one with those just before it unless each is told; return how many operations were noted before: if none, it is not noted."""
     state: State = words_at(state_at)
     work: State = words_at(work_at)
     tape = w.TAPES_AT + core * w.TAPE_WORDS
     noted, last = state[tape + w.NOTED], end_of(state, core) - w.OPERATION_WORDS
-    if noted > state[tape + w.MARKED] and state[last] == w.RUN:
+    if noted > state[tape + w.MARKED] and state[last] == w.RUN and state[tape + w.IS_TOLD] == 0:
         state[last + 1] += work[numbers.ISSUE_CCLK]
         state[last + 2] += work[numbers.STALL_CCLK]
     elif noted:
-        write(state, core, w.RUN, work[numbers.ISSUE_CCLK], work[numbers.STALL_CCLK], 0, 0)
+        write(state, core, w.RUN, work[numbers.ISSUE_CCLK], work[numbers.STALL_CCLK], 0, 0, call)
     return noted
 
 
@@ -83,6 +83,7 @@ class Tape:
     def __init__(self, core: int, state: NDArray[np.int64], memory: NDArray[Any]) -> None:
         self.at = state.ctypes.data, memory.ctypes.data, core
         """The addresses of both, and the core."""
+        self.core = core
         self._state = state
         self._words: Any = state.data
         self._tape = w.TAPES_AT + core * w.TAPE_WORDS
@@ -124,8 +125,25 @@ class Tape:
 
     def operations(self, first: int, end: int) -> NDArray[np.int64]:
         """Return operations, a row each."""
-        rows = self._state[self._first : self._first + w.MAX_OPERATIONS * w.OPERATION_WORDS]
-        return rows.reshape(-1, w.OPERATION_WORDS)[first:end]
+        at = self._first + first * w.OPERATION_WORDS
+        return self._state[at : self._first + end * w.OPERATION_WORDS].reshape(-1, w.OPERATION_WORDS)
+
+    def tell(self) -> None:
+        """Have it kept from now on what each operation took."""
+        self._words[self._tape + w.IS_TOLD] = 1
+
+    def took(self, first: int, end: int) -> NDArray[np.int64]:
+        """Return what operations took that the bus has played, a row each, if that is kept."""
+        at, end_at = (
+            w.TOOK_AT + (self.core * w.MAX_OPERATIONS + each) * w.TOOK_WORDS for each in (first, end)
+        )
+        return self._state[at:end_at].reshape(-1, w.TOOK_WORDS)
+
+    @property
+    def played(self) -> int:
+        """How many operations the bus has played of those that it was given last."""
+        count: int = self._words[w.PLAYS_AT + self.core * w.PLAY_WORDS + w.OPERATION]
+        return count
 
     def mark(self) -> int:
         """Set a mark: calls before it and behind it are not noted as one. Return how many operations it is behind."""

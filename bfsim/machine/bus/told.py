@@ -6,16 +6,17 @@ The compiled code knows of none of it. When a transfer began follows from its en
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.masters import CORE_ROWS, DMA_MASTERS, INTERNAL, NAMED
 from bfsim.machine.bus.memory_owners import MemoryOwners
-from bfsim.machine.bus.traffic import traffic_in
+from bfsim.machine.bus.traffic import TRAFFIC_SHAPE, traffic_in
 from bfsim.machine.timeline import Timeline
 from bfsim.spans import SpanKind
 
@@ -27,6 +28,7 @@ SAMPLE_CCLK = 60_000
 
 _CORES = [row for rows in CORE_ROWS.values() for row in rows]
 _BUSY = {"DMA": [each.number for each in DMA_MASTERS], "cores": _CORES}
+_TRANSFER = SpanKind.TRANSFER
 _AT_L2_PORT = (*INTERNAL, *_CORES)
 """Who comes through the port of L2 that is modelled."""
 
@@ -48,16 +50,20 @@ class ToldBus:
     ) -> None:
         self._timeline = timeline
         self._words = words
+        self._traffic = traffic_in(words).reshape(-1)
         self._owners = owners
+        self._known_owners = 0
         self._l2 = board.chip.l2
         self._cclk_ticks = board.clocks.cclk_ticks
         self._posted: dict[int, deque[_Posted]] = {}
         self._pending: dict[int, bool] = {}  # by number: whether a core waited for its end
         self._free_at: dict[int, int] = {}
         self._sampled_cclk = 0
-        self._next_sample = SAMPLE_CCLK * self._cclk_ticks
-        self._busy = dict.fromkeys(_BUSY, 0)
-        self._l2_bytes = 0
+        self.next_sample = SAMPLE_CCLK * self._cclk_ticks
+        """The tick at which the load is to be told next, if the bus has come up to it."""
+        self._sums = [0] * (len(_BUSY) + 1)
+        self.before: list[Callable[[], None]] = []
+        """What is to be called before transfers are told."""
 
     # ---- transfers
 
@@ -65,6 +71,10 @@ class ToldBus:
         """Note a transfer that may begin at tick `at`."""
         if len(self._pending) >= MOST_PENDING:
             self.tell(now)
+        self.note(master, number, name, at, nbytes)
+
+    def note(self, master: int, number: int, name: str, at: int, nbytes: int) -> None:
+        """Note a transfer that a core has posted while it ran ahead."""
         self._pending[number] = False
         self._posted.setdefault(master, deque()).append(_Posted(number, name, at, nbytes))
 
@@ -76,38 +86,54 @@ class ToldBus:
         return number + 1
 
     def tell(self, now: int) -> None:
-        """Tell the transfers that were over before tick `now`: nobody begins to wait for them any more."""
+        """Tell the transfers that were over before tick `now`: nobody begins to wait for them any more.
+
+        Before that cores that run ahead tell what the bus has played of theirs, and which transfers they have waited for.
+        """
+        for each in self.before:
+            each()
+        words, cclk = self._words, self._timeline.cclk
         for master, posted in self._posted.items():
-            while posted and w.NONE != (end := self._words[w.ENDS_AT + posted[0].number % w.ENDS]) < now:
+            where, free_at = NAMES[master], self._free_at.get(master, 0)
+            while posted and w.NONE != (end := words[w.ENDS_AT + posted[0].number % w.ENDS]) < now:
                 number, name, at, nbytes = posted.popleft()
-                begin, self._free_at[master] = max(at, self._free_at.get(master, 0)), end
+                begin, free_at = max(at, free_at), end
                 flow = number + 1 if self._pending.pop(number) else 0
-                edges = self._timeline.cclk(begin), self._timeline.cclk(end)
-                self._timeline.span(SpanKind.TRANSFER, NAMES[master], name, *edges, nbytes, flow)
+                self._timeline.span(_TRANSFER, where, name, cclk(begin), cclk(end), nbytes, flow)
+            self._free_at[master] = free_at
 
     # ---- load
 
     def sample(self, now: int) -> None:
         """Tell how busy the bus was since the last time, if that is long enough ago; it has come up to tick `now`."""
-        if now < self._next_sample:
+        if now < self.next_sample:
             return
         now_cclk = now // self._cclk_ticks
         elapsed_cclk = now_cclk - self._sampled_cclk
-        self._next_sample = now + SAMPLE_CCLK * self._cclk_ticks
-        for who, masters in _BUSY.items():
-            before, self._busy[who] = self._busy[who], self._sum("SDRAM", masters, [w.BUSY])
-            percent = 100 * (self._busy[who] - before) // (elapsed_cclk * self._cclk_ticks)
+        self.next_sample = now + SAMPLE_CCLK * self._cclk_ticks
+        before, self._sums = self._sums, self._summed()
+        *busy, l2_bytes = (after - first for first, after in zip(before, self._sums, strict=True))
+        for who, ticks in zip(_BUSY, busy, strict=True):
+            percent = 100 * ticks // (elapsed_cclk * self._cclk_ticks)
             self._timeline.level("SDRAM bus", f"busy with {who}, %", percent, self._sampled_cclk)
         if self._l2:
-            before, self._l2_bytes = (
-                self._l2_bytes,
-                self._sum("L2", _AT_L2_PORT, [w.READ_BYTES, w.WRITTEN_BYTES]),
-            )
-            held_cclk = (self._l2_bytes - before) * self._l2.next_cclk // self._l2.port_bytes
+            held_cclk = l2_bytes * self._l2.next_cclk // self._l2.port_bytes
             self._timeline.level("L2 port", "busy, %", 100 * held_cclk // elapsed_cclk, self._sampled_cclk)
         self._sampled_cclk = now_cclk
 
-    def _sum(self, memory: str, masters: Sequence[int], counters: Sequence[int]) -> int:
-        """Return the sum of some counters of some masters over all buffers in a memory."""
+    def _summed(self) -> list[int]:
+        """Return how long SDRAM has been busy with each kind of masters so far, and how many bytes came through the port of L2."""
+        if len(self._owners) != self._known_owners:
+            self._known_owners = len(self._owners)
+            parts = [self._places("SDRAM", masters, [w.BUSY]) for masters in _BUSY.values()]
+            parts.append(self._places("L2", _AT_L2_PORT, [w.READ_BYTES, w.WRITTEN_BYTES]))
+            self._counters = np.concatenate(parts)
+            self._begins = np.cumsum([0, *map(len, parts[:-1])])
+        sums: list[int] = np.add.reduceat(self._traffic[self._counters], self._begins).tolist()
+        return sums
+
+    def _places(self, memory: str, masters: Sequence[int], counters: Sequence[int]) -> NDArray[np.intp]:
+        """Return where some counters of some masters are, of all buffers in a memory."""
         owners = [number for number, each in enumerate(self._owners) if each.memory == memory]
-        return int(traffic_in(self._words)[np.ix_(owners, masters, counters)].sum())
+        grid = np.ix_(owners, masters, counters)
+        return np.ravel_multi_index(np.broadcast_arrays(*grid), TRAFFIC_SHAPE).ravel()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,13 @@ from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.state import State
 from bfsim.trace import TrafficRecord
 
+TRAFFIC_SHAPE = w.MAX_OWNERS, w.MASTERS, w.TRAFFIC_WORDS
+
 
 def traffic_in(words: Any) -> NDArray[np.int64]:
     """Return the traffic in the state `words` of the bus: by owner of the memory, master, and what."""
-    size = w.MAX_OWNERS * w.MASTERS * w.TRAFFIC_WORDS
-    counted = np.asarray(words[w.TRAFFIC_AT : w.TRAFFIC_AT + size], np.int64)
-    return counted.reshape(w.MAX_OWNERS, w.MASTERS, w.TRAFFIC_WORDS)
+    counted = np.asarray(words[w.TRAFFIC_AT : w.TRAFFIC_AT + prod(TRAFFIC_SHAPE)], np.int64)
+    return counted.reshape(TRAFFIC_SHAPE)
 
 
 def traffic_records(words: Any, owners: MemoryOwners, cclk_ticks: int) -> tuple[TrafficRecord, ...]:

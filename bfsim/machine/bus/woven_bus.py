@@ -26,8 +26,9 @@ from bfsim.machine.bus.tape import Tape
 from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
-from bfsim.machine.simulation import Simulation
+from bfsim.machine.simulation import END_OF_TIME, Simulation
 
+READY = w.MASTERS_AT + w.READY
 TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
 
 
@@ -60,18 +61,43 @@ class WovenBus:
     def settle(self) -> None:
         """Grant everything that was asked for before the simulated time."""
         self.play_until(self._env.tick)
-        if told := self.records.told:
-            told.sample(self._env.tick)
 
     def play_until(self, tick: int) -> bool:
         """Grant everything that was asked for before `tick`; stop early, with True, at an end that somebody waits for.
 
-        The event of whoever waits is put on the simulation's queue at its tick.
+        The event of whoever waits is put on the simulation's queue at its tick. On the way the load of the buses is told.
         """
+        told = self.records.told
+        while told and told.next_sample < tick and not (tick == END_OF_TIME and self._is_at_rest):
+            if self._play_until(told.next_sample):
+                return True
+            told.sample(told.next_sample)
+        return self._play_until(tick)
+
+    def _play_until(self, tick: int) -> bool:
         while (woken := self._advance(tick)) != w.NONE:
             if self._ends.wake(woken, self.words[w.DONE_AT]):
                 return True
         return False
+
+    @property
+    def _is_at_rest(self) -> bool:
+        """Whether nothing will happen on the bus before somebody asks for more."""
+        words, plays = self.words, w.PLAYS_AT + w.ACTS_AT
+        acts = words[plays : plays + w.CORES * w.PLAY_WORDS : w.PLAY_WORDS]
+        return not words[w.POSTED] and all(
+            each == w.NEVER for each in (*words[READY : READY + w.MASTERS], *acts)
+        )
+
+    @property
+    def cclk_ticks(self) -> int:
+        """Ticks of a cycle of the cores."""
+        ticks: int = self.words[w.CCLK]
+        return ticks
+
+    def end_of(self, number: int) -> int | None:
+        """Return the tick at which a transfer was over, by its number, or None as long as nobody can know."""
+        return Transfer(self.words, number, w.NONE).end
 
     @property
     def is_awaited(self) -> bool:

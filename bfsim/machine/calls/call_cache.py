@@ -24,9 +24,9 @@ from bfsim.machine.calls.ready_calls import ReadyCalls
 from bfsim.machine.calls.records import CoreRecords
 from bfsim.machine.calls.watched_call import BeforeCall, WatchedCall
 from bfsim.machine.memories import Row
-from bfsim.trace.owner_costs import Owner
 from bfsim.machine_code.calling import words_at
 from bfsim.trace import REST
+from bfsim.trace.owner_costs import Owner
 
 
 def _nobody(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:

@@ -18,10 +18,10 @@ from bfsim.kernel.native.entries import NativeEntry, native, native_entry, words
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
-from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
 from bfsim.machine.pages import zeros
 from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason
+from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
 
 SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
 """What is counted of a site, in the order of `Counted`; the lines that its accesses filled are behind them."""

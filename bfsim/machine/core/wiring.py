@@ -22,6 +22,7 @@ from bfsim.machine.core.pictures.readout import Readout
 from bfsim.machine.core.progress.ahead import Ahead
 from bfsim.machine.core.progress.in_step import InStep
 from bfsim.machine.core.progress.progress import Progress
+from bfsim.machine.core.progress.told_ahead import ToldAhead
 from bfsim.machine.core.stages import Stages
 from bfsim.machine.core.synchronisation.shared_objects import SharedObjects
 from bfsim.machine.core.synchronisation.synchronisation import Synchronisation
@@ -63,10 +64,10 @@ def parts_of(
     clock = CoreClock(env, name, around.board, bus, around.stages)
     in_step = InStep(env, bus, number, clock, shared.interrupts[name], Waits(name))
     progress: Progress = in_step
-    if (
-        around.ahead and isinstance(bus, WovenBus) and not env.timeline
-    ):  # which is told of everything at its time
-        progress = around.ahead(env, in_step, name, number, bus, access_trace, chip.events)
+    if around.ahead and isinstance(bus, WovenBus):
+        tape = bus.tape(number)
+        told = ToldAhead(clock.timeline, bus, tape, calls.made) if clock.timeline else None
+        progress = around.ahead(env, in_step, name, number, bus, tape, access_trace, chip.events, told)
     tasks = Tasks(name, progress, calls, shared.handovers, chip.events)
     in_step.serve_interrupts = tasks.serve_interrupts
     pictures = Pictures(

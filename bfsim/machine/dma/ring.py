@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from ctypes import addressof
+from functools import partial
 from typing import Any
 
 from bfsim.errors import FirmwareError
@@ -63,6 +64,8 @@ class _TakenLines:
         number, ahead = self._words[DONE], self._lines.ahead
         if ahead and self._progress.runs_ahead:
             self._lines.plan(number, number + 1)
+            if self._progress.clock.timeline:
+                self._on_line(number, self._height)
             if (row := ahead.fetch(self._lines.at, self._at)) >= 0:
                 return self._rows[row]
         return (yield from self._waited_for(number))
@@ -90,15 +93,15 @@ class _TakenLines:
         )
         progress.settle()
         is_there = lines.goes_on(copy)
-        if timeline:
-            progress.clock.tell_level(self._owner, int(is_there))
+        if not progress.runs_ahead:
+            progress.when_there(partial(progress.clock.tell_level, self._owner, int(is_there)))
         if not is_there:
             yield from progress.wait_transfer(copy, EMPTY, self._owner)
         return self._rows[number % self._depth]
 
     def at_once(self) -> Callable[[], Generator[Any, Any, Row]]:
         """Return what takes a line by machine code, as long as that can."""
-        if self._lines.ahead is None:
+        if self._lines.ahead is None or self._progress.clock.timeline:  # which is told of each line
             return self.line
         rows = tuple(map(over, self._rows))
         return self._lines.ahead.answering(note_fetch, self._lines.at, self._at, rows, self.line)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ class _CoreOwners:
 
     def __init__(self) -> None:
         self._numbers = OwnerNumbers()
-        self._parts: list[tuple[NDArray[np.int64], ...]] = []  # owner, frame, column and amount
+        self._parts: list[tuple[NDArray[Any], ...]] = []  # owner, frame, column and amount
 
     def add(self, place: int, costs: OwnerCosts) -> list[Owner]:
         """Add a frame; return the owners that come in it for the first time."""

@@ -13,7 +13,8 @@ from bfsim.spans import Place, Span, SpanKind
 Cycles = Mapping[tuple[str, Place | None], int]
 """The cycles of a core in a frame by stage and place; None is no place."""
 
-_FILLING = {SpanKind.CALL, SpanKind.WORK, SpanKind.STALL, SpanKind.IDLE}
+_FILLING = (SpanKind.CALL, SpanKind.STALL, SpanKind.WORK, SpanKind.IDLE)  # the most frequent ones first
+_FRAME = SpanKind.FRAME
 
 
 class Heats:
@@ -25,11 +26,24 @@ class Heats:
 
     def add(self, spans: Iterable[Span]) -> None:
         """Take what happened next."""
+        last: tuple[str, str, Place | None] = ("", "", None)
+        cclk = 0  # most come at the place of the one before
         for each in spans:
-            if each.kind in _FILLING:
-                self._open[each.where][each.stage, each.place] += each.elapsed_cclk
-            elif each.kind is SpanKind.FRAME:
-                self._done[each.value, each.where] = self._open.pop(each.where, Counter())
+            kind, where, _, begin_cclk, end_cclk, stage, *_, place = each
+            if kind in _FILLING:
+                if (where, stage, place) != last:
+                    self._put(*last, cclk)
+                    last, cclk = (where, stage, place), 0
+                cclk += end_cclk - begin_cclk
+            elif kind is _FRAME:
+                self._put(*last, cclk)
+                cclk = 0
+                self._done[each.value, where] = self._open.pop(where, Counter())
+        self._put(*last, cclk)
+
+    def _put(self, core: str, stage: str, place: Place | None, cclk: int) -> None:
+        if cclk:
+            self._open[core][stage, place] += cclk
 
     def has(self, frame: int, core: str) -> bool:
         """Whether a core, such as "core A", has finished a frame."""

@@ -49,14 +49,18 @@ class Cells:
 
         What took most: first of what it can mean, then of the names of that.
         """
-        meanings = {meaning: place for place, meaning in enumerate(dict.fromkeys(key[0] for _, key in self.names))}
+        meanings = {
+            meaning: place for place, meaning in enumerate(dict.fromkeys(key[0] for _, key in self.names))
+        }
         track_of = np.array([tracks[track] for track, _ in self.names], np.int64)[self.kinds]
         meaning_of = np.array([meanings[key[0]] for _, key in self.names], np.int64)[self.kinds]
         groups, (parts, _) = _sums((track_of, self.slices), self.parts, self.firsts)
         alike, (of_meaning, firsts) = _sums((groups, meaning_of), self.parts, self.firsts)
         order = np.lexsort((self.firsts, -self.parts, firsts[alike], -of_meaning[alike], groups))
         best = order[np.diff(groups[order], prepend=-1) > 0]
-        for kind, number, whole in zip(self.kinds[best].tolist(), self.slices[best].tolist(), parts.tolist(), strict=True):
+        for kind, number, whole in zip(
+            self.kinds[best].tolist(), self.slices[best].tolist(), parts.tolist(), strict=True
+        ):
             track, key = self.names[kind]
             yield track, number, key, whole
 
@@ -83,8 +87,10 @@ def _shares(spans: Sequence[Span]) -> tuple[tuple[tuple[str, Key], ...], Ints, I
     """
     names = dict[tuple[str, Key], int]()
     kinds, wheres, whats, begins, ends, _, _, stalls, *_ = _columns(spans, len(Span._fields))
-    own = list(zip(map(id, kinds), wheres, whats, strict=True))  # the hash of a kind takes as long as all else
-    numbers = {
+    own = list(
+        zip(map(id, kinds), wheres, whats, strict=True)
+    )  # the hash of a kind takes as long as all else
+    numbers: dict[object, int] = {
         one: names.setdefault((_track(each), (_MEANING.get(each.kind, each.name), each.name)), len(names))
         for one, each in dict(zip(own, spans, strict=True)).items()
     }
@@ -117,7 +123,9 @@ def _part(overlaps: Ints, cclk: Ints, elapsed: Ints) -> Ints:
     return np.asarray(exact * cclk // elapsed, np.int64)
 
 
-def _summed(names: tuple[tuple[str, Key], ...], kinds: Ints, slices: Ints, parts: Ints, firsts: Ints) -> Cells:
+def _summed(
+    names: tuple[tuple[str, Key], ...], kinds: Ints, slices: Ints, parts: Ints, firsts: Ints
+) -> Cells:
     """Return what comes several times as one."""
     cells, (parts, firsts) = _sums((kinds, slices), parts, firsts)
     _, where = np.unique(cells, return_index=True)

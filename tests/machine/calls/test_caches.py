@@ -19,9 +19,9 @@ from bfsim.machine.board import Board
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.trace.owner_costs import COLUMN_OF
 from bfsim.machine.symbols import symbols_of
 from bfsim.trace import BoardRecord, StallReason
+from bfsim.trace.owner_costs import COLUMN_OF
 from tests.machine.kernels import copy, fill, first, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, made_board, play
 from tests.machine.placements import changed, shipped

@@ -17,9 +17,9 @@ from bfsim.machine.calls.ledger import (
     charge_events,
     charge_sites,
 )
-from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE
 from bfsim.machine_code.built_in import built_in
 from bfsim.trace import StallReason
+from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE
 
 SITES, COUNTERS, OWNERS, COUNT = 40, 30, 6, 200
 CHARGED = [CALLS, ISSUE, COLUMN_OF[StallReason.INTERLOCK]]

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.trace.owner_costs import COLUMN_OF, COLUMNS, IDLE, ISSUE, Owner, OwnerCosts
 from bfsim.trace import REST, CoreFrame, StageCost, StallReason
+from bfsim.trace.owner_costs import COLUMN_OF, COLUMNS, IDLE, ISSUE, Owner, OwnerCosts
 
 KERNELS = ""
 """The owner of what kernels cost."""

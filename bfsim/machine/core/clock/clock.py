@@ -14,10 +14,10 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS, REASON_OF_ACCOUNT
 from bfsim.machine.bus.transfer_plans import Played, Transfer
 from bfsim.machine.core.clock.accounts import KERNELS, FrameAccounts
-from bfsim.trace.owner_costs import COLUMN_OF, ISSUE
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import CoreTimeline
 from bfsim.trace import StallReason
+from bfsim.trace.owner_costs import COLUMN_OF, ISSUE
 
 KERNEL_COLUMNS = (ISSUE, *(COLUMN_OF[each] for each in (StallReason.INTERLOCK, *BUS_STALLS)))
 """Columns of what kernels took, in the order of `Played`."""
@@ -133,6 +133,7 @@ class CoreClock:
         if not self.timeline:
             yield
             return
-        before, self.timeline.place = self.timeline.place, None
+        before = self.timeline.said
+        self.timeline.say(None)
         yield
-        self.timeline.place = before
+        self.timeline.say(before)

@@ -106,7 +106,7 @@ class Pictures:
     def at(self, rows: int | range | Pixels | None = None, columns: Columns | None = None) -> None:
         """Say what the work from here on is about."""
         if self._clock.timeline:
-            self._clock.timeline.place = None if rows is None else place_of(rows, columns)
+            self._clock.timeline.say(None if rows is None else place_of(rows, columns))
 
     def take_line(self, number: int, lines: int) -> None:
         """Note that the core took a line of a picture of so many `lines`, and works on it unless it says more exactly where."""
@@ -115,7 +115,7 @@ class Pictures:
             timeline
             and self._frame
             and lines == self._frame.height
-            and (timeline.place is None or timeline.place.columns is None)
+            and (timeline.said is None or timeline.said.columns is None)
         ):
             self.at(number)
 

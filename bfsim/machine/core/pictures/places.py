@@ -21,8 +21,7 @@ Columns = int | range | Callable[[], Iterable[int]]
 def place_of(rows: int | range | Pixels, columns: Columns | None) -> Place | None:
     """Return the place that rows and columns mean, None for no pixel. Raises FirmwareError for what is no place."""
     if callable(rows):
-        pixels = _pixels(list(rows()))
-        return Place(*zip(*pixels, strict=True)) if pixels else None
+        return _pixels(list(rows()))
     if columns is None:
         return Place(_range(rows))
     if callable(columns):
@@ -31,11 +30,28 @@ def place_of(rows: int | range | Pixels, columns: Columns | None) -> Place | Non
     return Place(_range(rows), _range(columns))
 
 
-def _pixels(given: list[Any]) -> list[tuple[int, int]]:
-    for each in given:
+def _pixels(given: list[Any]) -> Place | None:
+    """Return single pixels in order, each once."""
+    for each in given if _kind_of(given) != "i" else ():
         if not isinstance(each, Sequence | np.ndarray) or len(each) != 2:
             raise FirmwareError(f"a pixel of core.at must be a row and a column, not {shown(each)}")
-    return sorted({(_whole(row), _whole(column)) for row, column in given})
+        _whole(each[0]), _whole(each[1])
+    if not given:
+        return None
+    rows, columns = np.array(given, np.int64).T
+    order = np.lexsort((columns, rows))
+    rows, columns = rows[order], columns[order]
+    is_new = (np.diff(rows, prepend=rows[0] - 1) != 0) | (np.diff(columns, prepend=0) != 0)
+    return Place(tuple(rows[is_new].tolist()), tuple(columns[is_new].tolist()))
+
+
+def _kind_of(given: list[Any]) -> str:
+    """Return the kind of numbers that pairs are, as numpy has it; nothing for what are no pairs of numbers."""
+    try:
+        pairs = np.array(given)
+    except ValueError:  # not all of them have the same length
+        return ""
+    return pairs.dtype.kind if pairs.shape == (len(given), 2) else ""
 
 
 def _range(places: int | range) -> range:

@@ -22,6 +22,7 @@ from bfsim.kernel import Work
 from bfsim.kernel.calls.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import COUNTER_OF
+from bfsim.machine.bus.tape import Tape
 from bfsim.machine.bus.tape_lines import COPY_WORDS, HEAD, PLAN, NotedLines
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.woven_bus import WovenBus
@@ -30,6 +31,7 @@ from bfsim.machine.core.interrupts import Handler
 from bfsim.machine.core.progress.in_step import InStep
 from bfsim.machine.core.progress.line_copies import Copy, LineCopies, Lines
 from bfsim.machine.core.progress.progress import Away
+from bfsim.machine.core.progress.told_ahead import ToldAhead
 from bfsim.machine.core.waits import Wait
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
@@ -92,8 +94,10 @@ class Ahead:
     """`Progress` of a core that runs ahead until somebody may interrupt it; `in_step` does what is done at its time."""
 
     def __init__(
-        self, env: Simulation, in_step: InStep, name: str, number: int, bus: WovenBus, access_trace: AccessTrace, events: EventSpec
+        self, env: Simulation, in_step: InStep, name: str, number: int, bus: WovenBus, tape: Tape,
+        access_trace: AccessTrace, events: EventSpec, told: ToldAhead | None,
     ) -> None:  # fmt: skip
+        """`told`: tells the timeline, if there is one."""
         self.clock = in_step.clock
         self.interrupts = in_step.interrupts
         self.waits = in_step.waits
@@ -105,8 +109,9 @@ class Ahead:
         self._bus = bus
         self._access_trace = access_trace
         self._write_cclk, self._read_cclk = events.mmr_write_cclk, events.mmr_read_cclk
-        self.tape = bus.tape(number)
+        self.tape = tape
         self.tape.takes_calls = True
+        self._told = told
         self.lines = NotedLines(self.tape)
         """Notes lines of rings on the tape."""
         self._owners: dict[str, int] = {}  # of accounts
@@ -117,6 +122,8 @@ class Ahead:
     def _begin(self) -> None:
         """Begin anew: the clock is where the firmware is."""
         self.tape.clear()
+        if self._told:
+            self._told.clear()
         self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many operations
         self._access_trace.drop()
 
@@ -204,6 +211,8 @@ class Ahead:
             if kind not in plans:
                 plan = stream.plan(source, destination)
                 plans[kind] = int(self._bus.stretches.keep_plans([plan.words])[0])
+                if self._told:
+                    self._told.plans[plans[kind]] = plan
             words += plans[kind], source.offset, destination.offset, 0, source.nbytes
         return words
 
@@ -271,7 +280,11 @@ class Ahead:
             stretches, owners, first = self._bus.stretches, list(self._owners), 0
             for end, what in (*self._moments, (noted, self._begin)):
                 if end > first:
+                    if self._told:
+                        self._told.begin(first, self.clock.cclk, owners)
                     yield stretches.play(self._number, self.clock.cclk, len(owners), end, first)
+                    if self._told:
+                        self._told.tell()
                     self.clock.stretch(stretches.played(self._number, len(owners)), owners)
                     first = end
                 what()
