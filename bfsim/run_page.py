@@ -98,6 +98,7 @@ def _write(
     from bfsim.report.html.page import Page  # its packages are an extra
 
     gantts.finish()
+    pictures.finish()
     page = Page(
         run=run,
         pictures=pictures,

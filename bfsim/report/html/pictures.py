@@ -5,12 +5,14 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from io import BytesIO
 from typing import Self
 
 from PIL import Image
 
 from bfsim.files.spool import Spool
+from bfsim.report.html.behind import Behind
 from bfsim.report.overlay.layers import LAYERS, UNDER_HEAT
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.seen import SeenFrame
@@ -32,8 +34,8 @@ _LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
 class Pictures:
     """The overlay of each frame of a run and its heat map, as small as a page of `frames` of them needs it. A context manager.
 
-    In memory there is one at a time. `is_wanted` says which frames are drawn with their heat. Raises ConfigError where there
-    is no room for its file.
+    They are drawn behind the run, and all there after `finish`. `is_wanted` says which frames are drawn with their heat. Raises
+    ConfigError where there is no room for its file.
     """
 
     def __init__(self, is_wanted: Callable[[int], bool] = lambda _index: True) -> None:
@@ -41,27 +43,37 @@ class Pictures:
         self.frames = 1
         self._overlays = Spool()
         self._heats = Spool()
+        self._behind = Behind()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_error: object) -> None:
+        self._behind.__exit__()
         self._overlays.__exit__()
         self._heats.__exit__()
 
     def add(self, frame: SeenFrame) -> None:
         """Draw what was seen in a frame."""
-        self._overlays.put(frame.index, overlay_webp(frame, self.frames))
+        self._behind.do(partial(self._draw, frame))
 
     def add_with_heat(self, frame: SeenFrame) -> None:
         """Draw what was seen in a frame whose cameras have their heat, and the heat, if it is wanted."""
         if not self._is_wanted(frame.index):
             return
         self.add(replace(frame, cameras=tuple(replace(each, heat=None) for each in frame.cameras)))
-        self._heats.put(
-            frame.index,
-            webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), _room_bytes(HEAT_SHARE, self.frames)),
-        )
+        self._behind.do(partial(self._draw_heat, frame))
+
+    def finish(self) -> None:
+        """Wait until all is drawn."""
+        self._behind.finish()
+
+    def _draw(self, frame: SeenFrame) -> None:
+        self._overlays.put(frame.index, overlay_webp(frame, self.frames))
+
+    def _draw_heat(self, frame: SeenFrame) -> None:
+        room_bytes = _room_bytes(HEAT_SHARE, self.frames)
+        self._heats.put(frame.index, webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), room_bytes))
 
     def has_overlay(self, index: int) -> bool:
         """Whether a frame was seen."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +33,9 @@ def picture_with_edges(
         large = _with_map(large, seen.map)
     if seen.heat and hottest_us:
         large = heated(large, seen.heat, hottest_us)
-    edges = seen.edges
+    edges, picture = seen.edges, np.array(large)
     if not len(edges.y_px):
-        return np.asarray(large)
+        return picture
     paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
     paint[edges.y_px, edges.x_px, :3] = colours.EDGE
     paint[edges.y_px, edges.x_px, 3] = np.clip(edges.gradients / FULL_GRADIENT, FAINTEST, 1)
@@ -42,13 +43,14 @@ def picture_with_edges(
         places = edges.y_px[each.left_edges], edges.x_px[each.left_edges]
         paint[(*places, slice(3))] = [depths.colour(depth) for depth in each.places_mm[:, 2]]
         paint[(*places, 3)] = 1
+    y_px, x_px = (each.astype(np.int64) for each in (edges.y_px, edges.x_px))
+    colour, share = np.split(paint[y_px, x_px], [3], axis=1)
     side = max(1, round(EDGE_SIDE * scale))
-    square = np.zeros((scale, scale, 1), np.float32)
-    square[(scale - side) // 2 :, (scale - side) // 2 :][:side, :side] = 1
-    share = np.kron(paint[..., 3:], square)
-    picture = np.asarray(large, np.float32)
-    colour = paint[..., :3].repeat(scale, axis=0).repeat(scale, axis=1)
-    return np.asarray((picture + (colour - picture) * share).round(), np.uint8)
+    for down, across in product(range((scale - side) // 2, (scale - side) // 2 + side), repeat=2):
+        place = y_px * scale + down, x_px * scale + across
+        before = picture[place].astype(np.float32)
+        picture[place] = (before + (colour - before) * share).round()
+    return picture
 
 
 @cache

@@ -41,8 +41,7 @@ def bars_of(heat: SeenHeat, height: int, longest_us: float) -> Image.Image:
     ends_px = (ends_us / (longest_us or 1.0) * BARS).round().astype(int)
     paint = np.full((ends_px.shape[1], BARS, 3), style.GRID, np.uint8)
     for stage, ends in reversed(list(zip(stages, ends_px, strict=True))):
-        for row, end in enumerate(ends):
-            paint[row, :end] = colour_of(stages, stage)
+        paint[np.arange(BARS) < ends[:, None]] = colour_of(stages, stage)
     return Image.fromarray(paint, "RGB").resize((BARS, height), Image.Resampling.NEAREST)
 
 
