@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.api import Row
 from tinyphoon.stages.line_segments import EDGES, END_X, END_Y, SEGMENT_WORDS, START_X, START_Y
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 
-Pixels = Callable[[], Iterator[tuple[int, int]]]
+Pixels = Callable[[], NDArray[np.int64]]
 
 
 def segment_pixels(segments: Row, count: int) -> Pixels:
     """Return what tells the pixels (row, column) between the outermost edges of the first `count` places of the table."""
 
-    def pixels() -> Iterator[tuple[int, int]]:
-        for each in segments.array[: count * SEGMENT_WORDS].reshape(-1, SEGMENT_WORDS):
-            if each[EDGES]:
-                yield from _between(*(float(each[word]) for word in (START_X, START_Y, END_X, END_Y)))
+    def pixels() -> NDArray[np.int64]:
+        table = segments.array[: count * SEGMENT_WORDS].reshape(-1, SEGMENT_WORDS)
+        return _between(table[table[:, EDGES] != 0][:, [START_Y, START_X, END_Y, END_X]].astype(float))
 
     return pixels
 
@@ -27,15 +27,18 @@ def segment_pixels(segments: Row, count: int) -> Pixels:
 def line_pixels(lines: Row, count: int) -> Pixels:
     """Return what tells the pixels (row, column) under the first `count` lines."""
 
-    def pixels() -> Iterator[tuple[int, int]]:
-        for each in lines.array[: count * LINE_WORDS].reshape(-1, LINE_WORDS):
-            yield from _between(*(each[word] / SUBPIXELS for word in (LINE_X0, LINE_Y0, LINE_X1, LINE_Y1)))
+    def pixels() -> NDArray[np.int64]:
+        table = lines.array[: count * LINE_WORDS].reshape(-1, LINE_WORDS)
+        return _between(table[:, [LINE_Y0, LINE_X0, LINE_Y1, LINE_X1]] / SUBPIXELS)
 
     return pixels
 
 
-def _between(x0: float, y0: float, x1: float, y1: float) -> Iterator[tuple[int, int]]:
-    """Yield the pixels from one end of a line to the other, one in each row or in each column."""
-    steps = round(max(abs(x1 - x0), abs(y1 - y0))) + 1
-    places = np.linspace((y0, x0), (y1, x1), steps).round().astype(int)
-    yield from map(tuple, places.tolist())
+def _between(ends: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the pixels from one end of each line to the other, one in each row or in each column; `ends`: rows and columns of both."""
+    starts, stops = ends[:, :2], ends[:, 2:]
+    steps = np.abs(stops - starts).max(axis=1, initial=0).round().astype(int)
+    line = np.repeat(np.arange(len(ends)), steps + 1)
+    step = np.arange(len(line)) - np.repeat((steps + 1).cumsum() - (steps + 1), steps + 1)
+    pace = (stops - starts) / np.maximum(steps, 1)[:, None]
+    return (step[:, None] * pace[line] + starts[line]).round().astype(int)

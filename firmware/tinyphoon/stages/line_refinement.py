@@ -10,10 +10,13 @@ The sums of each line lie over the segments, which the line detection has finish
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.api import Core, Frame, Row, i16, i32, kernel, u8
 from tinyphoon.fields import allowed
@@ -165,16 +168,20 @@ def refine_lines(lines: i16[:], count: i32, sums: i32[:], atan: u8[:], width: i3
     return refined
 
 
-def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> Iterator[int]:
-    """Yield the columns in which `look_at_row` looks at row `y`, for `core.at`: nothing on the chip reads them here."""
-    for line in range(count):
-        first, last, rise = (
-            int(sums.array[line * SEGMENT_WORDS + word]) for word in (FIRST_ROW, LAST_ROW, RISE)
-        )
-        if first <= y <= last:
-            x0, y0 = (int(lines.array[line * LINE_WORDS + word]) for word in (LINE_X0, LINE_Y0))
-            middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
-            yield from range(middle - reach, middle + reach + 1)
+def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> list[int]:
+    """Return the columns in which `look_at_row` looks at row `y`, for `core.at`: nothing on the chip reads them here."""
+    first, last, rise = _columns(sums, SEGMENT_WORDS, count, FIRST_ROW, LAST_ROW, RISE)
+    x0, y0 = _columns(lines, LINE_WORDS, count, LINE_X0, LINE_Y0)
+    middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
+    found: list[int] = (
+        (middle[(first <= y) & (y <= last), None] + np.arange(-reach, reach + 1)).ravel().tolist()
+    )
+    return found
+
+
+def _columns(table: Row, words: int, count: int, *wanted: int) -> NDArray[np.int64]:
+    """Return some columns of the first `count` rows of a table."""
+    return table.array[: count * words].reshape(-1, words)[:, wanted].T.astype(np.int64)
 
 
 def line_refinement(

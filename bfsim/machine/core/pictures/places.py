@@ -7,6 +7,7 @@ from operator import index
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, shown
 from bfsim.spans import Place
@@ -21,22 +22,23 @@ Columns = int | range | Callable[[], Iterable[int]]
 def place_of(rows: int | range | Pixels, columns: Columns | None) -> Place | None:
     """Return the place that rows and columns mean, None for no pixel. Raises FirmwareError for what is no place."""
     if callable(rows):
-        return _pixels(list(rows()))
+        given = rows()
+        return _pixels(given if isinstance(given, np.ndarray) else list(given))
     if columns is None:
         return Place(_range(rows))
     if callable(columns):
-        single = tuple(sorted({_whole(each) for each in columns()}))
+        single = tuple(sorted({*map(_whole, columns())}))
         return Place(_range(rows), single or None)
     return Place(_range(rows), _range(columns))
 
 
-def _pixels(given: list[Any]) -> Place | None:
+def _pixels(given: Sequence[Any] | NDArray[Any]) -> Place | None:
     """Return single pixels in order, each once."""
     for each in given if _kind_of(given) != "i" else ():
         if not isinstance(each, Sequence | np.ndarray) or len(each) != 2:
             raise FirmwareError(f"a pixel of core.at must be a row and a column, not {shown(each)}")
         _whole(each[0]), _whole(each[1])
-    if not given:
+    if not len(given):
         return None
     rows, columns = np.array(given, np.int64).T
     order = np.lexsort((columns, rows))
@@ -45,7 +47,7 @@ def _pixels(given: list[Any]) -> Place | None:
     return Place(tuple(rows[is_new].tolist()), tuple(columns[is_new].tolist()))
 
 
-def _kind_of(given: list[Any]) -> str:
+def _kind_of(given: Sequence[Any] | NDArray[Any]) -> str:
     """Return the kind of numbers that pairs are, as numpy has it; nothing for what are no pairs of numbers."""
     try:
         pairs = np.array(given)
