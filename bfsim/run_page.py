@@ -48,8 +48,8 @@ def require_page(path: Path, others: Iterable[Path | None]) -> None:
 def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[str, Any]) -> Iterator[None]:
     """Have `watchers` write a page to `path` of the run that `what`, arguments of `simulate`, describes."""
     chosen = Chosen()
-    with Pictures(chosen.has) as pictures, Gantts(chosen.has) as gantts:
-        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_with_heat])
+    with Pictures() as pictures, Gantts(chosen.has) as gantts:
+        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_with_heat], chosen.has)
 
         def make_room(_identity: Identity, frames: int) -> None:
             pictures.frames = min(frames, MOST)

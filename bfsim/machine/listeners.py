@@ -59,7 +59,7 @@ class Announcer:
             self._on_time(float(self._env.tick / self._clocks.tick_hz))
         self.tell_seen()
         timeline = self._env.timeline
-        if timeline and len(timeline.spans) >= SPANS_TOLD:
+        if timeline and timeline.count >= SPANS_TOLD:
             self._tell_spans(timeline)
 
     def tell_seen(self) -> None:

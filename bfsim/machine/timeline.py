@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from bfsim.spans import NO_STALLS, Place, Span, SpanKind
+from bfsim.spans.columns import Ints, SpanColumns, Spans, Whats
 from bfsim.trace import REST, StallReason
 
 _span = Span._make  # half the time of a call of Span, and there are many
@@ -19,13 +20,26 @@ class Timeline:
 
     def __init__(self, cclk_ticks: int) -> None:
         self.spans: list[Span] = []
+        """The last of them, told one by one."""
+        self.whats = Whats()
+        self._before: list[SpanColumns | Sequence[Span]] = []
         self._cclk_ticks = cclk_ticks
         self._levels: dict[tuple[str, str], tuple[int, int]] = {}  # since when, and how high
 
-    def take(self) -> list[Span]:
+    @property
+    def count(self) -> int:
+        """How many they are."""
+        return len(self.spans) + sum(map(len, self._before))
+
+    def take(self) -> Spans:
         """Return the spans that were told since the last time."""
-        spans, self.spans = self.spans, []
-        return spans
+        parts, self._before, self.spans = [*self._before, self.spans], [], []
+        return Spans(parts, self.whats)
+
+    def tell(self, columns: SpanColumns) -> None:
+        """Tell many spans at once."""
+        self._before += self.spans, columns
+        self.spans = []
 
     def span(
         self,
@@ -115,16 +129,18 @@ class CoreTimeline:
             )
         )
 
-    def tell_all(
-        self,
-        work: Iterable[tuple[SpanKind, str, int, Mapping[StallReason, int], int, int, int, Place | None]],
-    ) -> None:
-        """Tell calls and waits of one stage: each as kind, name, issue cycles, stalls, flow, begin, end, and what it was about."""
-        where, stage = self._where, self._stage
-        self._timeline.spans += [
-            _span((kind, where, name, begin_cclk, end_cclk, stage, issue_cclk, stall_cclk, 0, flow, place))
-            for kind, name, issue_cclk, stall_cclk, flow, begin_cclk, end_cclk, place in work
-        ]
+    def number(self, kind: SpanKind, name: str) -> int:
+        """Return the number of what the core does in its present stage, for `tell`."""
+        return self._timeline.whats.number(kind, self._where, name, self._stage)
+
+    def tell(self, spans: Ints, stalls: Ints, places: Sequence[Place | None]) -> None:
+        """Tell many spans at once, as `SpanColumns.of` takes them."""
+        self._timeline.tell(SpanColumns.of(self._timeline.whats, spans, stalls, places))
+
+    @property
+    def stage(self) -> str:
+        """The one that the core is in."""
+        return self._stage
 
     def level(self, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level of the core's own is from a cycle on."""

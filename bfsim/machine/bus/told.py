@@ -19,6 +19,7 @@ from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.traffic import TRAFFIC_SHAPE, traffic_in
 from bfsim.machine.timeline import Timeline
 from bfsim.spans import SpanKind
+from bfsim.spans.columns import SpanColumns
 
 NAMES = {master: name for name, masters in NAMED.items() for master in masters}
 MOST_PENDING = 1024
@@ -92,15 +93,20 @@ class ToldBus:
         """
         for each in self.before:
             each()
-        words, cclk = self._words, self._timeline.cclk
+        words, what_of = self._words, self._timeline.whats.number
+        told: list[tuple[int, ...]] = []
         for master, posted in self._posted.items():
             where, free_at = NAMES[master], self._free_at.get(master, 0)
             while posted and w.NONE != (end := words[w.ENDS_AT + posted[0].number % w.ENDS]) < now:
                 number, name, at, nbytes = posted.popleft()
-                begin, free_at = max(at, free_at), end
                 flow = number + 1 if self._pending.pop(number) else 0
-                self._timeline.span(_TRANSFER, where, name, cclk(begin), cclk(end), nbytes, flow)
+                told.append((what_of(_TRANSFER, where, name), max(at, free_at), end, 0, nbytes, flow, 0))
+                free_at = end
             self._free_at[master] = free_at
+        if told:
+            columns = np.array(told, np.int64)
+            columns[:, 1:3] = -(-columns[:, 1:3] // self._cclk_ticks)
+            self._timeline.tell(SpanColumns.of(self._timeline.whats, columns))
 
     # ---- load
 

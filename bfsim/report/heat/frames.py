@@ -30,12 +30,18 @@ def stages_of(rows: Sequence[BudgetRow], name: str | None = None) -> tuple[str, 
 class HeatedFrames:
     """Takes frames that were seen and the timeline, and passes each frame on with the heat of `stages` in it.
 
-    A frame waits for the timeline to reach its end on every core that looked at it.
+    A frame waits for the timeline to reach its end on every core that looked at it; is it not wanted then, it is dropped.
     """
 
-    def __init__(self, stages: Sequence[str], pass_on: Sequence[Callable[[SeenFrame], None]]) -> None:
+    def __init__(
+        self,
+        stages: Sequence[str],
+        pass_on: Sequence[Callable[[SeenFrame], None]],
+        is_wanted: Callable[[int], bool] = lambda _index: True,
+    ) -> None:
         self._stages = stages
         self._pass_on = pass_on
+        self._is_wanted = is_wanted
         self._heats = Heats()
         self._waiting: list[SeenFrame] = []
         self._cclk_hz = 1.0
@@ -57,10 +63,11 @@ class HeatedFrames:
     def _go_on(self) -> None:
         while self._waiting and self._is_whole(self._waiting[0]):
             frame = self._waiting.pop(0)
-            heated = replace(frame, cameras=tuple(self._heated(frame.index, each) for each in frame.cameras))
+            if self._is_wanted(frame.index):
+                cameras = tuple(self._heated(frame.index, each) for each in frame.cameras)
+                for each in self._pass_on:
+                    each(replace(frame, cameras=cameras))
             self._heats.forget(frame.index)
-            for each in self._pass_on:
-                each(heated)
 
     def _is_whole(self, frame: SeenFrame) -> bool:
         return all(self._heats.has(frame.index, CORES[each.camera]) for each in frame.cameras)

@@ -9,12 +9,12 @@ import numpy as np
 
 from bfsim.seen import SeenHeat
 from bfsim.spans import Place, Span, SpanKind
+from bfsim.spans.columns import SpanColumns, Whats, columns_of
 
 Cycles = Mapping[tuple[str, Place | None], int]
 """The cycles of a core in a frame by stage and place; None is no place."""
 
-_FILLING = (SpanKind.CALL, SpanKind.STALL, SpanKind.WORK, SpanKind.IDLE)  # the most frequent ones first
-_FRAME = SpanKind.FRAME
+_FILLING = (SpanKind.CALL, SpanKind.WORK, SpanKind.STALL, SpanKind.IDLE)
 
 
 class Heats:
@@ -23,27 +23,35 @@ class Heats:
     def __init__(self) -> None:
         self._open: dict[str, Counter[tuple[str, Place | None]]] = defaultdict(Counter)
         self._done: dict[tuple[int, str], Cycles] = {}
+        self._whats = Whats()
 
     def add(self, spans: Iterable[Span]) -> None:
         """Take what happened next."""
-        last: tuple[str, str, Place | None] = ("", "", None)
-        cclk = 0  # most come at the place of the one before
-        for each in spans:
-            kind, where, _, begin_cclk, end_cclk, stage, *_, place = each
-            if kind in _FILLING:
-                if (where, stage, place) != last:
-                    self._put(*last, cclk)
-                    last, cclk = (where, stage, place), 0
-                cclk += end_cclk - begin_cclk
-            elif kind is _FRAME:
-                self._put(*last, cclk)
-                cclk = 0
-                self._done[each.value, where] = self._open.pop(where, Counter())
-        self._put(*last, cclk)
+        columns = columns_of(spans, self._whats)
+        columns = columns.rows(columns.are(*_FILLING, SpanKind.FRAME))
+        (frames,) = columns.are(SpanKind.FRAME).nonzero()
+        begin = 0
+        for row in (*frames.tolist(), len(columns)):
+            self._put(columns, begin, row)
+            begin = row + 1
+            if row < len(columns):
+                where = columns.whats.all[columns.what[row]].where
+                self._done[int(columns.value[row]), where] = self._open.pop(where, Counter())
 
-    def _put(self, core: str, stage: str, place: Place | None, cclk: int) -> None:
-        if cclk:
-            self._open[core][stage, place] += cclk
+    def _put(self, columns: SpanColumns, begin: int, end: int) -> None:
+        """Add up the rows from one to another, in the order in which their places come."""
+        numbers: dict[tuple[str, str], int] = {}
+        stage_of = np.array(
+            [numbers.setdefault((each.where, each.stage), len(numbers)) for each in columns.whats.all]
+        )
+        both = stage_of[columns.what[begin:end]] * len(columns.places) + columns.place[begin:end]
+        found, firsts, groups = np.unique(both, return_index=True, return_inverse=True)
+        sums, stages = np.zeros(len(found), np.int64), list(numbers)
+        np.add.at(sums, groups, columns.elapsed_cclk[begin:end])
+        for row in firsts.argsort().tolist():
+            number, place = divmod(int(found[row]), len(columns.places))
+            core, stage = stages[number]
+            self._open[core][stage, columns.places[place]] += int(sums[row])
 
     def has(self, frame: int, core: str) -> bool:
         """Whether a core, such as "core A", has finished a frame."""

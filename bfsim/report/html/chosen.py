@@ -8,6 +8,7 @@ from heapq import nlargest
 
 from bfsim.report.html.frames import WORST, is_spaced
 from bfsim.spans import Span, SpanKind
+from bfsim.spans.columns import Whats, columns_of
 from bfsim.trace import Identity
 
 _ENDING = 4
@@ -22,6 +23,7 @@ class Chosen:
         self._places: dict[int, int] = {}  # in the run, by index in the recording
         self._used_cclk: dict[int, int] = {}  # of the worst, and of those that are ending, by index
         self._idle_cclk: Counter[str] = Counter()
+        self._whats = Whats()
 
     def begin(self, _identity: Identity, frames: int) -> None:
         """Take note of how many frames there will be, unless some are missed."""
@@ -29,10 +31,11 @@ class Chosen:
 
     def add(self, spans: Iterable[Span]) -> None:
         """Take what happened next."""
-        for each in spans:
+        columns = columns_of(spans, self._whats)
+        for each in columns.rows(columns.are(SpanKind.IDLE, SpanKind.FRAME)).spans():
             if each.kind is SpanKind.IDLE:
                 self._idle_cclk[each.where] += each.elapsed_cclk
-            elif each.kind is SpanKind.FRAME:
+            else:
                 self._end(each.value, each.elapsed_cclk - self._idle_cclk.pop(each.where, 0))
 
     def has(self, index: int) -> bool:

@@ -10,9 +10,10 @@ from typing import Any, Self
 from bfsim.files.spool import Spool
 from bfsim.report.html.gantt_bars import chart_of, track_order
 from bfsim.spans import Span, SpanKind
+from bfsim.spans.columns import SpanColumns, Whats, columns_of, joined
 from bfsim.trace import Identity
 
-_LEFT_OUT = {SpanKind.FRAME, SpanKind.LEVEL}
+_LEFT_OUT = (SpanKind.FRAME, SpanKind.LEVEL)
 
 
 @dataclass(slots=True)
@@ -37,7 +38,8 @@ class Gantts:
         self.meanings: set[str] = set()
         self._cclk_hz = 1.0
         self._cores: set[str] = set()
-        self._spans: list[Span] = []
+        self._whats = Whats()
+        self._spans: list[SpanColumns] = []
         self._windows: dict[int, _Window] = {}
         self._spool = Spool()
 
@@ -53,12 +55,13 @@ class Gantts:
 
     def add(self, spans: Sequence[Span]) -> None:
         """Take spans as they come."""
-        for span in spans:
+        columns = columns_of(spans, self._whats)
+        for span in columns.rows(columns.are(SpanKind.FRAME, SpanKind.STAGE)).spans():
             if span.kind is SpanKind.FRAME:
                 self._end(span)
-            elif span.kind is SpanKind.STAGE:
+            else:
                 self._cores.add(span.where)
-        self._spans += (span for span in spans if span.kind not in _LEFT_OUT)
+        self._spans.append(columns.rows(~columns.are(*_LEFT_OUT)).anywhere())
         # the end of a frame is told by each core; a frame that is behind another one's is complete for sure
         while len(self._windows) > 1 and self._windows[min(self._windows)].cores >= self._cores:
             self._draw(min(self._windows))
@@ -81,12 +84,11 @@ class Gantts:
         window.cores.add(span.where)
 
     def _draw(self, index: int) -> None:
-        window = self._windows.pop(index)
+        window, spans = self._windows.pop(index), joined(self._spans)
         if self._is_wanted(index):
-            inside = [span for span in self._spans if span.begin_cclk < window.end_cclk]
-            chart = chart_of(inside, window.begin_cclk, window.end_cclk, self._cclk_hz)
+            chart = chart_of(spans, window.begin_cclk, window.end_cclk, self._cclk_hz)
             self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=track_order))
             self.meanings.update(meaning for meaning, _ in chart["keys"])
             self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
         following = min((each.begin_cclk for each in self._windows.values()), default=window.end_cclk)
-        self._spans = [span for span in self._spans if span.end_cclk > following]
+        self._spans = [spans.rows(spans.end_cclk > following)]

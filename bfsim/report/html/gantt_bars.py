@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from bfsim.report.html.gantt_cells import WAITS, Cells, Key, cells_of
-from bfsim.spans import Span
+from bfsim.spans.columns import SpanColumns
 
 SLICES = 400
 """Of a frame: about as many as a screen can show. Half of them, or fewer, where that makes more than MOST_BARS."""
@@ -19,7 +19,7 @@ Bar = tuple[int, int, int, int, int]
 
 
 def chart_of(
-    spans: Sequence[Span], begin_cclk: int, end_cclk: int, cclk_hz: float, slices: int = SLICES
+    spans: SpanColumns, begin_cclk: int, end_cclk: int, cclk_hz: float, slices: int = SLICES
 ) -> dict[str, Any]:
     """Return the bars of what went on between two cycles, and the names of their tracks and keys.
 
@@ -27,7 +27,7 @@ def chart_of(
     """
     length = max(slices, end_cclk - begin_cclk)
     cells, parts = cells_of(spans, begin_cclk, end_cclk, slices, length), length
-    tracks = sorted({track for track, _ in cells.names}, key=track_order)
+    tracks = sorted(cells.tracks, key=track_order)
     while True:
         keys, bars = _bars(cells, {track: place for place, track in enumerate(tracks)}, parts)
         if len(bars) <= MOST_BARS or parts >= slices * length:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bfsim.spans import Span, SpanKind
+from bfsim.spans import TRACKS, SpanKind
+from bfsim.spans.columns import REASONS, Ints, SpanColumns, What
 
 WORK, STALL, IDLE, BUSY = "work", "stall", "idle", "busy"
 """What a bar can mean, beside the name of a stage."""
@@ -23,8 +22,6 @@ WAITS = " waits"
 
 Key = tuple[str, str]
 """What a bar means, and its name: of a kernel, a reason, a stage, what is moved."""
-
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +37,11 @@ class Cells:
     parts: Ints
     firsts: Ints
 
+    @property
+    def tracks(self) -> set[str]:
+        """Those on which something was going on."""
+        return {self.names[kind][0] for kind in np.unique(self.kinds).tolist()}
+
     def halved(self) -> Cells:
         """Return half as many slices, each as long as two."""
         return _summed(self.names, self.kinds, self.slices // 2, self.parts, self.firsts)
@@ -52,7 +54,7 @@ class Cells:
         meanings = {
             meaning: place for place, meaning in enumerate(dict.fromkeys(key[0] for _, key in self.names))
         }
-        track_of = np.array([tracks[track] for track, _ in self.names], np.int64)[self.kinds]
+        track_of = np.array([tracks.get(track, 0) for track, _ in self.names], np.int64)[self.kinds]
         meaning_of = np.array([meanings[key[0]] for _, key in self.names], np.int64)[self.kinds]
         groups, (parts, _) = _sums((track_of, self.slices), self.parts, self.firsts)
         alike, (of_meaning, firsts) = _sums((groups, meaning_of), self.parts, self.firsts)
@@ -65,7 +67,7 @@ class Cells:
             yield track, number, key, whole
 
 
-def cells_of(spans: Sequence[Span], begin_cclk: int, end_cclk: int, slices: int, length: int) -> Cells:
+def cells_of(spans: SpanColumns, begin_cclk: int, end_cclk: int, slices: int, length: int) -> Cells:
     """Return how long what was going on in each slice of each track between two cycles.
 
     In parts of a cycle, of which a cycle has `slices` and a slice `length`, nothing is rounded.
@@ -80,40 +82,47 @@ def cells_of(spans: Sequence[Span], begin_cclk: int, end_cclk: int, slices: int,
     return _summed(names, kinds[each], numbers, _part(overlaps, cclk[each], elapsed[each]), each)
 
 
-def _shares(spans: Sequence[Span]) -> tuple[tuple[tuple[str, Key], ...], Ints, Ints, Ints, Ints]:
+def _shares(spans: SpanColumns) -> tuple[tuple[tuple[str, Key], ...], Ints, Ints, Ints, Ints]:
     """Return the names of what spans are, and what each has of whom: which name, from when to when, and how many cycles.
 
     A span lies on its own track, and on that of its core's waits.
     """
-    names = dict[tuple[str, Key], int]()
-    kinds, wheres, whats, begins, ends, _, _, stalls, *_ = _columns(spans, len(Span._fields))
-    own = list(
-        zip(map(id, kinds), wheres, whats, strict=True)
-    )  # the hash of a kind takes as long as all else
-    numbers: dict[object, int] = {
-        one: names.setdefault((_track(each), (_MEANING.get(each.kind, each.name), each.name)), len(names))
-        for one, each in dict(zip(own, spans, strict=True)).items()
-    }
-    places, reasons, stalled_cclk = _columns(
-        [(place, *each) for place, stalled in enumerate(stalls) if stalled for each in stalled.items()], 3
+    names, whats = dict[tuple[str, Key], int](), spans.whats.all
+    kinds = _numbered(
+        spans.what,
+        lambda number: names.setdefault(_name(whats[number]), len(names)),
     )
-    waits = [(own[place], reason) for place, reason in zip(places, map(id, reasons), strict=True)]
-    for one, (place, reason) in dict(zip(waits, zip(places, reasons, strict=True), strict=True)).items():
-        wait = f"{wheres[place]}{WAITS}", (reason.value, whats[place])
-        numbers[one] = names.setdefault(wait, len(names))
-    begin, end, at = (np.array(each, np.int64) for each in (begins, ends, places))
+    waits = _numbered(
+        spans.what[spans.stalled] * len(REASONS) + spans.reason,
+        lambda number: names.setdefault(
+            _wait(whats[number // len(REASONS)], number % len(REASONS)), len(names)
+        ),
+    )
     return (
         tuple(names),
-        np.array([numbers[each] for each in (*own, *waits)], np.int64),
-        np.concatenate([begin, begin[at]]),
-        np.concatenate([end, end[at]]),
-        np.concatenate([end - begin, np.array(stalled_cclk, np.int64)]),
+        np.concatenate([kinds, waits]),
+        np.concatenate([spans.begin_cclk, spans.begin_cclk[spans.stalled]]),
+        np.concatenate([spans.end_cclk, spans.end_cclk[spans.stalled]]),
+        np.concatenate([spans.elapsed_cclk, spans.stall_cclk]),
     )
 
 
-def _columns(rows: Sequence[tuple[Any, ...]], count: int) -> tuple[tuple[Any, ...], ...]:
-    """Return rows as so many columns."""
-    return tuple(zip(*rows, strict=True)) or count * ((),)
+def _numbered(numbers: Ints, other: Callable[[int], int]) -> Ints:
+    """Return other numbers in the place of these."""
+    found, where = np.unique(numbers, return_inverse=True)
+    return np.array([other(each) for each in found.tolist()], np.int64)[where]
+
+
+def _name(what: What) -> tuple[str, Key]:
+    """Return track and key of a span."""
+    track = TRACKS[what.kind]
+    on = what.where if track == "transfers" else f"{what.where} {track}"
+    return on, (_MEANING.get(what.kind, what.name), what.name)
+
+
+def _wait(what: What, reason: int) -> tuple[str, Key]:
+    """Return track and key of what stalls in a span."""
+    return f"{what.where}{WAITS}", (REASONS[reason].value, what.name)
 
 
 def _part(overlaps: Ints, cclk: Ints, elapsed: Ints) -> Ints:
@@ -140,8 +149,3 @@ def _sums(by: tuple[Ints, Ints], parts: Ints, firsts: Ints) -> tuple[Ints, tuple
     np.add.at(sums, groups, parts)
     np.minimum.at(first, groups, firsts)
     return groups, (sums, first)
-
-
-def _track(span: Span) -> str:
-    where, track = span.track
-    return where if track == "transfers" else f"{where} {track}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from io import BytesIO
@@ -34,12 +33,10 @@ _LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
 class Pictures:
     """The overlay of each frame of a run and its heat map, as small as a page of `frames` of them needs it. A context manager.
 
-    They are drawn behind the run, and all there after `finish`. `is_wanted` says which frames are drawn with their heat. Raises
-    ConfigError where there is no room for its file.
+    They are drawn behind the run, and all there after `finish`. Raises ConfigError where there is no room for its file.
     """
 
-    def __init__(self, is_wanted: Callable[[int], bool] = lambda _index: True) -> None:
-        self._is_wanted = is_wanted
+    def __init__(self) -> None:
         self.frames = 1
         self._overlays = Spool()
         self._heats = Spool()
@@ -58,9 +55,7 @@ class Pictures:
         self._behind.do(partial(self._draw, frame))
 
     def add_with_heat(self, frame: SeenFrame) -> None:
-        """Draw what was seen in a frame whose cameras have their heat, and the heat, if it is wanted."""
-        if not self._is_wanted(frame.index):
-            return
+        """Draw what was seen in a frame whose cameras have their heat, and the heat."""
         self.add(replace(frame, cameras=tuple(replace(each, heat=None) for each in frame.cameras)))
         self._behind.do(partial(self._draw_heat, frame))
 

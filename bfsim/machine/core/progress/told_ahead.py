@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,8 @@ from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.progress.told_rings import ToldRings
 from bfsim.machine.timeline import CoreTimeline
-from bfsim.spans import NO_STALLS, Place, SpanKind
+from bfsim.spans import Place, SpanKind
+from bfsim.spans.columns import NUMBER_OF
 from bfsim.trace import StallReason
 
 Rows = NDArray[np.int64]
@@ -38,6 +39,7 @@ class ToldAhead:
         self._places: list[Place | None] = []
         self._first, self._clock_cclk, self._account = 0, 0, 0
         self._owners: Sequence[str] = ()
+        self._known: dict[str, Rows] = {}  # what calls are in each stage
         tape.tell()
         timeline.when_said = self._note_place
         self._told.before.append(self.tell)
@@ -64,89 +66,92 @@ class ToldAhead:
         if end <= first:
             return
         operations, took = self._tape.operations(first, end), self._tape.took(first, end)
-        ends = took[:, w.UNTIL].tolist()
-        begins = [self._clock_cclk, *ends[:-1]]
-        self._first, self._clock_cclk = end, ends[-1]
+        ends = took[:, w.UNTIL]
+        begins = np.concatenate([[self._clock_cclk], ends[:-1]])
+        self._first, self._clock_cclk = end, int(ends[-1])
         self._tell_copies(operations, took, begins, ends)
         self._tell_work(operations, took, begins, ends)
 
-    def _tell_work(self, operations: Rows, took: Rows, begins: list[int], ends: list[int]) -> None:
+    def _tell_work(self, operations: Rows, took: Rows, begins: Rows, ends: Rows) -> None:
         """Tell calls and waits, and what they were about."""
         kinds, timeline = operations[:, 0], self._timeline
-        stalls = _stalls_of_calls(operations, took)
-        told: list[tuple[SpanKind, str, int, Mapping[StallReason, int], int] | None] = [None] * len(kinds)
-        for at, call, issue_cclk in _numbers(operations, _of_kind(kinds, w.RUN, w.ACCESS), w.OF_CALL, 1):
-            told[at] = SpanKind.CALL, self._calls[call].name, issue_cclk, stalls.get(at, NO_STALLS), 0
-        for at in _of_kind(kinds, w.SET_UP).tolist():
-            told[at] = _wait(StallReason.DMA_SETUP, ends[at] - begins[at])
-        for at, counter in _numbers(operations, _of_kind(kinds, w.AWAIT), 2):
-            if cclk := ends[at] - begins[at]:
-                told[at] = _wait(
-                    REASON_OF_ACCOUNT[counter], cclk, self._told.flow_of(int(took[at, w.COPIED]))
-                )
-        places = self._placed(operations)
-        timeline.tell_all(
-            (*each, begin, end, place)
-            for each, begin, end, place in zip(told, begins, ends, places, strict=True)
-            if each
-        )
-        timeline.place = places[-1]
+        is_call = (kinds == w.RUN) | (kinds == w.ACCESS)
+        is_wait = ((kinds == w.SET_UP) | (kinds == w.AWAIT)) & (begins < ends)
+        reasons = np.where(kinds == w.SET_UP, w.SETTING_UP, operations[:, 2])[is_wait]
+        whats = np.zeros(len(kinds), np.int64)
+        whats[is_call] = self._whats_of_calls(operations[is_call, w.OF_CALL])
+        whats[is_wait] = self._whats_of_waits()[reasons]
+        flows = np.zeros(len(kinds), np.int64)
+        for at in (is_wait & (kinds == w.AWAIT)).nonzero()[0].tolist():
+            flows[at] = self._told.flow_of(int(took[at, w.COPIED]))
+        places = np.maximum.accumulate(np.where(kinds == w.ABOUT, operations[:, 1] + 1, 0))
+        known = (timeline.place, *self._places)
+        timeline.place = known[places[-1]]
+        issued = np.where(is_call, operations[:, 1], 0)
+        spans = np.column_stack([whats, begins, ends, issued, np.zeros_like(issued), flows, places])
+        is_told = is_call | is_wait
+        stalls = _stalls(operations, took, is_call, is_wait, reasons, (ends - begins)[is_wait])
+        stalls[:, 0] = (is_told.cumsum() - 1)[stalls[:, 0]]
+        timeline.tell(spans[is_told], stalls, known)
 
-    def _placed(self, operations: Rows) -> list[Place | None]:
-        """Return what each operation is about."""
-        places, place = [], self._timeline.place
-        for number in np.where(operations[:, 0] == w.ABOUT, operations[:, 1], w.NONE).tolist():
-            if number != w.NONE:
-                place = self._places[number]
-            places.append(place)
-        return places
+    def _whats_of_calls(self, calls: Rows) -> Rows:
+        """Return what calls of the present stage are, by their numbers."""
+        known = self._known.setdefault(self._timeline.stage, np.zeros(0, np.int64))
+        if len(known) < len(self._calls):
+            known = np.pad(known, (0, 2 * len(self._calls) - len(known)), constant_values=w.NONE)
+            self._known[self._timeline.stage] = known
+        for call in np.unique(calls[known[calls] == w.NONE]).tolist():
+            known[call] = self._timeline.number(SpanKind.CALL, self._calls[call].name)
+        return known[calls]
 
-    def _tell_copies(self, operations: Rows, took: Rows, begins: list[int], ends: list[int]) -> None:
+    def _whats_of_waits(self) -> Rows:
+        """Return what waits in the present stage are, by what they are for (`bus.state`)."""
+        numbers = np.zeros(max(REASON_OF_ACCOUNT) + 1, np.int64)
+        for counter, reason in REASON_OF_ACCOUNT.items():
+            numbers[counter] = self._timeline.number(SpanKind.STALL, reason.value)
+        return numbers
+
+    def _tell_copies(self, operations: Rows, took: Rows, begins: Rows, ends: Rows) -> None:
         """Tell the bus which transfers the core has posted, and how full rings were."""
-        at = _of_kind(operations[:, 0], w.COPY, w.SET_UP, w.AWAIT)
-        numbers = np.column_stack([operations[at, :4], took[at][:, [w.COPIED, w.POSTED_AT]]])
-        for place, (kind, one, two, three, copied, posted_at) in zip(
-            at.tolist(), numbers.tolist(), strict=True
-        ):
+        at = np.isin(operations[:, 0], (w.COPY, w.SET_UP, w.AWAIT))
+        numbers = np.column_stack(
+            [operations[at, :4], took[at][:, [w.COPIED, w.POSTED_AT]], begins[at], ends[at]]
+        )
+        for kind, one, two, three, copied, posted_at, begin_cclk, end_cclk in numbers.tolist():
             if kind == w.COPY:
                 plan = self.plans[one]
                 self._told.note(plan.master, copied, plan.name, posted_at, plan.nbytes)
                 if plan.master == self._outward:
-                    self._rings.send(self._owners[self._account], copied, begins[place])
+                    self._rings.send(self._owners[self._account], copied, begin_cclk)
             elif kind == w.SET_UP:
                 self._account = two
             elif two == w.RING_EMPTY:
-                is_there = begins[place] == ends[place]
-                self._rings.ask(self._owners[three], is_there=is_there, cclk=begins[place])
+                self._rings.ask(self._owners[three], is_there=begin_cclk == end_cclk, cclk=begin_cclk)
         self._rings.tell()
 
 
-def _of_kind(kinds: Rows, *wanted: int) -> Rows:
-    return np.flatnonzero(np.isin(kinds, wanted))
-
-
-def _numbers(rows: Rows, at: Rows, *columns: int) -> zip[tuple[int, ...]]:
-    """Return the places of some rows, each with the numbers in some columns."""
-    return zip(at.tolist(), *(rows[at, each].tolist() for each in columns), strict=True)
-
-
-def _wait(
-    reason: StallReason, cclk: int, flow: int = 0
-) -> tuple[SpanKind, str, int, Mapping[StallReason, int], int]:
-    return SpanKind.STALL, reason.value, 0, {reason: cclk}, flow
-
-
-def _stalls_of_calls(operations: Rows, took: Rows) -> dict[int, dict[StallReason, int]]:
-    """Return what calls stalled, on the bus and else, by their places."""
-    found: dict[int, dict[StallReason, int]] = {}
-    kinds = operations[:, 0]
-    calls = _of_kind(kinds, w.ACCESS)
-    places, counters = took[calls, w.CALL_STALLS :].nonzero()
-    amounts = took[calls[places], w.CALL_STALLS + counters]
-    for at, counter, cclk in zip(calls[places].tolist(), counters.tolist(), amounts.tolist(), strict=True):
-        found.setdefault(at, {})[BUS_STALLS[counter]] = cclk
-    for at, cclk in _numbers(
-        operations, np.flatnonzero((operations[:, 2] > 0) & np.isin(kinds, (w.RUN, w.ACCESS))), 2
-    ):
-        found.setdefault(at, {})[StallReason.INTERLOCK] = cclk
+def _stalls(
+    operations: Rows, took: Rows, is_call: NDArray[np.bool_], is_wait: NDArray[np.bool_], reasons: Rows, waits_cclk: Rows
+) -> Rows:  # fmt: skip
+    """Return operation, reason and cycles of all stalls, in order: of a call those on the bus before others."""
+    kinds, interlocks = operations[:, 0], operations[:, 2]
+    (accesses,) = (kinds == w.ACCESS).nonzero()
+    calls, counters = took[accesses, w.CALL_STALLS :].nonzero()
+    on_bus = accesses[calls]
+    (locked,) = (is_call & (interlocks > 0)).nonzero()
+    interlock = np.full(len(locked), NUMBER_OF[StallReason.INTERLOCK])
+    parts = [
+        (on_bus, _ON_BUS[counters], took[on_bus, w.CALL_STALLS + counters]),
+        (locked, interlock, interlocks[locked]),
+        (is_wait.nonzero()[0], _OF_ACCOUNT[reasons], waits_cclk),
+    ]
+    rows = np.column_stack([np.concatenate(column) for column in zip(*parts, strict=True)])
+    found: Rows = rows[rows[:, 0].argsort(kind="stable")]
     return found
+
+
+_ON_BUS = np.array([NUMBER_OF[each] for each in BUS_STALLS])
+_OF_ACCOUNT = np.array(
+    [0, *(NUMBER_OF[REASON_OF_ACCOUNT[each]] for each in (w.SETTING_UP, w.RING_EMPTY, w.RING_FULL))]
+)
+"""Numbers of reasons in columns of spans, by the counters of `bus.state`."""
