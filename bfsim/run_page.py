@@ -52,7 +52,7 @@ def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[s
         heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_with_heat], chosen.has)
 
         def make_room(_identity: Identity, frames: int) -> None:
-            pictures.frames = min(frames, MOST)
+            pictures.make_room(min(frames, MOST))
 
         watchers.before.extend((make_room, chosen.begin, gantts.begin, heats.begin))
         watchers.seen.append(heats.add)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from base64 import b64encode
 from dataclasses import replace
 from functools import partial
-from io import BytesIO
 from typing import Self
-
-from PIL import Image
 
 from bfsim.files.spool import Spool
 from bfsim.report.html.behind import Behind
+from bfsim.report.html.shrinking import Shrinker
 from bfsim.report.overlay.layers import LAYERS, UNDER_HEAT
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.seen import SeenFrame
@@ -21,13 +19,8 @@ PAGE_BYTES = 4_000_000
 HEAT_SHARE = 0.35
 """Of these for the heat maps: they have smooth colours and few words."""
 
-_PANEL_WIDTH = 640
+PANEL_WIDTH = 640
 """Of a camera's picture: a page shows it no larger, and words are read more easily than in one that is made smaller."""
-_PIXELS_A_BYTE = 25
-"""A picture has at most so many: then most are small enough at the first quality, and words can be read."""
-_QUALITIES = (75, 60, 45, 30)
-"""Of WebP: from the best to one for pictures full of detail."""
-_LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
 
 
 class Pictures:
@@ -37,7 +30,7 @@ class Pictures:
     """
 
     def __init__(self) -> None:
-        self.frames = 1
+        self.make_room(1)
         self._overlays = Spool()
         self._heats = Spool()
         self._behind = Behind()
@@ -49,6 +42,10 @@ class Pictures:
         self._behind.__exit__()
         self._overlays.__exit__()
         self._heats.__exit__()
+
+    def make_room(self, frames: int) -> None:
+        """Have pictures of so many frames on the page from now on."""
+        self._small, self._small_heat = overlay_shrinker(frames), Shrinker(_room_bytes(HEAT_SHARE, frames))
 
     def add(self, frame: SeenFrame) -> None:
         """Draw what was seen in a frame."""
@@ -64,11 +61,10 @@ class Pictures:
         self._behind.finish()
 
     def _draw(self, frame: SeenFrame) -> None:
-        self._overlays.put(frame.index, overlay_webp(frame, self.frames))
+        self._overlays.put(frame.index, self._small.webp_of(overlay_of(frame, LAYERS, PANEL_WIDTH)))
 
     def _draw_heat(self, frame: SeenFrame) -> None:
-        room_bytes = _room_bytes(HEAT_SHARE, self.frames)
-        self._heats.put(frame.index, webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), room_bytes))
+        self._heats.put(frame.index, self._small_heat.webp_of(overlay_of(frame, UNDER_HEAT, PANEL_WIDTH)))
 
     def has_overlay(self, index: int) -> bool:
         """Whether a frame was seen."""
@@ -87,9 +83,9 @@ class Pictures:
         return picture_uri(self._heats[index])
 
 
-def overlay_webp(frame: SeenFrame, frames: int) -> bytes:
-    """Return what was seen in a frame as WebP, for a page of so many frames."""
-    return webp_of(overlay_of(frame, LAYERS, _PANEL_WIDTH), _room_bytes(1 - HEAT_SHARE, frames))
+def overlay_shrinker(frames: int) -> Shrinker:
+    """Return what makes overlays small enough for a page of so many frames."""
+    return Shrinker(_room_bytes(1 - HEAT_SHARE, frames))
 
 
 def picture_uri(content: bytes) -> str:
@@ -100,19 +96,3 @@ def picture_uri(content: bytes) -> str:
 def _room_bytes(share: float, frames: int) -> int:
     """Return how large a picture may be; as an address it is a third larger."""
     return int(share * PAGE_BYTES * 3 // 4 // frames)
-
-
-def webp_of(image: Image.Image, nbytes: int) -> bytes:
-    """Return an image as WebP of at most `nbytes`, or as small as it becomes."""
-    width = round((nbytes * _PIXELS_A_BYTE * image.width / image.height) ** 0.5)
-    while True:
-        width = min(width, image.width)
-        small = image.resize((width, -(-image.height * width // image.width)), Image.Resampling.LANCZOS)
-        for quality in _QUALITIES:
-            file = BytesIO()
-            small.save(file, "WEBP", quality=quality, method=2)
-            if file.tell() <= nbytes:
-                return file.getvalue()
-        if width <= _LEAST_WIDTH:
-            return file.getvalue()
-        width = max(_LEAST_WIDTH, width // 2)

@@ -19,8 +19,9 @@ from bfsim.report.html.chosen import Chosen
 from bfsim.report.html.frames import facts_of, told_of, worst_of
 from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.gantt_bars import SLICES
-from bfsim.report.html.pictures import Pictures, webp_of
+from bfsim.report.html.pictures import Pictures
 from bfsim.report.html.rendering import with_code
+from bfsim.report.html.shrinking import Shrinker
 from bfsim.report.html.sources import dearest_sources
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import REST, BudgetRow, FrameRecord, LineCost, RunRecord, StallReason
@@ -191,10 +192,10 @@ def noise(width: int = 1980, height: int = 810) -> Image.Image:
 def test_a_picture_is_as_small_as_is_asked() -> None:
     """At its full size where there is room."""
     plain = Image.new("RGB", (1980, 810))
-    with Image.open(BytesIO(webp_of(plain, 100_000))) as image:
+    with Image.open(BytesIO(Shrinker(100_000).webp_of(plain))) as image:
         assert image.size == (1980, 810)
     for nbytes in (60_000, 10_000):
-        assert len(webp_of(noise(), nbytes)) <= nbytes
+        assert len(Shrinker(nbytes).webp_of(noise())) <= nbytes
 
 
 def restless(record: FrameRecord) -> list[Span]:
@@ -213,14 +214,15 @@ def restless(record: FrameRecord) -> list[Span]:
 def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every picture is as large as it may be, and no slice of time is like the one before."""
     monkeypatch.setattr("bfsim.report.html.pictures.overlay_of", lambda *_: noise(1, 1))
-    monkeypatch.setattr("bfsim.report.html.pictures.webp_of", lambda _image, nbytes: bytes(nbytes))
+    monkeypatch.setattr(Shrinker, "webp_of", lambda shrinker, _image: bytes(shrinker._nbytes))
     with Pictures() as pictures, Gantts() as gantts:
-        pictures.frames = frames.MOST
+        pictures.make_room(frames.MOST)
         run = edge_run(*range(1000, 1000 + frames.MOST))
         for each in run.frames:
             pictures.add_with_heat(seen_frame(each.index))
             gantts.add(restless(each))
         gantts.finish()
+        pictures.finish()
         text = page_of(run, pictures, Target(1), gantts)
     assert 7_000_000 < len(text.encode()) < 8_000_000
     assert text.count("data:image/webp") == 2 * frames.MOST
