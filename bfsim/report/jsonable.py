@@ -33,5 +33,5 @@ def indented(plain: object) -> str:
 
     try:
         return to_json(plain, indent=2).decode()
-    except PydanticSerializationError:  # text that is no text, such as half a pair of UTF-16
+    except PydanticSerializationError:  # bytes in the name of a file that are no UTF-8
         return to_json(json.loads(legible(json.dumps(plain, ensure_ascii=False))), indent=2).decode()

@@ -19,7 +19,7 @@ PAGE_BYTES = 4_000_000
 HEAT_SHARE = 0.35
 """Of these for the heat maps: they have smooth colours and few words."""
 
-PANEL_WIDTH = 640
+_PANEL_WIDTH = 640
 """Of a camera's picture: a page shows it no larger, and words are read more easily than in one that is made smaller."""
 
 
@@ -61,10 +61,10 @@ class Pictures:
         self._behind.finish()
 
     def _draw(self, frame: SeenFrame) -> None:
-        self._overlays.put(frame.index, self._small.webp_of(overlay_of(frame, LAYERS, PANEL_WIDTH)))
+        self._overlays.put(frame.index, overlay_webp(frame, self._small))
 
     def _draw_heat(self, frame: SeenFrame) -> None:
-        self._heats.put(frame.index, self._small_heat.webp_of(overlay_of(frame, UNDER_HEAT, PANEL_WIDTH)))
+        self._heats.put(frame.index, self._small_heat.webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH)))
 
     def has_overlay(self, index: int) -> bool:
         """Whether a frame was seen."""
@@ -86,6 +86,11 @@ class Pictures:
 def overlay_shrinker(frames: int) -> Shrinker:
     """Return what makes overlays small enough for a page of so many frames."""
     return Shrinker(_room_bytes(1 - HEAT_SHARE, frames))
+
+
+def overlay_webp(frame: SeenFrame, shrinker: Shrinker) -> bytes:
+    """Return what was seen in a frame as WebP."""
+    return shrinker.webp_of(overlay_of(frame, LAYERS, _PANEL_WIDTH))
 
 
 def picture_uri(content: bytes) -> str:

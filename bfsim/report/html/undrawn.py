@@ -7,9 +7,7 @@ import zlib
 from typing import Self
 
 from bfsim.files.spool import Spool
-from bfsim.report.html.pictures import PANEL_WIDTH, overlay_shrinker, picture_uri
-from bfsim.report.overlay.layers import LAYERS
-from bfsim.report.overlay.overlay import overlay_of
+from bfsim.report.html.pictures import overlay_shrinker, overlay_webp, picture_uri
 from bfsim.seen import SeenFrame
 
 
@@ -38,4 +36,4 @@ class UndrawnFrames:
         if index not in self._spool:
             return ""
         frame: SeenFrame = pickle.loads(zlib.decompress(self._spool[index]))  # noqa: S301  # a file without a name: nobody else's
-        return picture_uri(self._small.webp_of(overlay_of(frame, LAYERS, PANEL_WIDTH)))
+        return picture_uri(overlay_webp(frame, self._small))

@@ -12,6 +12,7 @@ from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.gantt_bars import SLICES, chart_of
 from bfsim.run import simulate
 from bfsim.spans import Span, SpanKind
+from bfsim.spans.columns import Whats, columns_of
 from bfsim.trace import StallReason
 from tests.report.records import IDENTITY
 
@@ -36,7 +37,7 @@ def frame(index: int, begin: int, end: int, core: str = "A") -> Span:
 
 def bars_of(spans: list[Span], begin: int, end: int) -> list[tuple[str, str, str, int, int, int]]:
     """The bars of a chart with their words: track, meaning, name, first and last slice, quarters."""
-    chart = chart_of(spans, begin, end, HZ)
+    chart = chart_of(columns_of(spans, Whats()), begin, end, HZ)
     return [
         (chart["tracks"][track], *chart["keys"][key], first, last, quarters)
         for track, key, first, last, quarters in chart["bars"]
@@ -84,7 +85,8 @@ def test_what_reaches_over_the_ends_of_a_frame_is_cut() -> None:
     """And what lies outside is not there; a slice of 10 cycles is 0.01 ms."""
     spans = [call(0, 5, "before"), call(900, 1_000 + 10 * SLICES + 900), call(10**6, 10**6 + 1, "after")]
     assert bars_of(spans, 1_000, 1_000 + 10 * SLICES) == [("core A work", "work", "sobel", 0, SLICES - 1, 4)]
-    assert chart_of(spans, 1_000, 1_000 + 10 * SLICES, HZ)["slice_ms"] == pytest.approx(0.01)
+    columns = columns_of(spans, Whats())
+    assert chart_of(columns, 1_000, 1_000 + 10 * SLICES, HZ)["slice_ms"] == pytest.approx(0.01)
 
 
 @given(st.lists(st.integers(1, 5_000), min_size=1, max_size=50))
@@ -108,7 +110,7 @@ def test_too_many_bars_become_fewer_and_longer(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("bfsim.report.html.gantt_bars.MOST_BARS", SLICES)
     assert len(bars_of(spans, 0, 10 * SLICES)) == SLICES
     monkeypatch.setattr("bfsim.report.html.gantt_bars.MOST_BARS", SLICES - 1)
-    chart = chart_of(spans, 0, 10 * SLICES, HZ)
+    chart = chart_of(columns_of(spans, Whats()), 0, 10 * SLICES, HZ)
     assert len(chart["bars"]) == 1  # each of the longer slices has as much of one kernel as of the other
     assert chart["slice_ms"] == pytest.approx(0.02)
 
@@ -140,7 +142,7 @@ def test_the_charts_of_a_run_hold_its_frames_and_memory_stays_flat() -> None:
             nonlocal most, told
             told += len(spans)
             gantts.add(spans)
-            most = max(most, len(gantts._spans))
+            most = max(most, sum(map(len, gantts._spans)))
 
         done = simulate(frames=4, before=gantts.begin, on_spans=add)
         gantts.finish()

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from types import MappingProxyType
 
+from bfsim.report.jsonable import json_text
 from bfsim.report.results.as_json import SCHEMA, as_json, json_chunks
 from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.trace import LineCost, StallReason
@@ -89,3 +90,10 @@ def test_cores_that_lost_the_same_share_a_warning() -> None:
             (f"edges without room: {told.format('core B', 3)}", ["edges_lost_B"]),
         ],
     ]
+
+
+def test_text_that_is_none_is_replaced() -> None:
+    """A byte of a name that is no UTF-8, in the place of an error; numbers are as they were."""
+    plain = {"name": "a \udce4 b", "é": [1e-9, 1 << 70, float("inf"), "ü"]}
+    assert json.loads(json_text(plain)) == {"name": "a \ufffd b", "é": [1e-9, 1 << 70, float("inf"), "ü"]}
+    assert json_text({"a": [1, {}]}) == '{\n  "a": [\n    1,\n    {}\n  ]\n}\n'

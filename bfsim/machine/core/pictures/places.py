@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 from operator import index
 from typing import Any
 
@@ -25,10 +26,11 @@ def place_of(rows: int | range | Pixels, columns: Columns | None) -> Place | Non
         given = rows()
         return _pixels(given if isinstance(given, np.ndarray) else list(given))
     if columns is None:
-        return Place(_range(rows))
+        return _row(rows) if type(rows) is int else Place(_range(rows))
     if callable(columns):
-        single = tuple(sorted({*map(_whole, columns())}))
-        return Place(_range(rows), single or None)
+        single: list[int] = list(columns())
+        whole = single if {*map(type, single)} == {int} else [*map(_whole, single)]
+        return Place(_range(rows), tuple(sorted(set(whole))) or None)
     return Place(_range(rows), _range(columns))
 
 
@@ -54,6 +56,11 @@ def _kind_of(given: Sequence[Any] | NDArray[Any]) -> str:
     except ValueError:  # not all of them have the same length
         return ""
     return pairs.dtype.kind if pairs.shape == (len(given), 2) else ""
+
+
+@cache
+def _row(row: int) -> Place:
+    return Place(range(row, row + 1))
 
 
 def _range(places: int | range) -> range:
