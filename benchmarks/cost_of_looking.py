@@ -1,4 +1,4 @@
-"""What it costs to look: a profile, a trace, a flame graph, pictures and a page beside the plain run, in processor time and memory.
+"""What it costs to look: a profile, JSON, a trace, a flame graph, pictures and a page beside the plain run, in processor time and memory.
 
     python benchmarks/cost_of_looking.py
     python benchmarks/cost_of_looking.py --frames 8 --pairs 9
@@ -88,6 +88,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         cases = {
             "profile": (["profile", *what], HERE),
+            "run --json": (["run", *what, "--json", f"{folder}/run.json"], HERE),
             "run --trace": (["run", *what, "--trace", f"{folder}/run.pftrace"], HERE),
             "run --flame": (["run", *what, "--flame", f"{folder}/run.speedscope.json"], HERE),
             "run --overlay": (["run", *what, "--overlay", f"{folder}/overlay"], HERE),

@@ -85,11 +85,12 @@ def is_line_of_words(value: Any) -> bool:
 
 def is_number(value: Any) -> bool:
     """Whether a value is a number that can be drawn."""
-    return isinstance(value, Real) and isfinite(value)
+    is_usual = type(value) is float or type(value) is int  # to ask an abstract class takes six times as long
+    return (is_usual or isinstance(value, Real)) and isfinite(value)
 
 
 def _is_whole(value: Any) -> bool:
-    return isinstance(value, Integral)
+    return type(value) is int or isinstance(value, Integral)
 
 
 def _is_truth(value: Any) -> bool:
