@@ -63,8 +63,8 @@ def retimed(
             raise ConfigError("--record-work must stand without --work: what is played is recorded already")
         if record_work and has_timeline:
             raise ConfigError(
-                "--record-work must go without --trace and --html: their timeline needs everything done at its time, but what is "
-                "recorded is done ahead; make it in a run of its own"
+                "--record-work must go without --trace and --html: their timeline has each call apart, and a recording those in L1 "
+                "as one; make it in a run of its own"
             )
         if record_work:
             stack.enter_context(recording_work(record_work, machine, identity, frames, loaded, check))

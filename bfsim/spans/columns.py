@@ -34,10 +34,12 @@ class Whats:
 
     def __init__(self) -> None:
         self.all: list[What] = []
-        self._numbers: dict[
-            tuple[int, str, str, str], int
-        ] = {}  # the hash of a kind takes longer than its id
-        self._kinds: Ints = np.zeros(0, np.int64)
+        self.stages: dict[tuple[str, str], int] = {}
+        """Numbers of their own of places and stages."""
+        # the hash of a kind takes longer than its id
+        self._numbers: dict[tuple[int, str, str, str], int] = {}
+        self._known: list[tuple[int, int]] = []  # numbers of kind and stage of each
+        self._columns: Ints = np.zeros((2, 0), np.int64)
 
     def number(self, kind: SpanKind, where: str, name: str, stage: str = "") -> int:
         """Return the number of one, which may be new."""
@@ -46,13 +48,23 @@ class Whats:
         if found is None:
             found = self._numbers[key] = len(self.all)
             self.all.append(What(kind, where, name, stage))
+            in_stage = self.stages.setdefault((where, stage), len(self.stages))
+            self._known.append((KINDS.index(kind), in_stage))
         return found
+
+    def in_stages(self) -> Ints:
+        """Return of each the number of where it is and in which stage."""
+        stages: Ints = self._kinds_and_stages()[1]
+        return stages
 
     def are(self, *kinds: SpanKind) -> NDArray[np.bool_]:
         """Return of each whether it is of one of these kinds."""
-        if len(self._kinds) != len(self.all):
-            self._kinds = np.array([KINDS.index(each.kind) for each in self.all], np.int64)
-        return np.isin(self._kinds, [KINDS.index(each) for each in kinds])
+        return np.isin(self._kinds_and_stages()[0], [KINDS.index(each) for each in kinds])
+
+    def _kinds_and_stages(self) -> Ints:
+        if self._columns.shape[1] != len(self._known):
+            self._columns = np.array(self._known, np.int64).T
+        return self._columns
 
 
 PER_SPAN = "what", "begin_cclk", "end_cclk", "issue_cclk", "value", "flow", "place"

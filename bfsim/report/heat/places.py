@@ -40,18 +40,15 @@ class Heats:
 
     def _put(self, columns: SpanColumns, begin: int, end: int) -> None:
         """Add up the rows from one to another, in the order in which their places come."""
-        numbers: dict[tuple[str, str], int] = {}
-        stage_of = np.array(
-            [numbers.setdefault((each.where, each.stage), len(numbers)) for each in columns.whats.all]
-        )
-        both = stage_of[columns.what[begin:end]] * len(columns.places) + columns.place[begin:end]
+        stage, count = columns.whats.in_stages()[columns.what[begin:end]], len(columns.places)
+        both = stage * count + columns.place[begin:end]
         found, firsts, groups = np.unique(both, return_index=True, return_inverse=True)
-        sums, stages = np.zeros(len(found), np.int64), list(numbers)
+        sums, stages = np.zeros(len(found), np.int64), list(columns.whats.stages)
         np.add.at(sums, groups, columns.elapsed_cclk[begin:end])
         for row in firsts.argsort().tolist():
-            number, place = divmod(int(found[row]), len(columns.places))
-            core, stage = stages[number]
-            self._open[core][stage, columns.places[place]] += int(sums[row])
+            number, place = divmod(int(found[row]), count)
+            core, name = stages[number]
+            self._open[core][name, columns.places[place]] += int(sums[row])
 
     def has(self, frame: int, core: str) -> bool:
         """Whether a core, such as "core A", has finished a frame."""
