@@ -84,11 +84,12 @@ class Gantts:
         window.cores.add(span.where)
 
     def _draw(self, index: int) -> None:
-        window, spans = self._windows.pop(index), joined(self._spans)
+        window = self._windows.pop(index)
         if self._is_wanted(index):
-            chart = chart_of(spans, window.begin_cclk, window.end_cclk, self._cclk_hz)
+            chart = chart_of(joined(self._spans), window.begin_cclk, window.end_cclk, self._cclk_hz)
             self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=track_order))
             self.meanings.update(meaning for meaning, _ in chart["keys"])
             self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
         following = min((each.begin_cclk for each in self._windows.values()), default=window.end_cclk)
-        self._spans = [spans.rows(spans.end_cclk > following)]
+        self._spans = [each.rows(each.end_cclk > following) for each in self._spans]
+        self._spans = [each for each in self._spans if len(each)]
