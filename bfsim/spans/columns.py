@@ -169,7 +169,7 @@ def columns_of(spans: SpanColumns | Iterable[Span], whats: Whats) -> SpanColumns
 
 
 def joined(parts: Sequence[SpanColumns]) -> SpanColumns:
-    """Return the rows of all parts, of which there is at least one, and which have the same `whats`."""
+    """Return the rows of all parts, of which there is at least one; those that have rows have the same `whats`, that of the last."""
     columns = {
         name: np.concatenate([getattr(each, name) for each in parts]) for name in (*PER_SPAN, *PER_STALL)
     }
@@ -179,7 +179,7 @@ def joined(parts: Sequence[SpanColumns]) -> SpanColumns:
     ):
         columns[name] += np.repeat(np.cumsum([0, *counts[:-1]]), repeats)
     return SpanColumns(
-        whats=parts[0].whats, places=[place for each in parts for place in each.places], **columns
+        whats=parts[-1].whats, places=[place for each in parts for place in each.places], **columns
     )
 
 

@@ -39,6 +39,7 @@ class Gantts:
         self._cclk_hz = 1.0
         self._cores: set[str] = set()
         self._whats = Whats()
+        self._nothing = columns_of((), self._whats)
         self._spans: list[SpanColumns] = []
         self._windows: dict[int, _Window] = {}
         self._spool = Spool()
@@ -86,7 +87,9 @@ class Gantts:
     def _draw(self, index: int) -> None:
         window = self._windows.pop(index)
         if self._is_wanted(index):
-            chart = chart_of(joined(self._spans), window.begin_cclk, window.end_cclk, self._cclk_hz)
+            chart = chart_of(
+                joined([self._nothing, *self._spans]), window.begin_cclk, window.end_cclk, self._cclk_hz
+            )
             self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=track_order))
             self.meanings.update(meaning for meaning, _ in chart["keys"])
             self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
