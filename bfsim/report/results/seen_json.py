@@ -43,8 +43,10 @@ class SeenStore(Mapping[int, dict[str, Any]]):
 
     def add(self, frame: SeenFrame) -> None:
         """Keep what was seen in a frame."""
-        text = json.dumps(seen_json(frame, with_features=self._with_features), separators=(",", ":"))
-        self._spool.put(frame.index, zlib.compress(text.encode(), level=1))
+        from pydantic_core import to_json
+
+        content = to_json(_seen(frame, with_features=self._with_features), fallback=_without_numpy)
+        self._spool.put(frame.index, zlib.compress(content, level=1))
 
     def __getitem__(self, index: int) -> dict[str, Any]:
         found: dict[str, Any] = json.loads(zlib.decompress(self._spool[index]))
@@ -63,6 +65,11 @@ def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     Keys are the field names of `bfsim.seen`, so each carries its unit. Coordinates in pixels count in the camera's whole
     picture, also when the firmware looked at an area of it. Of an edge in space there is [x, y, z].
     """
+    found: dict[str, Any] = jsonable(_seen(frame, with_features=with_features), _without_numpy)
+    return found
+
+
+def _seen(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     corners = {each.camera: each.corner_px for each in frame.cameras}
     plain = {
         "times_ns": frame.times_ns,
@@ -72,8 +79,7 @@ def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     }
     if with_features:
         plain["cameras"] = {each.camera: _features(each) for each in frame.cameras}
-    found: dict[str, Any] = jsonable(plain, _without_numpy)
-    return found
+    return plain
 
 
 def _without_numpy(value: Any) -> object:
