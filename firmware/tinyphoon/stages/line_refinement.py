@@ -15,9 +15,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from bfsim.api import Core, Frame, Row, i16, i32, kernel, u8
 from tinyphoon.fields import allowed
 from tinyphoon.stages.line_fit import SLOPE_BITS, slope, spread, store_ends
@@ -173,15 +170,13 @@ def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> list[in
     first, last, rise = _columns(sums, SEGMENT_WORDS, count, FIRST_ROW, LAST_ROW, RISE)
     x0, y0 = _columns(lines, LINE_WORDS, count, LINE_X0, LINE_Y0)
     middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
-    found: list[int] = (
-        (middle[(first <= y) & (y <= last), None] + np.arange(-reach, reach + 1)).ravel().tolist()
-    )
+    found: list[int] = (middle[(first <= y) & (y <= last), None] + range(-reach, reach + 1)).ravel().tolist()
     return found
 
 
-def _columns(table: Row, words: int, count: int, *wanted: int) -> NDArray[np.int64]:
-    """Return some columns of the first `count` rows of a table."""
-    return table.array[: count * words].reshape(-1, words)[:, wanted].T.astype(np.int64)
+def _columns(table: Row, words: int, count: int, *wanted: int) -> Any:
+    """Return some columns of the first `count` rows of a table, as arrays."""
+    return table.array[: count * words].reshape(-1, words)[:, wanted].T.astype("int64")
 
 
 def line_refinement(
