@@ -6,7 +6,7 @@
 
 Each command runs in a process of its own, in turns with the plain run just before it, so that both find the machine as it is; a
 figure is the median of the ratios of such pairs, with the smallest and the largest. Issue 14 asks for at most 1.3 times
-a run for a profile and 2.5 for a trace, of a run that took five times as long as today. `--against` is another checkout of bfsim, such as one from before owners were recorded:
+a run for a profile and 2.5 for a trace. `--against` is another checkout of bfsim, such as one from before owners were recorded:
 its plain run is then what the plain run of this one is compared with.
 """
 
