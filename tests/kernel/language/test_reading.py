@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 import numpy as np
@@ -127,6 +128,16 @@ def test_a_file_is_looked_through_once(monkeypatch: pytest.MonkeyPatch, tmp_path
     again = import_text(TEXT, tmp_path, "same").whole
     assert again.function.source == first.function.source
     assert again.code_bytes(VDSP_O2) == first.code_bytes(VDSP_O2)
+
+
+def test_what_others_add_to_the_nodes_that_trees_share_is_no_part_of_a_file() -> None:
+    """IPython's tracebacks give each node a parent, and every tree has the same `Load`: from there on the walk went round for ever."""
+    shared = ast.parse("x", mode="eval").body.ctx  # type: ignore[attr-defined]
+    shared.parent = ast.Name("stranger")
+    try:
+        assert source_files._walked("y = x")[0] == [source_files.Statement((), ["x", "y"])]
+    finally:
+        del shared.parent
 
 
 def test_a_member_of_an_enumeration_that_changes_is_read_anew(read: list[str], tmp_path: Path) -> None:
