@@ -114,4 +114,8 @@ class Run(RunRecord):
 
 
 def _console(*, record: bool) -> Console:
-    return Console(file=io.StringIO(), width=WIDTH, markup=False, emoji=False, highlight=False, record=record)
+    """Return what writes text to be kept: in a notebook rich would show it there, and colour it where FORCE_COLOR says so."""
+    return Console(
+        file=io.StringIO(), width=WIDTH, markup=False, emoji=False, highlight=False, record=record,
+        force_terminal=False, force_jupyter=False,
+    )  # fmt: skip

@@ -47,6 +47,18 @@ def test_a_notebook_shows_the_screen() -> None:
     assert "no frame was done" in replace(run, frames=())._repr_html_()
 
 
+def test_a_notebook_gets_text_and_shows_a_run_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In its kernel, which sets FORCE_COLOR, rich showed each report itself: `report` gave no text, and a run was there twice."""
+    run = run_from(edge_run(100, 100))
+    elsewhere = run.report(), run._repr_html_()
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setattr("rich.console._is_jupyter", lambda: True)
+    assert (run.report(), run._repr_html_()) == elsewhere
+    assert not capsys.readouterr().out
+
+
 def test_reports_are_text_of_80_columns() -> None:
     """The screen, the full report and the profile by their names; another name is refused."""
     run = run_from(edge_run(100, 100))
