@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial, wraps
@@ -55,6 +56,15 @@ Given = ParamSpec("Given")
 
 _ONE_AT_A_TIME = RLock()
 """Held by the thread whose run it is: kernels have variables of their own in machine code, and modules of firmware names that others may have."""
+
+
+def _let_runs_begin() -> None:
+    """Have no run go on: a process that was forked has none of its parent's other threads."""
+    global _ONE_AT_A_TIME  # noqa: PLW0603  # a run that the thread has forked in gives back the lock that it took
+    _ONE_AT_A_TIME = RLock()
+
+
+os.register_at_fork(after_in_child=_let_runs_begin)
 
 
 def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:

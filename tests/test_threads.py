@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -38,6 +39,33 @@ def test_runs_of_several_threads_are_as_those_of_one() -> None:
     alone = [*map(cycles, profiles)]
     with ThreadPoolExecutor(3) as threads:
         assert [*threads.map(cycles, 3 * profiles)] == 3 * alone
+
+
+FORKED = """
+import os, signal, threading
+from bfsim.run import simulate
+begun, forked = threading.Event(), threading.Event()
+def wait(spans):
+    begun.set()
+    forked.wait()
+thread = threading.Thread(target=simulate, kwargs={"frames": 1, "on_spans": wait})
+thread.start()
+begun.wait()
+child = os.fork()
+if not child:
+    signal.alarm(30)
+    simulate(frames=1)
+    os._exit(0)
+forked.set()
+thread.join()
+raise SystemExit(os.waitpid(child, 0)[1])
+"""
+
+
+def test_a_fork_runs_while_another_thread_of_its_parent_did() -> None:
+    """It waited for ever for a thread that it does not have."""
+    command = [sys.executable, "-W", "ignore", "-c", FORKED]  # Python warns of forks beside threads
+    assert subprocess.run(command, check=False).returncode == 0
 
 
 @pytest.fixture
