@@ -30,7 +30,7 @@ from tinyphoon.stages.rosenfeld_blobs import (
 )
 from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_rectification import move_row
-from tinyphoon.stages.strong_gradients import STRONG_FIRST, direct_strong_row
+from tinyphoon.stages.strong_gradients import STRONG_FIRST, StrongSlopes, direct_strong_row
 
 BLACK_CHROMA = 128
 SMALL_REACH = 8  # to each side; the thesis says "small" (T §5.2.4)
@@ -40,18 +40,23 @@ edges_of_all_pixels = partial(rosenfeld_edges, steps=OF_ALL_PIXELS)
 """Every pixel has a direction, and weak ones are removed last."""
 
 
-def strong_slopes_by_tur94(
-    core: Core, smooth: Sequence[Row], magnitude: Row, direction: Row, edge_threshold: int
-) -> Generator[Any, Any, None]:
-    """Make a row of gradients as `strong_slopes` does, by the roots of [Tur94]."""
-    gx, gy = core.array("gx"), core.array("gy")
-    yield core.run(sobel_row, *smooth, gx, gy)
-    yield core.run(tur94_magnitude_row, gx, gy, magnitude)
-    yield core.run(direct_strong_row, gx, gy, magnitude, core.array("atan"), direction, edge_threshold)
+class SlopesByTur94(StrongSlopes):
+    """What makes a row of gradients by the roots of [Tur94]."""
+
+    __slots__ = ()
+
+    def row(
+        self, smooth: Sequence[Row], magnitude: Row, direction: Row, edge_threshold: int
+    ) -> Generator[Any, Any, None]:
+        """Make them from a row's smoothed lines."""
+        run, gx, gy = self.core.run, self.gx, self.gy
+        yield run(sobel_row, *smooth, gx, gy)
+        yield run(tur94_magnitude_row, gx, gy, magnitude)
+        yield run(direct_strong_row, gx, gy, magnitude, self.atan, direction, edge_threshold)
 
 
 edges_by_tur94 = partial(
-    rosenfeld_edges, steps=replace(STRONG_FIRST, colours=tur94_colour_row, slopes=strong_slopes_by_tur94)
+    rosenfeld_edges, steps=replace(STRONG_FIRST, colours=tur94_colour_row, slopes=SlopesByTur94)
 )
 """The roots of gradients and chroma are those of [Tur94]."""
 
