@@ -100,9 +100,23 @@ def test_it_may_stand_in_what_the_main_loop_calls(folder: Path) -> None:
         load_firmware(written("yield from helpers.edges(core)"))
 
 
+RING = "ring = core.input_ring(core.rows('camera'), 'ring'); "
+
+
+@pytest.mark.parametrize("call", ["ring.line", "ring.row", "ring.flush"])
+def test_a_wait_for_a_ring_that_nobody_takes_is_told(folder: Path, call: str) -> None:
+    """From the second picture on a ring may have a line at once: as the firmware runs nobody would notice."""
+    with pytest.raises(FirmwareError, match=rf"{call}\(\.\.\.\) does nothing: write `yield from` before it"):
+        load_firmware(written(f"{RING}{call}()"))
+
+
 @pytest.mark.parametrize(
     "statement",
     [
+        f"{RING}yield from ring.line()",
+        f"{RING}ring = core; ring.line()",
+        f"{RING}ring.send()",
+        "ring.line()",
         "yield from lines(core)",
         "plain(core)",
         "unknown(core)",

@@ -1,7 +1,7 @@
 """Generator functions of firmware that it calls as if they were functions: nothing of them runs, for lack of a `yield from`.
 
 Waits that a core makes are noticed as firmware runs (`machine.core.waits`). Of the firmware's own ones its source tells: a statement that
-is nothing but such a call does nothing.
+is nothing but such a call does nothing. So it does of waits of rings: a ring that is in use may have what is asked for at once.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from bfsim.machine.program import Firmware
 
 Namespace = Mapping[str, Any]
 """What a module holds by its names."""
+RINGS, RING_WAITS = ("input_ring", "output_ring"), ("line", "row", "flush")
+"""What of a core gives a ring, and which of a ring's methods wait."""
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
@@ -127,10 +129,27 @@ def _makes_a_generator(called: ast.expr, above: Sequence[ast.AST], namespace: Na
                 return all(_is_generator(each) and not each.decorator_list for each in found)  # type: ignore[attr-defined]
         return inspect.isgeneratorfunction(namespace.get(called.id))
     if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
+        if called.attr in RING_WAITS and _is_ring(called.value.id, above):
+            return True
         owner = namespace.get(called.value.id)
         return isinstance(owner, ModuleType) and inspect.isgeneratorfunction(
             getattr(owner, called.attr, None)
         )
+    return False
+
+
+def _is_ring(name: str, above: Sequence[ast.AST]) -> bool:
+    """Whether a name is that of a ring and of nothing else in the function that gives it a value."""
+    for scope in reversed(above):
+        if found := _bound(scope, name):
+            values = [
+                each.value
+                for each in ast.walk(scope)
+                if isinstance(each, ast.Assign) and any(target in found for target in each.targets)
+            ]
+            calls = [each.func for each in values if isinstance(each, ast.Call)]
+            rings = [each for each in calls if isinstance(each, ast.Attribute) and each.attr in RINGS]
+            return len(rings) == len(found)
     return False
 
 

@@ -151,10 +151,12 @@ def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
         return stages_of(rows, None if heat == ALL_STAGES else heat)
     except KeyError:
         known = ", ".join(each.stage for each in rows)
-        raise ConfigError(
-            f"--heat must be alone, for all stages, or name one of {known}, not {shown(heat)}; "
-            "a RECORDING goes before it"
-        ) from None
+        wanted = (
+            f"be alone, for all stages, or name one of {known}"
+            if known
+            else "be alone: the firmware has no rows"
+        )
+        raise ConfigError(f"--heat must {wanted}, not {shown(heat)}; a RECORDING goes before it") from None
 
 
 def _seen_writer(path: Path) -> SeenWriter:
