@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bfsim.errors import ConfigError, WorkError, shown
+from bfsim.errors import BfsimWarning, ConfigError, WorkError, shown
 from bfsim.files.outputs import WORK, require_own
 from bfsim.files.save import growing_file
 from bfsim.kernel import Kernel
@@ -103,6 +104,7 @@ def recording_work(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
         )
     require_own(path, WORK)
+    obstacles: Sequence[str] = ()
     with suppress(_InterruptedError), growing_file(path) as stream, WorkWriter(stream, path) as writer:
         cores: list[RecordingCore] = []
 
@@ -130,6 +132,9 @@ def recording_work(
             firmware_digest=loaded.digest,
             doubts=check.counts,
         )
+        obstacles = writer.obstacles
+    if obstacles:
+        warnings.warn(_not_playable(path, obstacles), BfsimWarning, stacklevel=2)
 
 
 @contextmanager
@@ -199,9 +204,14 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
             f"{'was' if (core, routine) in there else 'is'} there and is not in both; record it with this LDF"
         )
     if recorded.obstacles:
-        raise WorkError(
-            f"{path} cannot be played on other hardware, for what the cores do depends on it: {'; '.join(recorded.obstacles)}"
-        )
+        raise WorkError(_not_playable(path, recorded.obstacles))
+
+
+def _not_playable(path: Path, obstacles: Sequence[str]) -> str:
+    """Say why a recorded run cannot be played, by the first of its obstacles."""
+    first, more = obstacles[0], len(obstacles) - 1
+    others = f", and {more} more like it" if more else ""
+    return f"{path} cannot be played on other hardware, for what the cores do depends on it: {first}{others}; run the firmware itself there"
 
 
 def _kernels(reader: WorkReader, loaded: LoadedFirmware) -> dict[str, Kernel]:

@@ -11,7 +11,7 @@ import os
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -75,6 +75,11 @@ class WorkWriter(AbstractContextManager["WorkWriter"]):
         self._counts: dict[str, int] = {}
         self._obstacles: dict[str, None] = {}
 
+    @property
+    def obstacles(self) -> Sequence[str]:
+        """Why the run cannot be played again, in words; most can."""
+        return [*self._obstacles]
+
     def begin(self, **what: Any) -> None:
         """Write what is known of the run before it begins."""
         self._write("run.json", json.dumps({"format": FORMAT, "costs": keys.compiler(), **what}).encode())
@@ -90,7 +95,7 @@ class WorkWriter(AbstractContextManager["WorkWriter"]):
 
     def end(self, frames: KnownFrames, **what: Any) -> None:
         """Write what is known at the end: the file is whole then."""
-        known = {"obstacles": list(self._obstacles), "frames": asdict(frames), **what}
+        known = {"obstacles": self.obstacles, "frames": asdict(frames), **what}
         self._write("end.json", json.dumps(known).encode())
         with writing(self._path):
             self._zip.close()
