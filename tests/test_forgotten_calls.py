@@ -100,6 +100,13 @@ def test_it_may_stand_in_what_the_main_loop_calls(folder: Path) -> None:
         load_firmware(written("yield from helpers.edges(core)"))
 
 
+def test_it_may_stand_in_a_function_that_yields_nothing(folder: Path) -> None:
+    """Such as a handler of an interrupt."""
+    statement = "def handler(core): lines(core)\n        core.on_interrupt('SPI_DMA', handler)"
+    with pytest.raises(FirmwareError, match=r"lines\(\.\.\.\) does nothing"):
+        load_firmware(written(statement))
+
+
 RING = "ring = core.input_ring(core.rows('camera'), 'ring'); "
 
 

@@ -78,7 +78,7 @@ def _check(function: FunctionType) -> None:
     lines = {each.co_firstlineno for each in _codes(function.__code__)}
     for each, above in _functions(_parsed(file), ()):
         first = min([each.lineno, *(decorator.lineno for decorator in each.decorator_list)])
-        if first not in lines or not _is_generator(each):
+        if first not in lines:
             continue
         for statement in _own_nodes(each):
             if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Generator, Iterator, Sequence
 from functools import partial
+from inspect import iscoroutinefunction
 from operator import index
 from typing import Any
 
@@ -236,8 +237,13 @@ class Core:
     def on_interrupt(self, source: str, handler: CoreHandler) -> None:
         """Have `handler(core)` called at every interrupt of `source`, such as MDMA1_0, SPI_DMA or SUPPLEMENTAL_0.
 
-        A handler may be a generator function that yields kernels.
+        A handler may be a generator function that yields kernels. Raises FirmwareError for what is no function, and for a coroutine's.
         """
+        if not callable(handler) or iscoroutinefunction(handler):
+            what = "an `async` one" if callable(handler) else shown(handler)
+            raise FirmwareError(
+                f"on_interrupt must get a function of the core for {source}, or a generator function, not {what}"
+            )
         self._parts.progress.on_interrupt(source, partial(handler, self))
 
     def request_interrupt(self, source: str) -> None:

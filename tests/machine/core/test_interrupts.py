@@ -24,6 +24,22 @@ def count(core: Core) -> None:
     """A handler that does nothing."""
 
 
+async def count_later(core: Core) -> None:
+    """No handler: nobody would await it."""
+
+
+@pytest.mark.parametrize(("handler", "what"), [(7, "not 7"), (count_later, "not an `async` one")])
+def test_a_handler_is_a_function(handler: Any, what: str) -> None:
+    """A coroutine's was called, and nothing of it ran."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        core.on_interrupt("TIMER0", handler)
+        yield core.run(spin, 1)
+
+    with pytest.raises(FirmwareError, match=rf"on_interrupt must get a function .* for TIMER0.*{what}"):
+        run(every_frame(work))
+
+
 def test_the_way_in_and_out_is_a_stall() -> None:
     """Between two calls: the kernels issue what they do without it, and entry and exit come on top."""
 
