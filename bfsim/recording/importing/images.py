@@ -14,6 +14,7 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError, cut
 from bfsim.recording.frames import UyvyImage
+from bfsim.recording.importing.bayer import BayerPattern, planes_of_bayer
 from bfsim.recording.importing.deep_pixels import MOST_BITS, upper_bits
 from bfsim.recording.importing.pairs import pairs_of
 from bfsim.recording.importing.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
@@ -25,28 +26,38 @@ _BRIGHTEST = (1 << MOST_BITS) - 1
 _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
 
 
-def open_image_pair(left: str, right: str, *, mixed: bool, bits: int | None = None) -> list[PictureSource]:
+def open_image_pair(
+    left: str, right: str, *, mixed: bool, bits: int | None = None, pattern: BayerPattern | None = None
+) -> list[PictureSource]:
     """Images of both cameras as `open_images` has them, those that belong together: as many of either."""
     lefts, rights = (images_and_others(source) for source in (left, right))
     pairs, alone = pairs_of(lefts[0], rights[0], f"{left} and {right}: images")
     sides = list(zip(*pairs, strict=True))
     return [
-        _source(left, list(sides[0]), [*lefts[1], *alone], mixed=mixed, bits=bits),
-        _source(right, list(sides[1]), rights[1], mixed=mixed, bits=bits),
+        _source(left, list(sides[0]), [*lefts[1], *alone], mixed=mixed, bits=bits, pattern=pattern),
+        _source(right, list(sides[1]), rights[1], mixed=mixed, bits=bits, pattern=pattern),
     ]
 
 
-def open_images(source: str, *, mixed: bool, bits: int | None = None) -> PictureSource:
+def open_images(
+    source: str, *, mixed: bool, bits: int | None = None, pattern: BayerPattern | None = None
+) -> PictureSource:
     """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10).
 
     Images that cannot be read are skipped, if one can; others that are of another size than the first are refused,
-    unless they may be `mixed`. `bits` as in `decoded`.
+    unless they may be `mixed`. `bits` as in `decoded`. `pattern`: of the colours of a sensor's filters, whose pixels grey images are.
     """
-    return _source(source, *images_and_others(source), mixed=mixed, bits=bits)
+    return _source(source, *images_and_others(source), mixed=mixed, bits=bits, pattern=pattern)
 
 
 def _source(
-    source: str, paths: list[Path], skipped: list[Skipped], *, mixed: bool, bits: int | None
+    source: str,
+    paths: list[Path],
+    skipped: list[Skipped],
+    *,
+    mixed: bool,
+    bits: int | None,
+    pattern: BayerPattern | None,
 ) -> PictureSource:
     first = _first_readable(paths, bits)
     return PictureSource(
@@ -54,7 +65,7 @@ def _source(
         size=first[1],
         count=len(paths),
         fps=None,
-        pictures=lambda: _pictures(paths, None if mixed else first, bits),
+        pictures=lambda: _pictures(paths, None if mixed else first, bits, pattern),
         skipped=tuple(skipped),
     )
 
@@ -71,7 +82,10 @@ def _first_readable(paths: list[Path], bits: int | None) -> tuple[str, tuple[int
 
 
 def _pictures(
-    paths: list[Path], model: tuple[str, tuple[int, int]] | None, bits: int | None
+    paths: list[Path],
+    model: tuple[str, tuple[int, int]] | None,
+    bits: int | None,
+    pattern: BayerPattern | None,
 ) -> Iterator[YuvPlanes | Skipped]:
     for path in paths:
         try:
@@ -85,7 +99,11 @@ def _pictures(
                 f"{path}: image must be {size[0]}x{size[1]} like {name}, the first of its folder, "
                 f"not {image.width}x{image.height}; `--resize` or `--crop` brings all to one size"
             )
-        yield YuvPlanes.from_image(image)
+        if pattern and image.mode != "L":
+            raise RecordingError(
+                f"{path}: image must be grey for `--format {pattern}`, not of the pixel format {image.mode}"
+            )
+        yield planes_of_bayer(np.asarray(image), pattern) if pattern else YuvPlanes.from_image(image)
 
 
 def picture_of_file(path: Path) -> UyvyImage:

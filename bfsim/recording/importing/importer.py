@@ -14,6 +14,7 @@ from bfsim.errors import RecordingError
 from bfsim.recording.cameras.camera_info import Rig, rig_of
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.importing.import_checks import camera_size, check_call, check_options, check_pair
+from bfsim.recording.importing.mosaic import mosaic_warnings
 from bfsim.recording.importing.opening import open_sources
 from bfsim.recording.importing.picture_pairs import PicturePairs
 from bfsim.recording.importing.pixel_bytes import pixel_bytes_warnings
@@ -109,6 +110,8 @@ def import_recording(
     if bag and (geometry is None or rectification is None):
         rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
     size_doubts = _size_doubts(opened, side_by_side=side_by_side) if size is not None else ()
+    of_grey = any(each in ("images", "grey") for each in formats)
+    mosaics = tuple(mosaic_warnings(opened)) if of_grey and not size_doubts else ()
     stamps = Stamps(opened, rate, is_even=fps is not None, has_pairs=is_bag)
     check = StereoCheck(rig.tables)
     pairs = PicturePairs(opened, side_by_side, resize, crop)
@@ -138,6 +141,7 @@ def import_recording(
             *(note for source in opened for note in source.notes if fps is None),
             *rig.notes,
             *size_doubts,
+            *mosaics,
             *(f"Warning: {each}" for each in check.warnings),
             *((SAME_PICTURES,) if are_same and not is_single else ()),
         ),

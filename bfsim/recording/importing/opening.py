@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importing.bayer import BAYER_PATTERNS
+from bfsim.recording.importing.bayer import BAYER_PATTERNS, BayerPattern
 from bfsim.recording.importing.images import open_image_pair, open_images
 from bfsim.recording.importing.raw import (
     open_bayer,
@@ -44,8 +44,9 @@ def open_sources(
 
     `mixed`: the pictures of a source may have several sizes. `bits`: how many the cameras use of pixels that have 16.
     """
-    if len(names) == 2 and all((format or guess_format(name)) == "images" for name in names):
-        return open_image_pair(*names, mixed=mixed, bits=bits)
+    if len(names) == 2 and all(_is_of_images(name, format) for name in names):
+        _check_size(names[0], format, size)
+        return open_image_pair(*names, mixed=mixed, bits=bits, pattern=_pattern(format))
     return [_open_source(name, format, size, mixed=mixed, bits=bits) for name in names]
 
 
@@ -59,8 +60,9 @@ def _open_source(
             f"{name}: source must be a folder of images or a file of pictures, but it {kind} "
             f"(`--format` {', '.join(SOURCE_FORMATS)})"
         )
-    if chosen == "images":
-        return open_images(name, mixed=mixed, bits=bits)
+    if _is_of_images(name, chosen):
+        _check_size(name, chosen, size)
+        return open_images(name, mixed=mixed, bits=bits, pattern=_pattern(chosen))
     if chosen in _FILE_OPENERS:
         return _FILE_OPENERS[chosen](name)
     if size is None or min(size) <= 0:
@@ -70,3 +72,20 @@ def _open_source(
     if chosen in _SENSOR_OPENERS:
         return _SENSOR_OPENERS[chosen](name, size, bits)
     return _RAW_OPENERS[chosen](name, size)
+
+
+def _is_of_images(name: str, format: SourceFormat | None) -> bool:
+    """Whether a source is of image files; so it may be where its pixels are said to be behind a pattern of colours."""
+    return "images" in (format or guess_format(name), guess_format(name) if _pattern(format) else None)
+
+
+def _pattern(format: SourceFormat | None) -> BayerPattern | None:
+    return next((each for each in BAYER_PATTERNS if each == format), None)
+
+
+def _check_size(name: str, format: SourceFormat | None, size: tuple[int, int] | None) -> None:
+    """Raise RecordingError where image files with a pattern of colours get the size of raw frames."""
+    if size is not None and _pattern(format):
+        raise RecordingError(
+            f"{name}: `--size` must go with raw frames, for images have one of their own; `--resize` scales pictures"
+        )
