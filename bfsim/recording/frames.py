@@ -44,8 +44,6 @@ class StereoGeometry:
             raise RecordingError(
                 f"stereo geometry: baseline_mm must be above 0, or 0 for a single camera, not {self.baseline_mm}"
             )
-        if self.height_mm is not None and self.height_mm < 0:
-            raise RecordingError(f"stereo geometry: height_mm must be 0 or above, not {self.height_mm}")
         if self.tilt_deg is not None and not -90 <= self.tilt_deg <= 90:
             raise RecordingError(f"stereo geometry: tilt_deg must be -90 to 90, not {self.tilt_deg}")
 
