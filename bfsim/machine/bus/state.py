@@ -199,10 +199,8 @@ TAPE_WORDS = 7
 
 # ---- What each operation took, by its number: where the core's clock was behind it, and more.
 UNTIL = 0
-COPIED, POSTED_AT = (
-    1,
-    2,
-)  # of a COPY and an AWAIT: the number of the transfer; of a COPY: the tick from which that may begin
+COPIED = 1  # of a COPY and an AWAIT: the number of the transfer
+POSTED_AT = 2  # of a COPY: the tick from which that may begin
 CALL_STALLS = 1  # of a call: its stalls on the bus, in the order above
 TOOK_WORDS = CALL_STALLS + STALLS
 PLAN_WORDS = TRANSFER_WORDS

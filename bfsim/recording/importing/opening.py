@@ -76,10 +76,12 @@ def _open_source(
 
 def _is_of_images(name: str, format: SourceFormat | None) -> bool:
     """Whether a source is of image files; so it may be where its pixels are said to be behind a pattern of colours."""
-    return "images" in (format or guess_format(name), guess_format(name) if _pattern(format) else None)
+    said = None if _pattern(format) else format
+    return (said or guess_format(name)) == "images"
 
 
 def _pattern(format: SourceFormat | None) -> BayerPattern | None:
+    """Return the pattern of colours that a format says, if it says one."""
     return next((each for each in BAYER_PATTERNS if each == format), None)
 
 
