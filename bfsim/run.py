@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import fields, replace
 from functools import partial, wraps
 from inspect import signature
@@ -39,6 +40,7 @@ from bfsim.running.assumptions import (
     doubted_cameras,
     geometry_in_words,
 )
+from bfsim.running.compiled_ahead import compiled_ahead
 from bfsim.running.devices import told_devices
 from bfsim.running.identifying import DigestedFrames, identity_of, written
 from bfsim.running.inputs import opened, read_placement
@@ -181,7 +183,11 @@ def simulate(
         if before:
             before(identity, source.total)
         wants = {"has_pictures": bool(on_seen), "has_timeline": bool(on_spans)}
-        with retimed(machine, identity, source, loaded, check, record_work=record_work, work=work, **wants):
+        ahead = nullcontext() if work else compiled_ahead(fitted.build, fitted.firmware)
+        with (
+            ahead,
+            retimed(machine, identity, source, loaded, check, record_work=record_work, work=work, **wants),
+        ):
             told = _told_of_frames(progress, source.total) if progress else None
             show = _shown_to(on_seen, source) if on_seen else None
             left = machine.run(check.watch(source), told, show, on_time, on_spans)

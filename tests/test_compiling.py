@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.toolchain.keep import FOLDER, programs, recipes
+from benchmarks.toolchain.keep import FOLDER, first_calls, programs, recipes
 from bfsim import compiling
 from bfsim.blackfin.elf.objects import read_object
+from bfsim.compiling.first_calls import FIRST_CALLS
 from bfsim.compiling.object_code import PROGRAMS, InC, object_code
 from bfsim.compiling.recipes import KEPT_COMPILER
 from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer
@@ -108,8 +109,9 @@ def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:
     """Kernels of the built-in firmware, and examples: `python -m benchmarks.toolchain.keep` compiles what was changed."""
     in_c = programs()
     compiled = {each.digest(KEPT_COMPILER) for each in recipes(in_c.values())}
-    assert {each.name for each in FOLDER.iterdir()} == compiled | in_c.keys() | {PROGRAMS}
+    assert {each.name for each in FOLDER.iterdir()} == compiled | in_c.keys() | {PROGRAMS, FIRST_CALLS}
     assert (store.shipped(compiling.__name__, PROGRAMS) or b"").decode().split() == [*in_c]
+    assert (store.shipped(compiling.__name__, FIRST_CALLS) or b"").decode() == first_calls()
     for name, each in in_c.items():
         assert InC(**json.loads(store.shipped(compiling.__name__, name) or b"{}")) == each
     for each in compiled:

@@ -16,12 +16,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 
 from bfsim.compiling.file_code import SOURCES, recipe_of_source
+from bfsim.compiling.first_calls import FIRST_CALLS, OUTSIDE
 from bfsim.compiling.object_code import LEVELS, PROGRAMS, InC, recipe_of, written
 from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.files.store import KEPT
+from bfsim.kernel import Kernel
 from bfsim.loading.firmware import load_firmware
 from bfsim.loading.kernels import entries_of, kernels_of
+from bfsim.machine.memories import Row
+from bfsim.run import simulate
 from bfsim.shipped import FIRMWARE
 from tests.pages import PAGES, ROOT, blocks_of
 
@@ -48,6 +52,20 @@ def recipes(programs: Iterable[InC]) -> Iterator[Recipe]:
                 yield recipe_of_source({each.title: each.text.encode()}, each.title)
 
 
+def first_calls() -> str:
+    """Run the built-in firmware of two cores on the built-in recording. Returns which kernels are called first, as `in_order` reads it."""
+    found: dict[str, str] = {}
+
+    def note(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
+        is_outside = any(isinstance(each, Row) and not each.is_in_l1 for each in arguments)
+        found.setdefault(kernel.function.symbol, f" {OUTSIDE}" if is_outside else "")
+
+    for each in FIRMWARE:
+        if len(load_firmware(each).firmware.mains) > 1:  # the kernels of one core alone are the same
+            simulate(firmware=each, on_call=note)
+    return "\n".join(map("".join, found.items()))
+
+
 def main() -> None:
     """Compile and write."""
     parser = argparse.ArgumentParser(
@@ -59,7 +77,8 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     in_c = programs()
     wanted = {each.digest(KEPT_COMPILER): each for each in recipes(in_c.values())}
-    for old in {each.name for each in FOLDER.iterdir()} - wanted.keys():
+    (FOLDER / FIRST_CALLS).write_bytes(zlib.compress(first_calls().encode(), 9))
+    for old in {each.name for each in FOLDER.iterdir()} - wanted.keys() - {FIRST_CALLS}:
         (FOLDER / old).unlink()
     (FOLDER / PROGRAMS).write_bytes(zlib.compress("\n".join(in_c).encode(), 9))
     for name, program in in_c.items():

@@ -9,15 +9,13 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
-if sys.platform != "win32":  # elsewhere no folder can be locked, and nothing is swept
-    import fcntl
+from bfsim.files.locks import lock_folder
 
 _PREFIX, _SUFFIX = ".bfsim-", ".draft"
 _NAME = re.compile(re.escape(_PREFIX) + r"\w{8}" + re.escape(_SUFFIX))
@@ -32,7 +30,7 @@ def draft_folder(where: Path) -> Iterator[Path]:
     """
     sweep(where)
     unnamed = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=where))
-    lock = _lock(unnamed)
+    lock = lock_folder(unnamed)
     folder = unnamed.with_name(unnamed.name + _SUFFIX)
     unnamed.rename(folder)  # only now, with its lock on it, could it be swept
     try:
@@ -71,22 +69,7 @@ def sweep(where: Path) -> None:
     """Remove the drafts in `where` that no process holds any more; what cannot be removed stays."""
     with suppress(OSError):
         for folder in [each for each in where.iterdir() if _NAME.fullmatch(each.name)]:
-            lock = _lock(folder)
+            lock = lock_folder(folder)
             if lock is not None:
                 shutil.rmtree(folder, ignore_errors=True)
                 os.close(lock)
-
-
-def _lock(folder: Path) -> int | None:
-    """Open a folder and lock it; None if another process holds it, or if it cannot be locked."""
-    if sys.platform == "win32":
-        return None
-    with suppress(OSError):
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            os.close(handle)
-        else:
-            return handle
-    return None

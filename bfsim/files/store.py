@@ -18,8 +18,8 @@ import stat
 import tempfile
 import warnings
 import zlib
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.resources import files
 from io import FileIO
@@ -29,6 +29,7 @@ from typing import Any
 import platformdirs
 
 from bfsim.errors import BfsimWarning, shown
+from bfsim.files.locks import lock_folder
 
 CHECKSUM_BYTES = 32
 PRIVATE = 0o700
@@ -82,6 +83,18 @@ def save(name: str, body: bytes) -> None:
         except BaseException:
             Path(aside).unlink()
             raise
+
+
+@contextmanager
+def claimed() -> Iterator[bool]:
+    """In the `with` block, and until all processes that are forked in it end, be the one who fills the cache ahead, unless another process is."""
+    place = _trusted(folder())
+    lock = lock_folder(place) if place is not None and _is_writable(place) else None
+    try:
+        yield lock is not None
+    finally:
+        if lock is not None:
+            os.close(lock)
 
 
 def kept(name: str, made: Callable[[], Any]) -> Any:

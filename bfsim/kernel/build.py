@@ -61,6 +61,12 @@ class Build:
         effort = Effort.REGISTERS if traced else Effort.ALL
         return kernel.compile(self.profile, traced=traced, effort=effort, files=files)
 
+    def keep(self, kernel: Kernel, *, traced: bool) -> None:
+        """Have the cache on disk hold all that a kernel needs to be `compiled`: it is made now if it is not there."""
+        code = self.compiled(kernel, traced=traced)
+        if not isinstance(code, CompiledKernel):
+            _ = code.subroutine.translated
+
     def counters(self, kernel: Kernel) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `Kernel.counters`."""
         if kernel.function in self.objects:
