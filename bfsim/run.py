@@ -45,6 +45,7 @@ from bfsim.running.devices import told_devices
 from bfsim.running.identifying import DigestedFrames, identity_of, written
 from bfsim.running.inputs import opened, read_placement
 from bfsim.running.retiming import retimed
+from bfsim.running.room import outside_l1
 from bfsim.running.setup import FittedFirmware, RunSetup, fit
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
@@ -183,7 +184,8 @@ def simulate(
         if before:
             before(identity, source.total)
         wants = {"has_pictures": bool(on_seen), "has_timeline": bool(on_spans)}
-        ahead = nullcontext() if work else compiled_ahead(fitted.build, fitted.firmware)
+        outside = outside_l1(fitted.link_map, setup.board.value.chip.regions)
+        ahead = nullcontext() if work else compiled_ahead(fitted.firmware, fitted.build, outside)
         with (
             ahead,
             retimed(machine, identity, source, loaded, check, record_work=record_work, work=work, **wants),

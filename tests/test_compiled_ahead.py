@@ -60,7 +60,7 @@ def test_what_others_have_compiled_is_kept_and_compiled_once(
     """The run finds it in the cache; the next one starts no process for it."""
     (kernel,) = entries_of(firmware)
     before = kept()
-    with compiled_ahead(ESTIMATED, firmware):
+    with compiled_ahead(firmware, ESTIMATED, frozenset()):
         assert others() == 1
         while others():
             time.sleep(0.01)
@@ -68,7 +68,7 @@ def test_what_others_have_compiled_is_kept_and_compiled_once(
         ESTIMATED.keep(kernel, traced=False)
         assert kept() == compiled > before
     monkeypatch.setattr(ahead, "_forked", None)
-    with compiled_ahead(ESTIMATED, firmware):
+    with compiled_ahead(firmware, ESTIMATED, frozenset()):
         assert not others()
 
 
@@ -76,7 +76,7 @@ def test_a_run_that_is_over_waits_for_nobody(firmware: Firmware, monkeypatch: py
     """What was not compiled by then is compiled ahead in the next run."""
     monkeypatch.setattr(Build, "keep", lambda *_, **__: time.sleep(60))
     for _ in range(2):
-        with pytest.raises(KeyboardInterrupt), compiled_ahead(ESTIMATED, firmware):
+        with pytest.raises(KeyboardInterrupt), compiled_ahead(firmware, ESTIMATED, frozenset()):
             assert others() == 1
             raise KeyboardInterrupt
         assert not others()
@@ -84,7 +84,7 @@ def test_a_run_that_is_over_waits_for_nobody(firmware: Firmware, monkeypatch: py
 
 def test_only_one_process_compiles_ahead(firmware: Firmware) -> None:
     """Of several that start with an empty cache, as in tests that run side by side: they would all compile the same."""
-    with store.claimed() as is_first, compiled_ahead(ESTIMATED, firmware):
+    with store.claimed() as is_first, compiled_ahead(firmware, ESTIMATED, frozenset()):
         assert is_first
         assert not others()
 
@@ -92,11 +92,11 @@ def test_only_one_process_compiles_ahead(firmware: Firmware) -> None:
 def test_one_processor_has_nobody_to_ask(firmware: Firmware, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nor has a run of few kernels, which would be over by then."""
     monkeypatch.setattr(ahead, "FEWEST_KERNELS", 2)
-    with compiled_ahead(ESTIMATED, firmware):
+    with compiled_ahead(firmware, ESTIMATED, frozenset()):
         assert not others()
     monkeypatch.setattr(ahead, "FEWEST_KERNELS", 1)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _process: {0})
-    with compiled_ahead(ESTIMATED, firmware):
+    with compiled_ahead(firmware, ESTIMATED, frozenset()):
         assert not others()
 
 
@@ -120,6 +120,5 @@ def test_the_order_is_that_of_first_calls() -> None:
         names.index(each) for each in ("grey_row", "sobel_row", "label_edges_row", "fit_lines", "rectify_row")
     ]
     assert order == sorted(order)
-    outside = {each.kernel.name for each in calls if each.is_outside}
-    assert "label_edges_row" in outside
-    assert "sobel_row" not in outside
+    buffers = dict(zip(names, (each.buffers for each in calls), strict=True))
+    assert buffers["sobel_row"] != buffers["rectify_row"] == ()

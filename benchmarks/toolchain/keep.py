@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 
 from bfsim.compiling.file_code import SOURCES, recipe_of_source
-from bfsim.compiling.first_calls import FIRST_CALLS, OUTSIDE
+from bfsim.compiling.first_calls import FIRST_CALLS
 from bfsim.compiling.object_code import LEVELS, PROGRAMS, InC, recipe_of, written
 from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
@@ -54,16 +54,15 @@ def recipes(programs: Iterable[InC]) -> Iterator[Recipe]:
 
 def first_calls() -> str:
     """Run the built-in firmware of two cores on the built-in recording. Returns which kernels are called first, as `in_order` reads it."""
-    found: dict[str, str] = {}
+    found: dict[str, list[str]] = {}
 
     def note(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
-        is_outside = any(isinstance(each, Row) and not each.is_in_l1 for each in arguments)
-        found.setdefault(kernel.function.symbol, f" {OUTSIDE}" if is_outside else "")
+        found.setdefault(kernel.function.symbol, [each.buffer for each in arguments if isinstance(each, Row)])
 
     for each in FIRMWARE:
         if len(load_firmware(each).firmware.mains) > 1:  # the kernels of one core alone are the same
             simulate(firmware=each, on_call=note)
-    return "\n".join(map("".join, found.items()))
+    return "\n".join(" ".join((symbol, *buffers)) for symbol, buffers in found.items())
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""When the built-in firmware calls its kernels for the first time, and on which rows: what is compiled ahead should be there by then."""
+"""When the built-in firmware calls its kernels for the first time, and on which buffers: what is compiled ahead should be there by then."""
 
 from __future__ import annotations
 
@@ -10,21 +10,20 @@ from bfsim.files import store
 from bfsim.kernel import Kernel
 
 FIRST_CALLS = "first_calls"
-"""What comes with bfsim under this name: symbols of kernels in the order of their first calls, and behind some of them `OUTSIDE`."""
-OUTSIDE = "outside"
+"""What comes with bfsim under this name: symbols of kernels in the order of their first calls, and behind each the buffers of its rows."""
 
 
 class FirstCall(NamedTuple):
-    """The first call of a kernel; `is_outside`: whether one of its rows lies outside of L1."""
+    """The first call of a kernel, and the buffers whose rows it is given."""
 
     kernel: Kernel
-    is_outside: bool
+    buffers: tuple[str, ...]
 
 
 def in_order(kernels: Iterable[Kernel]) -> list[FirstCall]:
-    """Return kernels in the order in which the built-in firmware first calls them, where its own LDF places the rows.
+    """Return kernels in the order in which the built-in firmware first calls them.
 
-    Those that it does not call are behind, in the order of their symbols, and taken to be called on rows in L1.
+    Those that it does not call are behind, in the order of their symbols, and nothing is known of their rows.
     """
     known = _first_calls()
     places = {symbol: number for number, symbol in enumerate(known)}
@@ -32,11 +31,11 @@ def in_order(kernels: Iterable[Kernel]) -> list[FirstCall]:
     def place(kernel: Kernel) -> tuple[int, str]:
         return places.get(kernel.function.symbol, len(places)), kernel.function.symbol
 
-    return [FirstCall(each, known.get(each.function.symbol, False)) for each in sorted(kernels, key=place)]
+    return [FirstCall(each, known.get(each.function.symbol, ())) for each in sorted(kernels, key=place)]
 
 
 @cache
-def _first_calls() -> dict[str, bool]:
-    """Return the symbols, and whether each kernel's first call is on a row outside of L1."""
+def _first_calls() -> dict[str, tuple[str, ...]]:
+    """Return the buffers of each kernel, by its symbol."""
     rows = (store.shipped(__package__, FIRST_CALLS) or b"").decode().splitlines()
-    return {symbol: where == OUTSIDE for symbol, _, where in (each.partition(" ") for each in rows)}
+    return {symbol: tuple(buffers) for symbol, *buffers in map(str.split, rows)}

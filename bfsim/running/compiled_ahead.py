@@ -15,10 +15,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing.process import BaseProcess
 
-from bfsim.compiling.first_calls import FirstCall, in_order
+from bfsim.compiling.first_calls import in_order
 from bfsim.errors import BfsimError
 from bfsim.files import store
-from bfsim.kernel import keys
+from bfsim.kernel import Kernel, keys
 from bfsim.kernel.build import Build
 from bfsim.loading.kernels import entries_of, written_in_python
 from bfsim.machine.program import Firmware
@@ -30,19 +30,24 @@ MOST_PROCESSES = 4
 
 
 @contextmanager
-def compiled_ahead(build: Build, firmware: Firmware) -> Iterator[None]:
-    """In the `with` block, have other processes compile the kernels of `firmware` that the cache does not hold; they end with it."""
+def compiled_ahead(firmware: Firmware, build: Build, outside: frozenset[str]) -> Iterator[None]:
+    """In the `with` block, have other processes compile the kernels of `firmware` that the cache does not hold; they end with it.
+
+    `outside`: the buffers outside of L1, for other code is needed there. What is not known of a kernel is guessed.
+    """
     processes = min(len(os.sched_getaffinity(0)) - 1, MOST_PROCESSES) if sys.platform == "linux" else 0
     kernels = written_in_python(entries_of(firmware))
     if not processes or len(kernels) < FEWEST_KERNELS or multiprocessing.parent_process():
         yield  # a worker of a pool is one of many
         return
     digests = sorted(each.function.digest for each in kernels)
-    name = keys.digest("compiled ahead", keys.tools(), repr(build.profile), build.digest, *digests)
+    name = keys.digest(
+        "compiled ahead", keys.tools(), repr(build.profile), build.digest, *digests, repr(sorted(outside))
+    )
     if store.load(name) is not None:
         yield
         return
-    calls = in_order(kernels)[::-1]
+    calls = [(each.kernel, not outside.isdisjoint(each.buffers)) for each in in_order(kernels)[::-1]]
     with store.claimed() as is_first:
         shares = [calls[each::processes] for each in range(processes)] if is_first else []
         helpers = [_forked(build, each) for each in shares]
@@ -53,7 +58,7 @@ def compiled_ahead(build: Build, firmware: Firmware) -> Iterator[None]:
                 store.save(name, b"")
 
 
-def _forked(build: Build, calls: Sequence[FirstCall]) -> BaseProcess:
+def _forked(build: Build, calls: Sequence[tuple[Kernel, bool]]) -> BaseProcess:
     """Start a process that knows all that this one does."""
     process = multiprocessing.get_context("fork").Process(target=_compile, args=(build, calls), daemon=True)
     with (
@@ -64,18 +69,18 @@ def _forked(build: Build, calls: Sequence[FirstCall]) -> BaseProcess:
     return process
 
 
-def _compile(build: Build, calls: Sequence[FirstCall]) -> None:
-    """Compile, as long as the run goes on; what a kernel is refused for is told by the run, if it calls it."""
+def _compile(build: Build, calls: Sequence[tuple[Kernel, bool]]) -> None:
+    """Compile kernels, traced or not, for as long as the run goes on; what a kernel is refused for is told by the run, if it calls it."""
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(each, signal.SIG_DFL)
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nowhere, stream)
     run = multiprocessing.parent_process()
-    for call in calls:
+    for kernel, is_traced in calls:
         if run and run.is_alive():
             with suppress(BfsimError):
-                build.keep(call.kernel, traced=call.is_outside)
+                build.keep(kernel, traced=is_traced)
 
 
 def _ended(helpers: Sequence[BaseProcess]) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bfsim.chip.memory_map import Region
+from bfsim.chip.memory_map import Region, region_of
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, LinkError
 from bfsim.kernel.build import Build
@@ -103,4 +103,13 @@ def _cut(calibration: Calibration, size: FrameSize) -> Calibration:
             )
             for core, source in calibration.sources.items()
         },
+    )
+
+
+def outside_l1(link_map: LinkMap, regions: Sequence[Region]) -> frozenset[str]:
+    """Return the names of symbols that lie in L2 or SDRAM, whichever core's they are."""
+    return frozenset(
+        each.symbol.name
+        for each in link_map.placements
+        if region_of(each.address, each.symbol.nbytes, regions).owner == "shared"
     )
