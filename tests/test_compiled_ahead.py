@@ -100,6 +100,21 @@ def test_one_processor_has_nobody_to_ask(firmware: Firmware, monkeypatch: pytest
         assert not others()
 
 
+def test_a_system_without_room_for_a_process_is_no_mistake(
+    firmware: Firmware, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The run compiles all itself; the next one tries again."""
+
+    def refuse() -> int:
+        raise BlockingIOError
+
+    monkeypatch.setattr(os, "fork", refuse)
+    before = kept()
+    with compiled_ahead(firmware, ESTIMATED, frozenset()):
+        assert not others()
+    assert kept() == before
+
+
 @pytest.mark.skipif(len(os.sched_getaffinity(0)) == 1, reason="one processor compiles nothing ahead")
 def test_nobody_outlives_a_run_that_is_killed(tmp_path: Path) -> None:
     """Not for longer than it takes to compile a kernel."""

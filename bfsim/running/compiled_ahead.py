@@ -50,23 +50,25 @@ def compiled_ahead(firmware: Firmware, build: Build, outside: frozenset[str]) ->
     calls = [(each.kernel, not outside.isdisjoint(each.buffers)) for each in in_order(kernels)[::-1]]
     with store.claimed() as is_first:
         shares = [calls[each::processes] for each in range(processes)] if is_first else []
-        helpers = [_forked(build, each) for each in shares]
+        helpers = [each for each in (_forked(build, share) for share in shares) if each]
         try:
             yield
         finally:
-            if _ended(helpers):
+            if _ended(helpers) == processes:
                 store.save(name, b"")
 
 
-def _forked(build: Build, calls: Sequence[tuple[Kernel, bool]]) -> BaseProcess:
-    """Start a process that knows all that this one does."""
+def _forked(build: Build, calls: Sequence[tuple[Kernel, bool]]) -> BaseProcess | None:
+    """Start a process that knows all that this one does; None where the system has none to give."""
     process = multiprocessing.get_context("fork").Process(target=_compile, args=(build, calls), daemon=True)
     with (
         warnings.catch_warnings()
     ):  # of other threads, whose locks it might wait for: then it ends with the run
         warnings.simplefilter("ignore", DeprecationWarning)
-        process.start()
-    return process
+        with suppress(OSError):
+            process.start()
+            return process
+    return None
 
 
 def _compile(build: Build, calls: Sequence[tuple[Kernel, bool]]) -> None:
@@ -83,9 +85,9 @@ def _compile(build: Build, calls: Sequence[tuple[Kernel, bool]]) -> None:
                 build.keep(kernel, traced=is_traced)
 
 
-def _ended(helpers: Sequence[BaseProcess]) -> bool:
-    """End all processes; return whether they had compiled all."""
+def _ended(helpers: Sequence[BaseProcess]) -> int:
+    """End all processes; return how many had compiled all that they were to."""
     for each in helpers:
         each.kill()
         each.join()
-    return bool(helpers) and not any(each.exitcode for each in helpers)
+    return sum(each.exitcode == 0 for each in helpers)
