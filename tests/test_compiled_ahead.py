@@ -67,7 +67,7 @@ def test_what_others_have_compiled_is_kept_and_compiled_once(
         compiled = kept()
         ESTIMATED.keep(kernel, traced=False)
         assert kept() == compiled > before
-    monkeypatch.setattr(ahead, "_forked", None)
+    monkeypatch.setattr("bfsim.running.compilers.Compilers", None)
     with compiled_ahead(firmware, ESTIMATED, frozenset()):
         assert not others()
 
