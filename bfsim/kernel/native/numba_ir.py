@@ -42,7 +42,7 @@ def made_ir(
         _extend(words_at)
         result, *arguments = (_kind(numba.types, name) for name in kinds)
         made = numba.cfunc(result(*arguments), **OPTIONS)(entry)
-        module = llvm.parse_assembly(made.inspect_llvm())
+        module = llvm.parse_assembly(_inlined(made.inspect_llvm()))
     for each in (*module.functions, *module.global_variables):
         if each.name.startswith("cfunc."):
             each.name = symbol
@@ -51,6 +51,11 @@ def made_ir(
     _optimise(module)
     module.triple = module.data_layout = module.name = ""
     return str(module)
+
+
+def _inlined(text: str) -> str:
+    """Return a module whose entry is the function itself, where numba has it call that: some functions are called at every access."""
+    return text.replace("noinline", "alwaysinline")
 
 
 def _optimise(module: llvm.ModuleRef) -> None:
