@@ -1,7 +1,7 @@
-"""Loads and stores of words of L2, compiled: one core's, with the tries of the other one if that spins on a lock.
+"""Words of L2 that the cores load and store, compiled: all that both want of the port, in order, for as long as no DMA comes between.
 
-What they do is what `core_requests` would do with each. All that changes is in local variables, and is kept in the state at the end: it
-saves the host's time only. Where buffers lie in L2, nearly all that the bus does is this.
+What it does is what `core_requests` and `store_buffer` would do with each request: it saves the host's time only. Where buffers or tables
+lie in L2, nearly all that the bus does is this.
 """
 
 from __future__ import annotations
@@ -9,177 +9,154 @@ from __future__ import annotations
 from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import charge_site, cycles_until
 from bfsim.machine.bus.core_logs import kind_of
 from bfsim.machine.bus.fetch_requests import stall_of_word
-from bfsim.machine.bus.l2_port import count_tries, has_turn, hold_of, tries_before
-from bfsim.machine.bus.memory_owners import owner_for
+from bfsim.machine.bus.l2_accesses import (
+    CORE,
+    DRAINS_AT,
+    PUTS,
+    READY,
+    SPIN,
+    Request,
+    drain,
+    is_followed,
+    is_held,
+    is_word_in_l2,
+    load,
+    store,
+    try_lock,
+)
+from bfsim.machine.bus.l2_port import hold_of
 from bfsim.machine.bus.state import State
-from bfsim.machine.bus.store_buffer import is_among, put_at
-from bfsim.machine.bus.traffic import count_traffic
 
-NOBODY, ACCESS, DRAIN, TRY = range(4)
-"""Who comes first at the port: nobody in time, the core itself, its store buffer, or the other core, which tries a lock."""
+PUT, LOAD, DRAIN = range(3)
+"""What a core asks for, by rank: to put a store into its buffer, which needs no port; to load or to try a lock; to drain its buffer."""
 
 
 @native
-def is_word_in_l2(state: State, entry: int) -> bool:
-    """Whether an entry of the log is a load or a store of a word of L2."""
-    return kind_of(entry) in (log.LOAD, log.STORE) and entry & log.OFFSET_MASK >= state[w.SDRAM_END]
+def play_words(state: State, until: int) -> bool:
+    """Play what the cores want of L2 until one of them wants something else; return whether there was anything.
 
-
-@native
-def is_followed(state: State, core: int, number: int, fetches_at: int) -> bool:
-    """Whether a core's next access is that `number` of its log, behind no fetch and not of another kind."""
-    entry = state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + number]
-    is_logged = number < state[w.JOBS_AT + core * w.JOB_WORDS + w.END]
-    return is_logged and entry >> log.STAMP_BIT <= fetches_at and is_word_in_l2(state, entry)
-
-
-@native
-def drain(state: State, core: int, head: int) -> int:
-    """Count the write of the oldest store of a core's buffer, at the place `head`; return the place of the next one."""
-    entry = state[w.JOBS_AT + core * w.JOB_WORDS + w.STORE_QUEUE + head]
-    owner = owner_for(state, core, entry & log.OFFSET_MASK, entry >> log.STAMP_BIT)
-    count_traffic(state, w.STORES_A + core, owner, True, w.CORE_WORD_BYTES)
-    return (head + 1) % w.MAX_STORES
-
-
-@native
-def put(state: State, core: int, place: int, entry: int, site: int) -> None:
-    """Put a store of a site into a core's buffer, all of which is for L2."""
-    put_at(state, w.JOBS_AT + core * w.JOB_WORDS, place, entry, site)
-    state[w.MASTERS_AT + w.STORES_A + core + w.USES] = w.L2
-
-
-@native
-def end_wait(state: State, core: int, site: int, issued: int, free: int) -> int:
-    """Charge an access that was `issued` at a tick, and waited for the store buffer until the port was `free`; return the cycles."""
-    cycles = cycles_until(state, issued, free + state[w.CCLK])
-    charge_site(state, core, site, w.STORE_BUFFER, cycles)
-    return cycles
-
-
-@native
-def load(state: State, core: int, entry: int, site: int, issued: int, at: int, latency: int) -> int:
-    """Count a load at tick `at`, and charge what it waits for the port and, `latency`, for its data; return the cycles."""
-    owner = owner_for(state, core, entry & log.OFFSET_MASK, site)
-    count_traffic(state, w.CORE_A + core, owner, False, w.CORE_WORD_BYTES)
-    state[w.JOBS_AT + core * w.JOB_WORDS + w.LINE_DONE] = at + state[w.L2_READ]
-    charge_site(state, core, site, w.L2_LATENCY, latency)
-    if at <= issued:
-        return latency
-    waited = cycles_until(state, issued, at + state[w.CCLK])
-    charge_site(state, core, site, w.L2_PORT, waited)
-    return waited + latency
-
-
-@native
-def wait_of(state: State, job: int, entry: int, head: int, stores: int) -> int:
-    """Return what an access waits for at the store buffer, RUNNING if for nothing."""
-    if kind_of(entry) == log.STORE:
-        return w.BUFFER_FULL if stores >= state[w.STORE_DEPTH] else w.RUNNING
-    if stores and is_among(state, job, head, stores, entry & log.OFFSET_MASK, w.CORE_WORD_BYTES):
-        return w.BUFFER_NOT_EMPTY
-    return w.RUNNING
-
-
-@native
-def first_of(at: int, drains: int, tries: int, limit: int, is_store: bool, its_turn: bool) -> int:
-    """Return who comes first before tick `limit`: a core, its store buffer, or the other core that tries a lock.
-
-    Of two at a time the try comes before a drain, and before a load where it is the other core's turn.
+    Until tick `until` no DMA can want the port. The last access of a call is left, and so is one before something else.
     """
-    first = min(at, drains)
-    if min(first, tries) >= limit:
-        return NOBODY
-    if tries < first or (tries == first and (drains < at or (its_turn and not is_store))):
-        return TRY
-    return DRAIN if drains < at else ACCESS
-
-
-@native
-def play_words(state: State, core: int, other: int, limit: int) -> None:
-    """Play the port up to tick `limit`: a core's loads and stores, its store buffer, and the tries of the other core if it spins."""
-    job, entries = w.JOBS_AT + core * w.JOB_WORDS, w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
-    began, fetches_at, cclk = state[job + w.BEGIN], state[job + w.NEXT_FETCH], state[w.CCLK]
-    held, reads, latency = hold_of(state, w.CORE_WORD_BYTES), state[w.L2_READ], stall_of_word(state)
-    spin = state[w.JOBS_AT + other * w.JOB_WORDS + w.SPIN]
-    turn = reads + state[w.L2_NEXT] + spin
-    free, drains = state[w.L2_FREE], state[w.MASTERS_AT + w.STORES_A + core + w.READY]
-    tries, its_turn = state[w.MASTERS_AT + w.CORE_A + other + w.READY], has_turn(state, other)
-    ready = issued = state[job + w.ISSUED_AT]
-    stalled, head, stores = state[job + w.STALLED], state[job + w.STORE_HEAD], state[job + w.STORES]
-    number, entry, site = state[job + w.ENTRY], state[job + w.PRESENT], state[job + w.SITE]
-    waits, tried = w.RUNNING, 0
+    mine, its = request_of(state, 0), request_of(state, 1)
+    limit = min(until, left_until(state, 0, mine), left_until(state, 1, its))
+    free, last, had_any = state[w.L2_FREE], state[w.LAST_CORE_AT_L2], False
+    held, latency = hold_of(state, w.CORE_WORD_BYTES), stall_of_word(state)
     while True:
-        is_store = kind_of(entry) == log.STORE
-        at = ready if is_store else max(ready, free)
-        who = first_of(at, max(drains, free), max(tries, free), limit, is_store, its_turn)
-        if who == NOBODY:
+        at, drains_at = asks_at(mine, free), max(mine[DRAINS_AT], free)
+        its_at, its_drains_at = asks_at(its, free), max(its[DRAINS_AT], free)
+        first, its_first = min(at, drains_at), min(its_at, its_drains_at)
+        if min(first, its_first) >= limit:
             break
-        if who == TRY:
-            times = tries_before(max(tries, free), turn, min(limit, ready, drains))
-            tried, tries, its_turn = tried + times, max(tries, free) + times * turn, False
-            free = tries - spin
-            continue
-        if who == DRAIN:
-            head, stores = drain(state, core, head), stores - 1
-            free, its_turn = max(drains, free) + held, True
-            drains = free if stores else w.NEVER
-            if waits != w.BUFFER_FULL and (waits == w.RUNNING or stores):
-                continue
-            stalled += end_wait(state, core, site, issued, free) * cclk
-            at, waits = free, w.RUNNING
+        if its_first < first or (
+            its_first == first
+            and is_behind(mine, last, rank_of(mine, at, drains_at), rank_of(its, its_at, its_drains_at))
+        ):
+            mine, its, at, drains_at = its, mine, its_at, its_drains_at
+        if drains_at < at:
+            free, last = drains_at + held, mine[CORE]
+            mine = drain(state, mine, free)
+        elif mine[SPIN]:
+            mine = try_lock(state, mine, at, min(limit, mine[DRAINS_AT], its[READY], its[DRAINS_AT]))
+            free, last = mine[READY] - mine[SPIN], mine[CORE]
+        elif is_held(state, mine):
+            mine = mine[CORE], w.NEVER, mine[DRAINS_AT], 0, mine[PUTS]
+        elif not is_followed(state, mine[CORE]):
+            break
+        elif mine[PUTS]:
+            mine = store(state, mine, at)
         else:
-            waits = wait_of(state, job, entry, head, stores)
-            if waits != w.RUNNING:
-                ready = w.NEVER
-                continue
-            if not is_followed(state, core, number + 1, fetches_at):
-                break
-            if is_store:
-                put(state, core, head + stores, entry, site)
-                drains, stores = drains if stores else at, stores + 1
-            else:
-                stalled += load(state, core, entry, site, issued, at, latency) * cclk
-                free, its_turn, at = at + held, True, at + reads
-            number += 1
-            entry, site = state[entries + number], state[entries + w.LOG_ENTRIES + number]
-        ready = issued = max(at, began + (entry >> log.STAMP_BIT) * cclk + stalled)
-    keep_port(state, core, other, free, tries, tried, its_turn)
-    keep_buffer(state, core, head, stores, drains)
-    keep_access(state, core, number, waits, stalled, issued, ready)
-
-
-@native
-def keep_access(
-    state: State, core: int, number: int, waits: int, stalled: int, issued: int, ready: int
-) -> None:
-    """Keep which access of the log is a core's present one, what it waits for, and when it was `issued` and is `ready` to be made."""
-    job, master = w.JOBS_AT + core * w.JOB_WORDS, w.MASTERS_AT + w.CORE_A + core
-    entry = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + number
-    state[job + w.ENTRY], state[job + w.PRESENT] = number, state[entry]
-    state[job + w.SITE] = state[entry + w.LOG_ENTRIES]
-    state[job + w.STATE], state[job + w.STALLED], state[job + w.ISSUED_AT] = waits, stalled, issued
-    state[master + w.READY] = ready
-    state[master + w.USES] = w.NOTHING if kind_of(state[entry]) == log.STORE else w.L2
-
-
-@native
-def keep_port(state: State, core: int, other: int, free: int, tries: int, tried: int, its_turn: bool) -> None:
-    """Keep when the port is free, whose turn it is then, and how often the other core `tried` a lock and `tries` again."""
+            free, last = at + held, mine[CORE]
+            mine = load(state, mine, at, latency)
+        had_any = True
     if free != state[w.L2_FREE]:
-        state[w.L2_FREE], state[w.IMDMA_HAD_L2] = free, 0
-        state[w.LAST_CORE_AT_L2] = core if its_turn else other
-    if tried:
-        state[w.MASTERS_AT + w.CORE_A + other + w.READY] = tries
-        count_tries(state, other, tried)
+        state[w.L2_FREE], state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = free, last, 0
+    keep(state, mine)
+    keep(state, its)
+    return had_any
 
 
 @native
-def keep_buffer(state: State, core: int, head: int, stores: int, drains: int) -> None:
-    """Keep what a core's store buffer has, and when the oldest store asks."""
-    job, master = w.JOBS_AT + core * w.JOB_WORDS, w.MASTERS_AT + w.STORES_A + core
-    state[job + w.STORE_HEAD], state[job + w.STORES] = head, stores
-    state[master + w.READY] = drains
+def asks_at(request: Request, free: int) -> int:
+    """Return when a core makes its access, the port being free from a tick on."""
+    return request[READY] if request[PUTS] else max(request[READY], free)
+
+
+@native
+def rank_of(request: Request, at: int, drains_at: int) -> int:
+    """Return what a core asks for first that makes its access at a tick, and drains its buffer at another."""
+    return DRAIN if drains_at < at else PUT if request[PUTS] else LOAD
+
+
+@native
+def is_behind(request: Request, last: int, rank: int, other_rank: int) -> bool:
+    """Whether a core comes behind the other one that asks at the same tick; `last`: who had the port last."""
+    if rank != other_rank:
+        return other_rank < rank
+    return rank != PUT and (last == request[CORE] or (last == w.NONE and request[CORE] != 0))
+
+
+@native
+def is_playable(state: State, core: int) -> bool:
+    """Whether all that a core wants next is such as is played here. One that is idle may have a buffer to drain."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    if state[job + w.STATE] != w.IDLE and not is_at_word(state, job):
+        return False
+    for number in range(state[job + w.STORES]):
+        entry = state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES]
+        if kind_of(entry) != log.STORE or entry & log.OFFSET_MASK < state[w.SDRAM_END]:
+            return False
+    return True
+
+
+@native
+def is_at_word(state: State, job: int) -> bool:
+    """Whether a core that is at work is at a word of L2, or tries a lock there, and at nothing else."""
+    return (
+        not state[job + w.IN_TURN]
+        and (state[job + w.SPIN] != 0 or is_word_in_l2(state, state[job + w.PRESENT]))
+        and state[job + w.LINE_DONE] <= state[job + w.ISSUED_AT]
+    )
+
+
+@native
+def request_of(state: State, core: int) -> Request:
+    """Return what a core wants of L2 next, of no core if it wants something else."""
+    if not is_playable(state, core):
+        return w.NONE, w.NEVER, w.NEVER, 0, 0
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    return (
+        core,
+        state[w.MASTERS_AT + w.CORE_A + core + w.READY],
+        state[w.MASTERS_AT + w.STORES_A + core + w.READY],
+        state[job + w.SPIN],
+        int(kind_of(state[job + w.PRESENT]) == log.STORE),
+    )
+
+
+@native
+def left_until(state: State, core: int, request: Request) -> int:
+    """Return when a core asks for what is not played here."""
+    if request[CORE] != w.NONE:
+        return w.NEVER
+    return min(
+        state[w.MASTERS_AT + w.CORE_A + core + w.READY], state[w.MASTERS_AT + w.STORES_A + core + w.READY]
+    )
+
+
+@native
+def keep(state: State, request: Request) -> None:
+    """Keep what a core wants next, if that was played here."""
+    core = request[CORE]
+    if core == w.NONE:
+        return
+    job, master = w.JOBS_AT + core * w.JOB_WORDS, w.MASTERS_AT + w.CORE_A + core
+    state[w.MASTERS_AT + w.STORES_A + core + w.READY] = request[DRAINS_AT]
+    if state[job + w.STATE] == w.IDLE:
+        return
+    state[master + w.READY] = request[READY]
+    if not request[SPIN]:
+        entry = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
+        state[job + w.PRESENT], state[job + w.SITE] = state[entry], state[entry + w.LOG_ENTRIES]
+        state[master + w.USES] = w.NOTHING if request[PUTS] else w.L2

@@ -19,8 +19,7 @@ from bfsim.machine.bus.core_jobs import start_jobs
 from bfsim.machine.bus.core_requests import serve_core
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
-from bfsim.machine.bus.l2_loads import load_ahead
-from bfsim.machine.bus.l2_requests import access_ahead
+from bfsim.machine.bus.l2_words import play_words
 from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.runs import copies_quiet_until, l2_left_until, others_quiet_until
 from bfsim.machine.bus.sdram import hold_up
@@ -215,7 +214,7 @@ def go_ahead(state: State, core: int, at: int, until: int) -> bool:
     """
     if state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN]:
         core = w.CORES - 1 - core
-    return fetch_ahead(state, core, at, until) or load_ahead(state, until) or access_ahead(state, core, until)
+    return fetch_ahead(state, core, at, until) or play_words(state, until)
 
 
 @native
