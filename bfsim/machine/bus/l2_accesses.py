@@ -13,10 +13,11 @@ from bfsim.machine.bus.state import State
 from bfsim.machine.bus.store_buffer import is_among, put_at
 from bfsim.machine.bus.traffic import count_traffic
 
-Request = tuple[int, int, int, int, int]
-CORE, READY, DRAINS_AT, SPIN, PUTS = range(5)
+Request = tuple[int, int, int, int, int, int, int]
+CORE, READY, DRAINS_AT, SPIN, PUTS, PLACE, ORIGIN = range(7)
 """What a core wants next: which core, from when on its access can be made and its oldest store drained, NEVER if there is none; the ticks
-from a try of its lock to the next one, 0 if it tries none; whether the access is a store, which needs no port but room in the buffer."""
+from a try of its lock to the next one, 0 if it tries none; whether the access is a store, which needs no port but room in the buffer;
+where it stands in the log; and the tick at which its call would have begun without all stalls so far."""
 
 
 @native
@@ -26,19 +27,19 @@ def is_word_in_l2(state: State, entry: int) -> bool:
 
 
 @native
-def entry_at(state: State, core: int) -> int:
-    """Return where a core's present access stands in its log."""
-    job = w.JOBS_AT + core * w.JOB_WORDS
-    return w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
+def is_followed(state: State, request: Request) -> bool:
+    """Whether a core's next access is the next one of its log, behind no fetch and not of another kind."""
+    core = request[CORE]
+    job, behind = w.JOBS_AT + core * w.JOB_WORDS, request[PLACE] + 1
+    is_logged = behind < first_place(core) + state[job + w.END]
+    entry = state[behind]
+    return is_logged and entry >> log.STAMP_BIT <= state[job + w.NEXT_FETCH] and is_word_in_l2(state, entry)
 
 
 @native
-def is_followed(state: State, core: int) -> bool:
-    """Whether a core's next access is the next one of its log, behind no fetch and not of another kind."""
-    job = w.JOBS_AT + core * w.JOB_WORDS
-    entry = state[entry_at(state, core) + 1]
-    is_logged = state[job + w.ENTRY] + 1 < state[job + w.END]
-    return is_logged and entry >> log.STAMP_BIT <= state[job + w.NEXT_FETCH] and is_word_in_l2(state, entry)
+def first_place(core: int) -> int:
+    """Return where a core's log begins."""
+    return w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
 
 
 @native
@@ -51,7 +52,7 @@ def is_held(state: State, request: Request) -> bool:
             state[job + w.STATE] = w.BUFFER_FULL
             return True
     elif stores:
-        offset = state[entry_at(state, request[CORE])] & log.OFFSET_MASK
+        offset = state[request[PLACE]] & log.OFFSET_MASK
         if is_among(state, job, state[job + w.STORE_HEAD], stores, offset, w.CORE_WORD_BYTES):
             state[job + w.STATE] = w.BUFFER_NOT_EMPTY
             return True
@@ -59,46 +60,40 @@ def is_held(state: State, request: Request) -> bool:
 
 
 @native
-def issue(state: State, request: Request, drains_at: int, not_before: int) -> Request:
-    """Have a core come to the access that its log is at, not before a tick; its buffer is drained from `drains_at` on."""
-    core = request[CORE]
-    job, entry = w.JOBS_AT + core * w.JOB_WORDS, state[entry_at(state, core)]
-    due = state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * state[w.CCLK] + state[job + w.STALLED]
-    issued = state[job + w.ISSUED_AT] = max(not_before, due)
-    return core, issued, drains_at, 0, int(kind_of(entry) == log.STORE)
+def issue(state: State, core: int, place: int, not_before: int, origin: int, drains_at: int) -> Request:
+    """Have a core come to the access at a place of its log, not before a tick; its buffer is drained from `drains_at` on."""
+    entry = state[place]
+    issued = max(not_before, origin + (entry >> log.STAMP_BIT) * state[w.CCLK])
+    state[w.JOBS_AT + core * w.JOB_WORDS + w.ISSUED_AT] = issued
+    return core, issued, drains_at, 0, int(kind_of(entry) == log.STORE), place, origin
 
 
 @native
 def load(state: State, request: Request, at: int, latency: int) -> Request:
     """Load a word at tick `at`, and charge what the core waits for the port and, `latency`, for its data."""
-    core = request[CORE]
-    job, place = w.JOBS_AT + core * w.JOB_WORDS, entry_at(state, core)
-    site = state[place + w.LOG_ENTRIES]
+    core, place = request[CORE], request[PLACE]
+    site, cycles = state[place + w.LOG_ENTRIES], latency
     owner = owner_for(state, core, state[place] & log.OFFSET_MASK, site)
     count_traffic(state, w.CORE_A + core, owner, False, w.CORE_WORD_BYTES)
     charge_site(state, core, site, w.L2_LATENCY, latency)
-    cycles = latency
     if at > request[READY]:
         waited = cycles_until(state, request[READY], at + state[w.CCLK])
         charge_site(state, core, site, w.L2_PORT, waited)
         cycles += waited
-    done = state[job + w.LINE_DONE] = at + state[w.L2_READ]
-    state[job + w.STALLED] += cycles * state[w.CCLK]
-    state[job + w.ENTRY] += 1
-    return issue(state, request, request[DRAINS_AT], done)
+    done = state[w.JOBS_AT + core * w.JOB_WORDS + w.LINE_DONE] = at + state[w.L2_READ]
+    return issue(state, core, place + 1, done, request[ORIGIN] + cycles * state[w.CCLK], request[DRAINS_AT])
 
 
 @native
 def store(state: State, request: Request, at: int) -> Request:
     """Put a word into the core's buffer at tick `at`."""
-    core = request[CORE]
-    job, place = w.JOBS_AT + core * w.JOB_WORDS, entry_at(state, core)
+    core, place = request[CORE], request[PLACE]
+    job = w.JOBS_AT + core * w.JOB_WORDS
     stores = state[job + w.STORES]
     put_at(state, job, state[job + w.STORE_HEAD] + stores, state[place], state[place + w.LOG_ENTRIES])
     state[job + w.STORES] = stores + 1
     state[w.MASTERS_AT + w.STORES_A + core + w.USES] = w.L2
-    state[job + w.ENTRY] += 1
-    return issue(state, request, request[DRAINS_AT] if stores else at, at)
+    return issue(state, core, place + 1, at, request[ORIGIN], request[DRAINS_AT] if stores else at)
 
 
 @native
@@ -114,12 +109,11 @@ def drain(state: State, request: Request, free: int) -> Request:
     drains_at = free if stores else w.NEVER
     waits_for = state[job + w.STATE]
     if waits_for != w.BUFFER_FULL and (waits_for != w.BUFFER_NOT_EMPTY or stores):
-        return core, request[READY], drains_at, request[SPIN], request[PUTS]
+        return core, request[READY], drains_at, request[SPIN], request[PUTS], request[PLACE], request[ORIGIN]
     cycles = cycles_until(state, state[job + w.ISSUED_AT], free + state[w.CCLK])
-    charge_site(state, core, state[entry_at(state, core) + w.LOG_ENTRIES], w.STORE_BUFFER, cycles)
+    charge_site(state, core, state[request[PLACE] + w.LOG_ENTRIES], w.STORE_BUFFER, cycles)
     state[job + w.STATE] = w.RUNNING
-    state[job + w.STALLED] += cycles * state[w.CCLK]
-    return issue(state, request, drains_at, free)
+    return issue(state, core, request[PLACE], free, request[ORIGIN] + cycles * state[w.CCLK], drains_at)
 
 
 @native
@@ -128,4 +122,5 @@ def try_lock(state: State, request: Request, at: int, until: int) -> Request:
     turn = state[w.L2_READ] + state[w.L2_NEXT] + request[SPIN]
     tries = tries_before(at, turn, until)
     count_tries(state, request[CORE], tries)
-    return request[CORE], at + tries * turn, request[DRAINS_AT], request[SPIN], 0
+    ready = at + tries * turn
+    return request[CORE], ready, request[DRAINS_AT], request[SPIN], 0, request[PLACE], request[ORIGIN]

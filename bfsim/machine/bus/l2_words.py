@@ -14,11 +14,14 @@ from bfsim.machine.bus.fetch_requests import stall_of_word
 from bfsim.machine.bus.l2_accesses import (
     CORE,
     DRAINS_AT,
+    ORIGIN,
+    PLACE,
     PUTS,
     READY,
     SPIN,
     Request,
     drain,
+    first_place,
     is_followed,
     is_held,
     is_word_in_l2,
@@ -61,8 +64,8 @@ def play_words(state: State, until: int) -> bool:
             mine = try_lock(state, mine, at, min(limit, mine[DRAINS_AT], its[READY], its[DRAINS_AT]))
             free, last = mine[READY] - mine[SPIN], mine[CORE]
         elif is_held(state, mine):
-            mine = mine[CORE], w.NEVER, mine[DRAINS_AT], 0, mine[PUTS]
-        elif not is_followed(state, mine[CORE]):
+            mine = mine[CORE], w.NEVER, mine[DRAINS_AT], 0, mine[PUTS], mine[PLACE], mine[ORIGIN]
+        elif not is_followed(state, mine):
             break
         elif mine[PUTS]:
             mine = store(state, mine, at)
@@ -124,7 +127,7 @@ def is_at_word(state: State, job: int) -> bool:
 def request_of(state: State, core: int) -> Request:
     """Return what a core wants of L2 next, of no core if it wants something else."""
     if not is_playable(state, core):
-        return w.NONE, w.NEVER, w.NEVER, 0, 0
+        return w.NONE, w.NEVER, w.NEVER, 0, 0, 0, 0
     job = w.JOBS_AT + core * w.JOB_WORDS
     return (
         core,
@@ -132,6 +135,8 @@ def request_of(state: State, core: int) -> Request:
         state[w.MASTERS_AT + w.STORES_A + core + w.READY],
         state[job + w.SPIN],
         int(kind_of(state[job + w.PRESENT]) == log.STORE),
+        first_place(core) + state[job + w.ENTRY],
+        state[job + w.BEGIN] + state[job + w.STALLED],
     )
 
 
@@ -157,6 +162,10 @@ def keep(state: State, request: Request) -> None:
         return
     state[master + w.READY] = request[READY]
     if not request[SPIN]:
-        entry = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
-        state[job + w.PRESENT], state[job + w.SITE] = state[entry], state[entry + w.LOG_ENTRIES]
+        place = request[PLACE]
+        state[job + w.PRESENT], state[job + w.SITE] = state[place], state[place + w.LOG_ENTRIES]
+        state[job + w.ENTRY], state[job + w.STALLED] = (
+            place - first_place(core),
+            request[ORIGIN] - state[job + w.BEGIN],
+        )
         state[master + w.USES] = w.NOTHING if request[PUTS] else w.L2
