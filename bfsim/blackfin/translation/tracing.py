@@ -49,7 +49,7 @@ report:
   %more.sites = load i64, ptr %more.sites.at
   %whole.site = add i64 %site, %more.sites
   %function = load ptr, ptr %state
-  call void %function(ptr %state, i64 %place, i64 %access, i64 %stamp, i64 %whole.site)
+  tail call void %function(ptr %state, i64 %place, i64 %access, i64 %stamp, i64 %whole.site)
   br label %done
 done:
   ret void

@@ -73,6 +73,9 @@ def trace_access(at: State, address: int, access: int, stamp: int, site: int) ->
     if not state[log.ARENA] <= address < state[log.END]:
         return
     write, offset = access >= log.WRITE, address - state[log.ARENA]
+    if not state[log.REGIONS]:  # most boards cache none: no register need be saved for them
+        write_entry(state, log.STORE if write else log.LOAD, offset, stamp, site)
+        return
     policy = policy_of(state, offset)
     if policy == log.EMPTY:
         write_entry(state, log.STORE if write else log.LOAD, offset, stamp, site)
