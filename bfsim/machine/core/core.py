@@ -132,16 +132,19 @@ class Core:
         frame: Frame | None = yield from self._pictures.next_frame()
         return frame
 
-    def at(self, rows: int | range | Pixels | None = None, columns: Columns | None = None) -> None:
+    def at(
+        self, rows: int | range | Pixels | None = None, columns: Columns | None = None, *taken: Any
+    ) -> None:
         """Say what the work from here on is about, for the heat map: rows and columns of the picture that is looked at.
 
-        `columns` may also be a function that returns single ones, such as those of edges, and in the place of both may be one that
-        returns (row, column) of single pixels, such as those under lines: it is called only if someone looks.
+        `columns` may also be a function that returns single ones, such as those of edges, with what it takes behind it, and in the
+        place of both may be one that returns (row, column) of single pixels, such as those under lines: it is called only if someone
+        looks.
         Without columns it is the whole rows, without anything no place. That holds until the next `at` or the end of the
         stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
         which is the place then. It takes no cycle.
         """
-        self._pictures.at(rows, columns)
+        self._pictures.at(rows, columns, *taken)
 
     def publish(self, **results: int) -> None:
         """Add numbers to the record of the current frame. Raises FirmwareError for one that is no integer of 64 bits."""

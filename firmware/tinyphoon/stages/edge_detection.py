@@ -1,14 +1,14 @@
 """Edge detection: the scan-line Canny (T §2.1.4, §5.2.1), with the colour reduction.
 
-Every kernel makes one row. The task reads the picture once, top to bottom; each step lags behind the step that it
-reads from. The fifth step is in `hysteresis.py`; `edge_thinning.py` says what becomes of more edges than there is room for.
+Every kernel makes one row. The task reads the picture once, top to bottom; each
+step lags behind the step that it reads from. The fifth step is in `hysteresis.py`;
+`edge_thinning.py` says what becomes of more edges than there is room for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Literal, Protocol, Self
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, Kernel, Row, i16, i32, kernel, u8, u16, u32
@@ -328,7 +328,7 @@ def edge_detection(
         at(y)
         row = yield from rows.line()
         found = yield run(take_candidates, row, least, band, data, index, counts, left_out, y, found)
-        at(y, partial(edge_columns, store, y))
+        at(y, edge_columns, store, y)
         above, here = groups.labels[y & 1]
         if y == 0:
             yield run(clear_labels, above)

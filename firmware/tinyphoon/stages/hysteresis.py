@@ -1,9 +1,10 @@
 """Hysteresis: the fifth step of the Canny, by Rosenfeld grouping of the edges (T §2.1.4, §2.3.3, §5.2.1).
 
-While the picture is scanned, edges that touch (8-neighbourhood) get one label, and labels that meet become one
-group. Afterwards a short pass over the edge store, not over the picture, removes the edges of the groups that have
-no strong edge. The labels are not kept: they would take half as much memory as the edge store. A label depends only on
-the edges before it, so this pass labels every edge once more.
+While the picture is scanned, edges that touch (8-neighbourhood) get one label, and
+labels that meet become one group. Afterwards a short pass over the edge store, not
+over the picture, removes the edges of the groups that have no strong edge. The
+labels are not kept: they would take half as much memory as the edge store. A label
+depends only on the edges before it, so this pass labels every edge once more.
 
 `groups` is the equivalence table: the label that each label belongs to, never a greater one; a group goes by its
 least label. `strongest` is the greatest gradient of each group, under that label. Label 0 is no edge.
@@ -13,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
@@ -206,7 +206,7 @@ def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Genera
     (data, index, counts), (table, strongest), last = store, groups.tables, LABELS - 1
     given = kept = 0
     for y in range(height):
-        at(y, partial(edge_columns, store, y))
+        at(y, edge_columns, store, y)
         above, here = groups.labels[y & 1]
         row = yield from edges.row()
         if y == 0:

@@ -1,13 +1,13 @@
 """Line detection (T §5.2.2): segments while scanning the edge store, then a local and a global connector.
 
-It reads edges, never the image. 3-D lines are not here.
+It reads edges, never the image.
+3-D lines are not here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8
@@ -80,7 +80,7 @@ def scan_by_labels(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
     angle_range, mean_edges, min_length = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
     above, here = odd, even
     for y in range(frame.height):
-        at(y, partial(edge_columns, store, y))
+        at(y, edge_columns, store, y)
         row = data, index, counts, y, above, here
         yield run(segments_row, *row, segments, scan, angle_range, mean_edges, min_length)
         above, here = here, above

@@ -1,9 +1,10 @@
 """The scan for line segments as T §5.2.2 describes it: each edge is compared with the ends of the lines in the table.
 
-[said] An edge that lies next to the end of a line, and is within the angle range of its mean direction, becomes its new end; on lines
-that become flat from the right to the left it is compared with the start (T §5.2.2, step 1). [implied] So every edge is compared
-with the lines of the table until one takes it. [assumed] "Next to" is one of the eight neighbours;
-what ended too short leaves its place to others, as in `line_scan.py`, or the table would be full of noise.
+[said] An edge that lies next to the end of a line, and is within the angle range of its mean
+direction, becomes its new end; on lines that become flat from the right to the left it is
+compared with the start (T §5.2.2, step 1). [implied] So every edge is compared with the lines
+of the table until one takes it. [assumed] "Next to" is one of the eight neighbours; what ended
+too short leaves its place to others, as in `line_scan.py`, or the table would be full of noise.
 
 Its lines differ from those of `line_scan.py` where runs of edges fit two segments.
 """
@@ -11,7 +12,6 @@ Its lines differ from those of `line_scan.py` where runs of edges fit two segmen
 from __future__ import annotations
 
 from collections.abc import Generator
-from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, i32, kernel, u16, u32
@@ -106,7 +106,7 @@ def scan_by_ends(core: Core, frame: Frame, thresholds: LineThresholds) -> Genera
     store, segments, scan = edge_store(core), core.array("segments"), core.array("line_scan")
     yield core.run(clear_segments, segments, scan, *core.rows("line_labels"))
     for y in range(frame.height):
-        core.at(y, partial(edge_columns, store, y))
+        core.at(y, edge_columns, store, y)
         yield core.run(close_lines, segments, scan, y, thresholds.min_length)
         row = *store, y, segments, scan
         yield core.run(lines_row, *row, thresholds.angle_range, thresholds.mean_edges)

@@ -1,9 +1,10 @@
 """Line refinement [ours]: lines to a fraction of a pixel, for the depth that is made of the difference of two.
 
-Edges lie on whole pixels, so a line that is nearly upright is off by up to half of one; at 350 mm that is 2 % of the
-depth. Here the picture is read once more, row by row: in each row that a line crosses, the centre of gravity of the
-grey steps across it says where it is, and a straight line through these places takes the place of the old one. Only
-lines nearer to a column than to a row are refined: the disparity of the others says little.
+Edges lie on whole pixels, so a line that is nearly upright is off by up to half of one;
+at 350 mm that is 2 % of the depth. Here the picture is read once more, row by row: in
+each row that a line crosses, the centre of gravity of the grey steps across it says where
+it is, and a straight line through these places takes the place of the old one. Only lines
+nearer to a column than to a row are refined: the disparity of the others says little.
 
 The sums of each line lie over the segments, which the line detection has finished with.
 """
@@ -12,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, Row, i16, i32, kernel, u8
@@ -198,7 +198,7 @@ def line_refinement(
         camera = core.input_ring(frame.rows[crossed.start : crossed.stop], "camera_ring")
         run, at, reach, min_step = core.run, core.at, thresholds.reach, thresholds.min_step
         for y in crossed:
-            at(y, partial(columns_at, lines, sums, count, y, reach))
+            at(y, columns_at, lines, sums, count, y, reach)
             line = yield from camera.line()
             yield run(look_at_row, line, y, lines, count, sums, reach, min_step)
     core.at(line_pixels(lines, count))

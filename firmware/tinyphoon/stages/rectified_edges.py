@@ -1,8 +1,9 @@
 """Edges, moved to where they lie in the rectified picture (T §7.2).
 
-An edge of the store has a whole column and its row, so its new place is rounded both ways, and the store is in the order of
-rows: the edges of a camera's row go to several. They are written to their new rows in SDRAM, where candidates of the edge
-detection were before, and read back row by row through DMA into the store, as much of each row as the longest one has.
+An edge of the store has a whole column and its row, so its new place is rounded both ways,
+and the store is in the order of rows: the edges of a camera's row go to several. They are
+written to their new rows in SDRAM, where candidates of the edge detection were before, and
+read back row by row through DMA into the store, as much of each row as the longest one has.
 
 Where the lens is stretched back, a chain of edges gets gaps: a row or a column in which none comes to lie.
 """
@@ -10,7 +11,6 @@ Where the lens is stretched back, a chain of edges gets gaps: a row or a column 
 from __future__ import annotations
 
 from collections.abc import Generator
-from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u16, u32
@@ -145,7 +145,7 @@ def rectified_edges(core: Core, frame: Frame) -> Generator[Any, Any, int]:
     counts, *_ = core.overlay("segments", u16, frame.height)  # the lines have been fitted
     yield core.run(clear_levels, counts)
     for y in range(frame.height):
-        core.at(y, partial(edge_columns, store, y))
+        core.at(y, edge_columns, store, y)
         yield core.run(move_edges_row, *store, y, places, moved, counts, frame.width)
     most: int = yield core.run(longest_row, counts)
     written = core.part(core.rows("edge_candidates"), 0, most)

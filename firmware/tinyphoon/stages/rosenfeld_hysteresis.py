@@ -1,17 +1,17 @@
 """Edge detection with the hysteresis as T §5.2.1 describes it: a variation of Rosenfeld's segmentation over the suppressed picture.
 
-[said] The finished line of the non-maximum suppression goes back to SDRAM by DMA while the next ones are made; groups of connected
-edges without a strong one are removed afterwards; what stays is in the store of Listing 5.1 (T §5.2.1). [implied] So the picture
-comes through L1 twice more: to be labelled, and to lose its weak groups. [assumed] The store takes the edges during the scan, from the
-top of the picture, until it is full, and closes up when groups are removed; labels go to a picture of their own in SDRAM and come
-back by DMA.
+[said] The finished line of the non-maximum suppression goes back to SDRAM by DMA while the
+next ones are made; groups of connected edges without a strong one are removed afterwards;
+what stays is in the store of Listing 5.1 (T §5.2.1). [implied] So the picture comes through
+L1 twice more: to be labelled, and to lose its weak groups. [assumed] The store takes the
+edges during the scan, from the top of the picture, until it is full, and closes up when
+groups are removed; labels go to a picture of their own in SDRAM and come back by DMA.
 """
 
 from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from bfsim.api import Core, Frame, OutputRing, Row, i32, kernel, u8, u16
@@ -127,7 +127,7 @@ def remove_weak(groups: EdgeGroups, height: int, strong_threshold: int) -> Gener
     picture = core.output_ring("edge_ring", core.rows("edge_image"))
     kept = 0
     for y in range(height):
-        core.at(y, partial(edge_columns, groups.store, y))
+        core.at(y, edge_columns, groups.store, y)
         line = yield from labels.line()
         row = yield from picture.row()
         decided = line, *groups.tables, strong_threshold

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, u16, u32
@@ -97,32 +96,6 @@ class _Rows:
         windows = (left_window, right_window), right_window_rows
         below_rows = core.overlay(_SCORES, u32, width)[:REACH]
         return cls(core, edge_store(core), right, *lists, *windows, tuple(below_rows), level_range)
-
-    def take_left(self, y: int) -> Generator[Any, Any, int]:
-        """Put the edges of the left picture in row `y` into `left_row`, and return how many they are."""
-        data, index, counts = self.left
-        count: int = yield self.core.run(
-            take_left_row, data, index, counts, y, self.left_row, self.level_range
-        )
-        return count
-
-    def take_both(self, y: int) -> Generator[Any, Any, tuple[int, int]]:
-        """Put the edges of both pictures in row `y` into `left_row` and `right_row`, and return how many they are."""
-        run, (data, index, counts), (edges, rows) = self.core.run, self.left, self.right
-        left = yield run(take_left_row, data, index, counts, y, self.left_row, self.level_range)
-        right = yield run(take_right_row, edges, rows, y, self.right_row, self.level_range)
-        return left, right
-
-    def take_below(self, y: int, height: int) -> Generator[Any, Any, list[Row | int]]:
-        """Return the edges of the left picture in the REACH rows below row `y` of `height`, each with how many."""
-        run, (data, index, counts), level_range = self.core.run, self.left, self.level_range
-        found: list[Row | int] = []
-        for beside, room in enumerate(self.below_rows, y + 1):
-            count = 0
-            if beside < height:
-                count = yield run(take_left_row, data, index, counts, beside, room, level_range)
-            found += room, count
-        return found
 
     def spread(self, y: int) -> Generator[Any, Any, None]:
         """Put row `y` into the windows; it may lie outside the picture."""
@@ -217,8 +190,10 @@ class _Search:
             yield run(clear_disparities, self.words[0])
         if y < 0:
             return
+        (data, index, counts), (edges, starts), level_range = rows.left, rows.right, rows.level_range
         left, right = rows.left_row, rows.right_row
-        count, right_count = yield from rows.take_both(y)
+        count = yield run(take_left_row, data, index, counts, y, left, level_range)
+        right_count = yield run(take_right_row, edges, starts, y, right, level_range)
         both = left, count, right, right_count
         if self.is_mutual:
             yield run(match_edges, *both, *rows.windows, slot, partners, *self.room, *self.limits)
@@ -229,13 +204,19 @@ class _Search:
     def settle(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row]]:
         """Return the edges of the left picture in row `y`, how many, and their disparities."""
         run, rows, slot = self.core.run, self.rows, y % WINDOW_ROWS
-        left, count = rows.left_row, (yield from rows.take_left(y))
+        (data, index, counts), left, level_range = rows.left, rows.left_row, rows.level_range
+        count = yield run(take_left_row, data, index, counts, y, left, level_range)
         above2, above, here, below, below2 = self.around[slot]
         if self.is_mutual:
             right = rows.right_window_rows[slot]
             yield run(believe_edges, left, count, above2, above, here, below, below2, right)
             yield run(believe_unsure, left, count, above2, above, here, below, below2, right)
-            beside = yield from rows.take_below(y, self.height)
+            beside: list[Row | int] = []
+            for next_y, room in enumerate(rows.below_rows, y + 1):
+                edges = 0
+                if next_y < self.height:
+                    edges = yield run(take_left_row, data, index, counts, next_y, room, level_range)
+                beside += room, edges
             settled = here, below, below2, right
             yield run(follow_edges, left, count, *beside, *settled, self.follow_range, self.most)
         return left, count, here
@@ -261,11 +242,11 @@ def stereo_edges(
     width, height = frame.width, frame.height
     found = 0
     for matched in range(height - 1, -1 - delay, -1):
-        at(max(matched, 0), partial(edge_columns, store, max(matched, 0)))
+        at(max(matched, 0), edge_columns, store, max(matched, 0))
         yield from search.match(matched)
         y = matched + delay
         if y < height:
-            at(y, partial(edge_columns, store, y))
+            at(y, edge_columns, store, y)
             row = yield from search.settle(y)
             yield from vote.add(y, row)
             left, count, _ = row

@@ -95,7 +95,7 @@ def test_firmware_says_where_it_is() -> None:
             yield core.run(spin, 1)
             core.at(5, 6)
             yield core.run(spin, 1)
-            core.at(5, lambda: [7, 2, 7])
+            core.at(5, sorted, [7, 2, 7])
             yield core.run(spin, 1)
             core.at(5, list)
             yield core.run(spin, 1)

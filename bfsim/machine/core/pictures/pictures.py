@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from bfsim.chip.spec import ChipSpec
 from bfsim.errors import FirmwareError, printable, shown
@@ -103,10 +104,12 @@ class Pictures:
             raise FirmwareError(f"a remark must be text, not {shown(text)}")
         self._remarks.append(f"core {self._layouts.core} {printable(text)}")
 
-    def at(self, rows: int | range | Pixels | None = None, columns: Columns | None = None) -> None:
+    def at(
+        self, rows: int | range | Pixels | None = None, columns: Columns | None = None, *taken: Any
+    ) -> None:
         """Say what the work from here on is about."""
         if self._clock.timeline:
-            self._clock.timeline.say(None if rows is None else place_of(rows, columns))
+            self._clock.timeline.say(None if rows is None else place_of(rows, columns, *taken))
 
     def take_line(self, number: int, lines: int) -> None:
         """Note that the core took a line of a picture of so many `lines`, and works on it unless it says more exactly where."""

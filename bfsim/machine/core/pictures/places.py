@@ -16,19 +16,22 @@ from bfsim.spans import Place
 Pixels = Callable[[], Iterable[tuple[int, int]]]
 """What returns the row and the column of single pixels, and is called only if someone looks."""
 
-Columns = int | range | Callable[[], Iterable[int]]
-"""Columns of a picture: one, those of a range, or what returns single ones and is called only if someone looks."""
+Columns = int | range | Callable[..., Iterable[int]]
+"""Columns of a picture: one, those of a range, or what returns single ones of what it takes, and is called only if someone looks."""
 
 
-def place_of(rows: int | range | Pixels, columns: Columns | None) -> Place | None:
-    """Return the place that rows and columns mean, None for no pixel. Raises FirmwareError for what is no place."""
+def place_of(rows: int | range | Pixels, columns: Columns | None, *taken: Any) -> Place | None:
+    """Return the place that rows and columns mean, None for no pixel; `taken`: by a function of columns.
+
+    Raises FirmwareError for what is no place.
+    """
     if callable(rows):
         given = rows()
         return _pixels(given if isinstance(given, np.ndarray) else list(given))
     if columns is None:
         return _row(rows) if type(rows) is int else Place(_range(rows))
     if callable(columns):
-        single: list[int] = list(columns())
+        single: list[int] = list(columns(*taken))
         whole = single if {*map(type, single)} == {int} else [*map(_whole, single)]
         return Place(_range(rows), tuple(sorted(set(whole))) or None)
     return Place(_range(rows), _range(columns))
