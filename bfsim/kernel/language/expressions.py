@@ -252,6 +252,8 @@ class Expressions(Names):
         if isinstance(node.value, ast.Subscript):
             self.source.refuse(node, "an array has one dimension", "write a[y * width + x]")
         if not isinstance(node.value, ast.Name) or node.value.id not in self.arrays:
+            if isinstance(node.value, ast.Name):
+                self._require_defined(node.value)
             self.source.refuse(node, "only array parameters can be indexed", "pass the array as a parameter")
         return node.value.id, self.arrays[node.value.id].element
 

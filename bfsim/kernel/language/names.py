@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 
 from bfsim.errors import shown, with_article
 from bfsim.kernel.language import tree
@@ -78,24 +79,33 @@ class Names:
         if name in self.assigned:
             return tree.Local(name, self.locals[name], node.lineno)
         if name in self.own:
+            of_module = f"; a kernel cannot change the {name} of the module" if name in self.outer else ""
             self.source.refuse(
                 node,
                 f"{name} may be used before it has a value",
-                f"give {name} a value on every way to this line",
+                f"give {name} a value on every way to this line{of_module}",
             )
         constant = constant_of(self.outer.get(name))
         if constant is not None:
             return self._named(node, constant, name)
-        if name not in self.outer:
-            self.source.refuse(
-                node, f"the name {name} is not defined", "assign it first, or make it a parameter"
-            )
+        self._require_defined(node)
         self.source.refuse(
             node,
             f"a kernel cannot read {name}, which is {with_article(type(self.outer[name]).__name__)}",
             "pass it as an array or integer parameter; of the module only constants that are an int, a float, a bool "
             "or of an IntEnum can be read",
         )
+
+    def _require_defined(self, node: ast.Name) -> None:
+        """Refuse a name that nobody has, by those that are nearest."""
+        if node.id not in (*self.own, *self.outer):
+            near = get_close_matches(node.id, [*self.arrays, *self.own], n=2)
+            instead = f"; near it are {', '.join(near)}" if near else ""
+            self.source.refuse(
+                node,
+                f"the name {node.id} is not defined",
+                f"assign it first, or make it a parameter{instead}",
+            )
 
     def _named(self, node: ast.expr, constant: float, name: str) -> tree.Expr:
         """A constant of the module; `name`: what C calls it, if it has a name there."""

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import ast
-import re
 from dataclasses import dataclass
 from typing import NoReturn
 
-from bfsim.errors import KernelError
+from bfsim.errors import KernelError, pointed
 from bfsim.files.content import lines_of
-
-LONGEST_EXCERPT = 100
-"""As many characters of a line are shown on either side of the caret."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +28,4 @@ class KernelSource:
         shown = lines_of(self.text)[line - 1]
         before = shown.encode()[: getattr(node, "col_offset", 0)].decode()  # `ast` counts columns in bytes
         place = f"{self.file}:{self.first_line + line - 1}:{len(before) + 1}"
-        begin, end = max(0, len(before) - LONGEST_EXCERPT), len(before) + LONGEST_EXCERPT
-        margin = re.sub(r"\S", " ", before[begin:])
-        raise KernelError(f"{place}: {what}; {instead}\n    {shown[begin:end]}\n    {margin}^")
+        raise KernelError(f"{place}: {what}; {instead}{pointed(shown, len(before))}")
