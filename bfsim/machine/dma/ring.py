@@ -157,6 +157,7 @@ class _SentLines:
         self._words = ring_words(self._depth, self._depth)
         self._at = addressof(self._words)
         self._copies: dict[int, Copy] = {}  # of lines that rows had last, where that is not among the words
+        self._given = -1  # the last line whose row was given, by Python
 
     def at_once(self) -> tuple[Callable[[], Generator[Any, Any, Row]], Callable[[], None]]:
         """Return what waits for a free row, and what sends it, by machine code, as long as that can."""
@@ -169,11 +170,20 @@ class _SentLines:
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it."""
         number, ahead = self._words[DONE], self._lines.ahead
+        self._check_sent(number)
+        self._given = number
         if ahead and (row := ahead.row(self._lines.at, self._at)) >= 0:
             return self._rows[row]
         if number >= self._depth and self._must_wait(copy := self._copy(number)):
             yield from self._progress.wait_transfer(copy, FULL, self._owner)
         return self._rows[number % self._depth]
+
+    def _check_sent(self, number: int) -> None:
+        """Raise FirmwareError if the row of line `number`, which is to be sent next, was given already: nothing of it would arrive."""
+        if self._given == number:
+            raise FirmwareError(
+                f"the row of {self._rows[0].buffer} for line {number} of {self._image[0].buffer} must be sent when it is written: `ring.send()`"
+            )
 
     def _copy(self, number: int) -> Copy:
         """Return the copy of the line that the row of line `number` had last."""
@@ -205,6 +215,7 @@ class _SentLines:
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
         sent = self._words[DONE]
+        self._check_sent(sent)
         if sent and self._must_wait(last := self._copy(sent - 1)):
             yield from self._progress.wait_transfer(last, FULL, self._owner)
 

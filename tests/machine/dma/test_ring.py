@@ -236,6 +236,22 @@ def one_line_too_many_sent(core: Core, frame: Frame) -> Play:
         out.send()
 
 
+def a_row_twice(core: Core, frame: Frame) -> Play:
+    """Forget to send what was written."""
+    out = core.output_ring("out_ring", core.rows("image"))
+    for _ in range(frame.height):
+        yield from out.row()
+
+
+def the_last_row_not_sent(core: Core, frame: Frame) -> Play:
+    """Forget to send what was written last."""
+    out = core.output_ring("out_ring", core.rows("image"))
+    yield from out.row()
+    out.send()
+    yield from out.row()
+    yield from out.flush()
+
+
 def ring_of(ring: str) -> Any:
     """Make an input ring of the buffer `ring`."""
 
@@ -257,6 +273,11 @@ def ring_for_no_picture(core: Core, frame: Frame) -> Play:
     [
         (one_line_too_many, "ring of in_ring has no line 8: the picture has 8"),
         (one_line_too_many_sent, "picture image has 8 lines; one more was sent"),
+        (
+            a_row_twice,
+            r"row of out_ring for line 0 of image must be sent when it is written: `ring\.send\(\)`",
+        ),
+        (the_last_row_not_sent, "row of out_ring for line 1 of image must be sent when it is written"),
         (
             ring_of("short_ring"),
             r"rows of ring short_ring must be as long as those of camera \(32 bytes\), not 16 bytes",
