@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bfsim.chip.memory_map import Region, region_of
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import FirmwareError, LinkError
+from bfsim.errors import FirmwareError, LinkError, shown
 from bfsim.kernel.types import Number
 from bfsim.linker import Placement
 from bfsim.machine.buffers import Buffer
@@ -119,6 +119,8 @@ class Memories:
 
     def overlay(self, rows: Sequence[Row], element: Number, columns: int) -> tuple[Row, ...]:
         """Return the memory of all `rows` of a buffer as rows of `columns` elements; what is left over is in none."""
+        if not isinstance(element, Number):
+            raise FirmwareError(f"a row over a buffer must have elements such as u8, not {shown(element)}")
         first, nbytes = rows[0], sum(each.nbytes for each in rows)
         stride = columns * element.nbytes
         if not 0 < stride <= nbytes:

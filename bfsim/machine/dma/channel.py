@@ -99,7 +99,7 @@ class DmaChannel:
             if self.running:
                 refuse(f"{name} must not be written while the channel runs", where)
         check_value(name, value, REGISTERS[register].lowest, REGISTERS[register].highest, where)
-        setattr(self, register, value)
+        setattr(self, register, int(value))
 
     def start(self, config: DmaConfig | int, place: str = "") -> ChannelStep:
         """Write CONFIG with DMAEN set, at `place` of the firmware, and return the first step."""
@@ -210,8 +210,11 @@ class DmaChannel:
 
 def check_pair(source: DmaChannel, destination: DmaChannel) -> None:
     """Raise MmrError unless the two halves of a memory stream are about to move as many words, of one size."""
-    assert source.unit is not None, "the source must have been started"
-    assert destination.unit is not None, "the destination must have been started"
+    for each in (source, destination):
+        if not each.unit:  # the other one would wait for ever
+            refuse(f"{each.spec.name}_CONFIG: DMAEN must be 1 where the stream begins, not 0", each.where)
+    assert source.unit
+    assert destination.unit
     names = f"{source.spec.name} and {destination.spec.name}"
     from_bytes, to_bytes = source.unit.word_bytes, destination.unit.word_bytes
     if from_bytes != to_bytes:

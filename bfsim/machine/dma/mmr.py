@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from bfsim.errors import MmrError
+import numpy as np
+
+from bfsim.errors import MmrError, shown
 
 
 def refuse(problem: str, where: str) -> NoReturn:
@@ -12,7 +14,10 @@ def refuse(problem: str, where: str) -> NoReturn:
     raise MmrError(f"{problem} ({where})" if where else problem)
 
 
-def check_value(register: str, value: int, lowest: int, highest: int, where: str) -> None:
+def check_value(register: str, value: object, lowest: int, highest: int, where: str) -> None:
     """Raise MmrError unless `register` can hold `value`."""
+    if not isinstance(value, int | np.integer):
+        of_row = ", such as row.address" if register.endswith(("ADDR", "PTR")) else ""
+        refuse(f"{register} must be an integer{of_row}, not {shown(value)}", where)
     if not lowest <= value <= highest:
         refuse(f"{register} must be {lowest}..{highest}, not {value}", where)

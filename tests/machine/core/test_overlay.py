@@ -48,3 +48,12 @@ def test_row_longer_than_the_buffer_is_refused() -> None:
     memories, rows = placed()
     with pytest.raises(FirmwareError, match="a row over buffer idle must have 1 to 20 elements, not 21"):
         memories.overlay(rows, u16, 21)
+
+
+def test_elements_of_python_are_refused() -> None:
+    """`int` is no type of the chip's memory; that it has no `nbytes` was all that was said."""
+    memories, rows = placed()
+    with pytest.raises(
+        FirmwareError, match="a row over a buffer must have elements such as u8, not <class 'int'"
+    ):
+        memories.overlay(rows, int, 5)  # type: ignore[arg-type]

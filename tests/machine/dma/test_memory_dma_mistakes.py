@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import pytest
 
@@ -56,11 +57,17 @@ def mistake(
     [
         ({"X_COUNT": 65536}, {}, "MDMA1_S0_X_COUNT must be .* not 65536"),
         ({"X_MODIFY": 40_000}, {}, "MDMA1_S0_X_MODIFY must be .* not 40000"),
+        ({}, {"X_COUNT": 2.5}, "MDMA1_D0_X_COUNT must be an integer, not 2.5"),
+        (
+            {"START_ADDR": "camera"},
+            {},
+            "MDMA1_S0_START_ADDR must be an integer, such as row.address, not 'camera'",
+        ),
         ({}, {"CURR_X_COUNT": 1}, "a register that can be written must be one of .*, not CURR_X_COUNT"),
     ],
 )
 def test_a_wrong_register_is_told_with_the_line_that_sets_it(
-    source: dict[str, int], destination: dict[str, int], message: str
+    source: dict[str, Any], destination: dict[str, Any], message: str
 ) -> None:
     """Channel, register, value, and the firmware's line."""
     told, line = mistake(source, destination)
@@ -114,6 +121,20 @@ def test_a_bad_descriptor_is_told_with_its_address_and_the_line_of_the_start() -
     assert re.match("MDMA1_S0_START_ADDR must be a multiple of 4 bytes", str(caught.value))
     expected = f"(in the descriptor at 0x{address[0]:08X} of the chain started at {__file__}:{line})"
     assert expected in str(caught.value)
+
+
+def test_a_chain_that_nobody_wrote_is_told() -> None:
+    """Zeros say that the channel stops; the other one would wait for ever. It was an assertion of bfsim's own."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        dma = core.memory_dma("MDMA1_0")
+        dma.program(source={"CURR_DESC_PTR": core.array("chain_L1").address}, destination={})
+        yield from dma.start(DmaConfig(FLOW=Flow.ARRAY, NDSIZE=5), WRITE)
+
+    line = work.__code__.co_firstlineno + 3
+    message = rf"^MDMA1_S0_CONFIG: DMAEN must be 1 where the stream begins, not 0 \(in the descriptor at 0x\w+ of the chain started at {__file__}:{line}\)"
+    with pytest.raises(MmrError, match=message):
+        play(every_frame(work), more=MORE)
 
 
 def test_the_internal_dma_does_not_reach_sdram() -> None:
