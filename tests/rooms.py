@@ -87,7 +87,7 @@ MACHINE = _sets(
         "main_loop": "firmware_lines program core",
         "finished_frames": "calls main_loop",
         "listeners": "timeline simulation bus finished_frames",
-        "main_loops": "firmware_lines simulation main_loop listeners",
+        "main_loops": "firmware_lines simulation core main_loop listeners",
     }
 )
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""

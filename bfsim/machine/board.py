@@ -159,7 +159,7 @@ class Board:
             parts = parts_of(around, number, self._layouts(name), access_trace, calls[name])
             self.cores[name] = self.core(parts)
             self.main_loops[name] = MainLoop(parts, self.cores[name], self.firmware.mains[name])
-        loops = MainLoops(self._env, self.main_loops, self._shared.turns, announcer)
+        loops = MainLoops(self._env, self.main_loops, self._shared, announcer)
         interrupted, where = False, ""
         try:
             with rarely_collected(), ended_by_signals():

@@ -8,6 +8,7 @@ from contextlib import suppress
 import simpy
 
 from bfsim.errors import DeadlockError, FirmwareError
+from bfsim.machine.core.synchronisation.shared_objects import SharedObjects
 from bfsim.machine.firmware_lines import place_of
 from bfsim.machine.listeners import Announcer
 from bfsim.machine.main_loop import MainLoop
@@ -15,18 +16,19 @@ from bfsim.machine.simulation import Simulation
 
 
 class MainLoops:
-    """One main loop a core. `turns`: of each core that only another one can let go on, the event for which it waits."""
+    """One main loop a core. `shared`: what they wait for each other with."""
 
     def __init__(
         self,
         env: Simulation,
         loops: Mapping[str, MainLoop],
-        turns: Mapping[str, simpy.Event],
+        shared: SharedObjects,
         announcer: Announcer,
     ) -> None:
         self._env = env
         self._loops = loops
-        self._turns = turns
+        self._shared = shared
+        self._turns = shared.turns
         self._announcer = announcer
 
     def play(self) -> None:
@@ -56,7 +58,11 @@ class MainLoops:
         if not all(each.is_done for each in self._loops.values()):
             waits = [each.describe_wait() for each in self._loops.values()]
             forgotten = [each.forgotten_wait for each in self._loops.values() if each.forgotten_wait]
-            raise DeadlockError(f"nothing can happen any more: {'; '.join([*waits, *forgotten])}")
+            unawaited = [
+                f"semaphore {name!r} was posted, but nobody has waited for it"
+                for name in self._shared.unawaited
+            ]
+            raise DeadlockError(f"nothing can happen any more: {'; '.join([*waits, *forgotten, *unawaited])}")
         for name, each in self._loops.items():
             if finished := each.pictures.finished:
                 raise FirmwareError(

@@ -150,6 +150,17 @@ def test_a_core_that_waits_for_one_that_has_ended_is_told() -> None:
         run(waiting_for("go"), end)
 
 
+def test_a_semaphore_with_another_name_is_told() -> None:
+    """B posts `going` where A waits for `go`: both stand there, and nothing said why."""
+
+    def post(core: Core, frame: Frame) -> Play:
+        yield from core.post("going")
+        yield from core.wait("back")
+
+    with pytest.raises(DeadlockError, match="; semaphore 'going' was posted, but nobody has waited for it$"):
+        run(waiting_for("go"), every_frame(post))
+
+
 def test_a_core_that_has_not_begun_has_not_ended() -> None:
     """Where semaphores cost nothing, A waits before B has had its first turn."""
 

@@ -29,6 +29,11 @@ class SharedObjects:
         """Return the semaphore `name`."""
         return self._semaphores.setdefault(name, Semaphore(self._env, name))
 
+    @property
+    def unawaited(self) -> list[str]:
+        """Names of the semaphores that were posted, and that nobody ever took."""
+        return [name for name, each in self._semaphores.items() if each.count and not each.taken]
+
     def lock(self, name: str) -> SpinLock:
         """Return the spin lock `name`."""
         return self._locks.setdefault(name, SpinLock(self._env, name))
