@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, is_failure, shown, with_article
 from bfsim.loading.firmware import LoadedFirmware, load_firmware
-from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.firmware_lines import failure_of, line_of
 from bfsim.machine.peripherals.device import Script
 from bfsim.recording import RecordingReader
 from bfsim.recording.importing.images import picture_of_file
@@ -121,7 +121,7 @@ def _named(
     except BaseException as error:
         if not is_failure(error):
             raise
-        what = f"{type(error).__name__}: {error}{line_of(error)}"
+        what = f"{failure_of(error)}{line_of(error)}"
         raise FirmwareError(f"colours of {loaded.name} failed with {what}") from error
     if not isinstance(found, PictureColours):
         raise FirmwareError(

@@ -7,10 +7,14 @@ error.
 
 from __future__ import annotations
 
+import re
+from bdb import BdbQuit
 from collections.abc import Sequence
 
 LONGEST_VALUE = 80
 """As many characters of a value go into a message; the whole of it is in the file that it is from."""
+LONGEST_EXCERPT = 100
+"""As many characters of a line are shown on either side of the caret."""
 
 
 def shown(value: object) -> str:
@@ -38,6 +42,13 @@ def printable(text: str) -> str:
 def legible(text: str) -> str:
     """Return text that can be written as UTF-8: of names of files that are none, each wrong byte is replaced."""
     return text.encode(errors="surrogateescape").decode(errors="replace")
+
+
+def pointed(line: str, column: int) -> str:
+    """Return a line of source, and below it a caret under its character `column`, as a message ends with it."""
+    begin, end = max(0, column - LONGEST_EXCERPT), column + LONGEST_EXCERPT
+    margin = re.sub(r"\S", " ", line[begin:column])
+    return f"\n    {line[begin:end]}\n    {margin}^"
 
 
 def listed(words: Sequence[str], most: int) -> str:
@@ -92,8 +103,8 @@ class EndError(BaseException):
 
 
 def is_failure(error: BaseException) -> bool:
-    """Return whether code of the user that raised this has failed; Ctrl-C, and what ends bfsim itself, goes through it."""
-    return not isinstance(error, (KeyboardInterrupt, EndError))
+    """Return whether code of the user that raised this has failed; Ctrl-C, `q` in pdb, and what ends bfsim itself, go through it."""
+    return not isinstance(error, (KeyboardInterrupt, BdbQuit, EndError))
 
 
 class BfsimWarning(UserWarning):

@@ -110,6 +110,13 @@ def test_a_full_device(command: str) -> None:
     assert done.stderr == "bfsim: error: standard output must be accessible: No space left on device\n"
 
 
+def test_q_in_the_debugger_ends_quietly(tmp_path: Path) -> None:
+    """It was told as a failure of the firmware, `BdbQuit: `."""
+    (tmp_path / "stopping.py").write_text("breakpoint()\nfirmware = None\n")
+    done = bfsim("echo q | $BFSIM run --firmware stopping.py", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (130, "bfsim: ended by the debugger\n")
+
+
 def test_a_full_device_for_the_message() -> None:
     """Nobody can be told, but the exit code says it."""
     assert bfsim("$BFSIM fly 2> /dev/full").returncode == 2

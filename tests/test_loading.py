@@ -262,7 +262,6 @@ def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Pa
         ("import json\nimport fw_nothing\n", "ModuleNotFoundError: No module named 'fw_nothing'"),
         ("import json\nimport fw_broken.part\n", "ModuleNotFoundError: No module named 'fw_broken.part'"),
         ("import json\nfrom json import nothing\n", "ImportError: cannot import name 'nothing' from 'json'"),
-        ("import json\ndef main(core:\n", "SyntaxError: "),
         ("import json\n1 / 0\n", "ZeroDivisionError: division by zero"),
         ("import json\nraise SystemExit(3)\n", "SystemExit: 3"),
         ("from bfsim.api import *\nBuffer('line')\n", "TypeError: "),
@@ -279,6 +278,47 @@ def test_an_error_while_importing_is_told_with_its_line(write: Write, text: str,
         load_firmware("fw_broken:fw")
     assert str(caught.value).startswith(f"importing fw_broken failed with {message}")
     assert str(caught.value).endswith(f"({path}:2)")
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "marked"),
+    [
+        ("    def main(core)\n", "expected ':'", "    def main(core)\n                      ^"),
+        ("\t(1, 2\n", "'(' was never closed", "\t(1, 2\n    \t^"),
+    ],
+)
+def test_what_python_cannot_read_is_shown_with_a_caret(
+    write: Write, text: str, said: str, marked: str
+) -> None:
+    """As what the kernel language refuses is; the line had its number twice and was not shown."""
+    path = write("fw_unread.py", f"if True:\n{text}")
+    with pytest.raises(FirmwareError) as caught:
+        load_firmware("fw_unread.py")
+    assert (
+        str(caught.value) == f"importing fw_unread failed with SyntaxError: {said} ({path}:2)\n    {marked}"
+    )
+
+
+def test_a_failure_without_words_shows_its_line(write: Write) -> None:
+    """`AssertionError: ` was all that was said."""
+    path = write("fw_sure.py", "ROWS = 3\nassert ROWS > 3\n")
+    with pytest.raises(
+        FirmwareError, match=r"failed with AssertionError: assert ROWS > 3 \(.*fw_sure\.py:2\)$"
+    ):
+        load_firmware("fw_sure.py")
+    path.write_text("raise ValueError(\n)\n")
+    with pytest.raises(FirmwareError, match=r"failed with ValueError: raise ValueError\("):
+        load_firmware("fw_sure.py")
+
+
+def test_a_file_of_another_kind_is_told_beside_a_module_of_its_name(write: Write) -> None:
+    """`line.txt` was looked for as the module txt in the package line, and was said not to be there."""
+    write("fw_line.py", GOOD)
+    write("fw_line.txt", GOOD)
+    with pytest.raises(
+        FirmwareError, match=r"fw_line\.txt must be a file \*\.py or a package, but is another"
+    ):
+        load_firmware("fw_line.txt")
 
 
 def test_a_file_that_is_no_text_has_no_line(write: Write) -> None:

@@ -45,7 +45,7 @@ def located(place: str, advice: str = "") -> tuple[str, Root]:
         raise FirmwareError(
             f"{cut(place)} must have another name: {top} is a module of Python, of bfsim or of what it needs"
         )
-    if root is None and _is_file(Path(place)):
+    if (root is None or "." in place) and not place.endswith(".py") and _is_file(Path(place)):
         raise FirmwareError(f"{cut(place)} must be a file *.py or a package, but is another file{advice}")
     if root is None:
         raise FirmwareError(

@@ -6,11 +6,11 @@ from pathlib import Path
 from types import ModuleType
 
 from bfsim import shipped
-from bfsim.errors import BfsimError, FirmwareError, cut, is_failure, shown
+from bfsim.errors import BfsimError, FirmwareError, cut, is_failure, pointed, printable, shown
 from bfsim.loading.importing import OwnModules, Root
 from bfsim.loading.kernels import add_files_of_code, kernels_of
 from bfsim.loading.libraries import add_libraries
-from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.firmware_lines import failure_of, line_of
 
 SHIPPED = Root(shipped.FIRMWARE_FOLDER, shipped.FIRMWARE_PACKAGE)
 
@@ -54,12 +54,14 @@ def import_more(module: str, own: OwnModules) -> ModuleType:
 
 def _failed(module: str, error: BaseException) -> FirmwareError:
     """Say what went wrong while `module` was imported, and on which of its lines."""
-    place = line_of(error)
-    if isinstance(error, SyntaxError) and error.filename:  # a file that is no text has no place
-        place = f" ({error.filename}:{error.lineno})"
-    return FirmwareError(
-        f"importing {cut(module)} failed with {type(error).__name__}: {cut(str(error))}{place}"
-    )
+    said, place = printable(failure_of(error)), line_of(error)
+    if (
+        isinstance(error, SyntaxError) and error.filename and error.lineno
+    ):  # a file that is no text has no place
+        said, place = f"{type(error).__name__}: {cut(error.msg)}", f" ({error.filename}:{error.lineno})"
+        if error.text and error.offset:
+            place += pointed(error.text.rstrip(), max(0, error.offset - 1))
+    return FirmwareError(f"importing {cut(module)} failed with {said}{place}")
 
 
 def path_of(module: ModuleType) -> Path:

@@ -46,6 +46,7 @@ def running_line() -> str:
 
 def place_of(function: object) -> str:
     """Return where a function of the firmware begins, such as firmware/core_a.py:41; else its name."""
+    function = getattr(function, "func", function)  # of a partial
     code = getattr(function, "__code__", None)
     return f"{code.co_filename}:{code.co_firstlineno}" if code else repr(function)
 
@@ -74,12 +75,29 @@ def line_at_work(interruption: KeyboardInterrupt) -> str:
     return f"{said} ({own[-1].filename}:{own[-1].lineno})" if own else said
 
 
-def line_of(error: BaseException) -> str:
-    """Return the innermost line of the firmware that `error` came through, as ` (file:line)`; nothing if none.
+def line_of(error: BaseException, called: object = None) -> str:
+    """Return the innermost line of the firmware that `error` came through, as ` (file:line)`.
+
+    If it came through none, as where `called` does not take its arguments, it is the line at which that begins; nothing without that.
+    """
+    last = _last_call(error)
+    if last:
+        return f" ({last.filename}:{last.lineno})"
+    return f" ({place_of(called)})" if called else ""
+
+
+def failure_of(error: BaseException) -> str:
+    """Return what code of the firmware has raised, in words: its kind and what it says, or else the line, such as `assert x > 3`."""
+    last = _last_call(error)
+    said = str(error) or (last.line if last else "")
+    return f"{type(error).__name__}{f': {said}' if said else ''}"
+
+
+def _last_call(error: BaseException) -> traceback.FrameSummary | None:
+    """Return the innermost call of the firmware that `error` came through.
 
     Of a generator that ends by a StopIteration Python makes another error, outside of it.
     """
     raised = error.__cause__ if isinstance(error.__cause__, StopIteration) else error
-    calls = traceback.extract_tb(raised.__traceback__)
-    places = [f"{each.filename}:{each.lineno}" for each in calls if is_firmware(each.filename)]
-    return f" ({places[-1]})" if places else ""
+    calls = [each for each in traceback.extract_tb(raised.__traceback__) if is_firmware(each.filename)]
+    return calls[-1] if calls else None

@@ -30,7 +30,7 @@ class MainLoop:
         except BaseException as error:
             if not is_failure(error):
                 raise
-            raise tasks.told(error) from error
+            raise tasks.told(error, self.main) from error
         if not isinstance(task, Generator):
             raise FirmwareError(
                 f"core {self._core.name}: the main loop must be a generator function, which has a `yield` in it: it waits with "

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import BfsimError, FirmwareError
+from bfsim.errors import BfsimError, FirmwareError, is_failure, shown
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import Symbol
 from bfsim.machine.buffers import Buffer, Buffers, FrameSize
 from bfsim.machine.code import code_symbols, object_file
-from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.firmware_lines import failure_of, line_of, place_of
 from bfsim.machine.program import Firmware
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
@@ -40,12 +40,19 @@ def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) ->
 
 
 def _of_buffers(firmware: Firmware, size: FrameSize) -> Iterator[Symbol]:
+    place = place_of(firmware.buffers)
     for owner, buffers in _called(firmware, size).items():
         if owner not in PROCESSORS:
-            raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
+            raise FirmwareError(
+                f"buffers must belong to {', '.join(PROCESSORS)}, not {shown(owner)} ({place})"
+            )
+        if not isinstance(buffers, Iterable):
+            raise FirmwareError(f"buffers of {owner} must be a list of them, not {shown(buffers)} ({place})")
         for each in buffers:
             if not isinstance(each, Buffer):
-                raise FirmwareError(f"buffers of {owner} must be of bfsim.api.Buffer, not {each!r}")
+                raise FirmwareError(
+                    f"buffers of {owner} must be of bfsim.api.Buffer, not {shown(each)} ({place})"
+                )
             if each.handed_over and (owner != "shared" or each.name == firmware.camera):
                 raise FirmwareError(
                     f"buffer {each.name} of {owner} must not be handed over (handed_over=True): only a shared buffer that no camera fills is"
@@ -64,10 +71,15 @@ def _called(firmware: Firmware, size: FrameSize) -> Buffers:
     try:
         buffers = firmware.buffers(size)
     except BfsimError as error:
-        raise type(error)(f"{error}{line_of(error)}") from error
-    except Exception as error:
-        what = f"{type(error).__name__}: {error}{line_of(error)}"
+        raise type(error)(f"{error}{line_of(error, firmware.buffers)}") from error
+    except BaseException as error:
+        if not is_failure(error):
+            raise
+        what = f"{failure_of(error)}{line_of(error, firmware.buffers)}"
         raise FirmwareError(f"buffers for pictures of {size} failed with {what}") from error
     if not isinstance(buffers, Mapping):
-        raise FirmwareError(f"buffers must come as a dict of those of each core, not as {buffers!r}")
+        forgotten = "; the function must end with `return`" if buffers is None else ""
+        raise FirmwareError(
+            f"buffers must come as a dict of those of each core, not as {shown(buffers)}{forgotten} ({place_of(firmware.buffers)})"
+        )
     return buffers

@@ -6,6 +6,7 @@ import os
 import sys
 import traceback
 import warnings
+from bdb import BdbQuit
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from errno import ENOENT
@@ -71,6 +72,9 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
         return _mistake(f"{_subject_of(error)}: {error.strerror or error}")
     except (KeyboardInterrupt, click.Abort) as error:  # which may say where
         click.echo(f"bfsim: interrupted{error}", err=True)
+        return interrupted_code()
+    except BdbQuit:
+        click.echo("bfsim: ended by the debugger", err=True)
         return interrupted_code()
     return code if isinstance(code, int) else 0
 

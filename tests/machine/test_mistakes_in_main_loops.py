@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bdb import BdbQuit
 from dataclasses import replace
 from pathlib import Path
 
@@ -75,6 +76,30 @@ def test_a_main_loop_without_a_yield_is_refused() -> None:
     message = r"core A: the main loop must be a generator function, which has a `yield` in it: .* \(.*test_mistakes_in_main_loops.py:\d+\)$"
     with pytest.raises(FirmwareError, match=message):
         run(lambda core: None)  # type: ignore[arg-type,return-value]
+
+
+def test_a_main_loop_that_takes_no_core_is_told_with_its_line() -> None:
+    """Python's TypeError comes through no line of the firmware."""
+
+    def main() -> Play:
+        yield None
+
+    line = main.__code__.co_firstlineno
+    with pytest.raises(
+        FirmwareError, match=rf"0 positional arguments but 1 was given \({__file__}:{line}\)$"
+    ):
+        run(main)  # type: ignore[arg-type]
+
+
+def test_who_leaves_the_debugger_has_made_no_mistake() -> None:
+    """`q` in pdb was told as a failure of the firmware; pytest is to hear of it, too."""
+
+    def main(core: Core) -> Play:
+        yield from core.next_frame()
+        raise BdbQuit
+
+    with pytest.raises(BdbQuit):
+        run(main)
 
 
 def test_a_core_without_a_main_loop_is_told() -> None:

@@ -41,7 +41,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from bfsim.errors import BfsimError, FirmwareError, is_failure, shown
-from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.firmware_lines import failure_of, line_of
 
 LARGEST_MESSAGE_BYTES = 4096
 """Room for a message on its way. [ours]"""
@@ -117,7 +117,7 @@ def device_at_work(peripheral: str) -> Iterator[None]:
     except BaseException as error:
         if not is_failure(error):
             raise
-        what = f"{type(error).__name__}: {error}{line_of(error)}"
+        what = f"{failure_of(error)}{line_of(error)}"
         raise FirmwareError(f"the device on the {peripheral} failed with {what}") from error
 
 

@@ -17,7 +17,7 @@ from bfsim.machine.core.progress.progress import Progress
 from bfsim.machine.core.synchronisation.handovers import Handovers
 from bfsim.machine.core.tasks.asked import Asked
 from bfsim.machine.core.waits import Wait, name_of
-from bfsim.machine.firmware_lines import line_at, line_of
+from bfsim.machine.firmware_lines import failure_of, line_at, line_of
 from bfsim.machine.memories import Row
 from bfsim.machine_code.going_on import OVER
 from bfsim.trace import REST, StallReason
@@ -148,7 +148,7 @@ class Tasks:
         except BaseException as error:
             if not is_failure(error):
                 raise
-            raise self.told(error) from error
+            raise self.told(error, handler) from error
 
     def check_claimed(self) -> None:
         """Raise FirmwareError if a call was not yielded."""
@@ -166,22 +166,24 @@ class Tasks:
 
     # ---- what is wrong with the firmware
 
-    def told(self, error: BaseException) -> BfsimError:
-        """Return what went wrong in the firmware, with its line there; what the system refused to bfsim was no line's fault."""
+    def told(self, error: BaseException, called: object = None) -> BfsimError:
+        """Return what went wrong in the firmware, with its line there; what the system refused to bfsim was no line's fault.
+
+        `called`: what was called, if that may be all that was wrong.
+        """
         if isinstance(error, BfsimError) and isinstance(error.__cause__, OSError):
             return error
-        line = line_of(error)
+        line = line_of(error, called)
         if isinstance(error, KernelError):
             return self._in_call(error, line)
         if isinstance(error, BfsimError):
             return type(error)(f"{error}{line}")
-        said = IN_ORDER if str(error).endswith(NO_KEYWORDS) else error
-        what = f"{type(error).__name__}: {said}{self._advice(error)}"
+        what = f"TypeError: {IN_ORDER}" if str(error).endswith(NO_KEYWORDS) else failure_of(error)
         if forgotten := self._progress.waits.forgotten():
             return FirmwareError(f"{forgotten} ({what}){line}")
         if self._asked.unclaimed:
             return FirmwareError(f"core {self._name}: {UNYIELDED} ({what}){line}")
-        return FirmwareError(f"core {self._name}: firmware failed with {what}{line}")
+        return FirmwareError(f"core {self._name}: firmware failed with {what}{self._advice(error)}{line}")
 
     def _advice(self, error: BaseException) -> str:
         """Return what the author of the firmware may have overlooked."""
