@@ -118,6 +118,31 @@ def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal
     assert (process.returncode, err) == (128 + number, told)
 
 
+MEETS_THE_OTHER_CORE = (
+    ENDLESS.replace("x: i32)", "x: i32, both: u8[:])")
+    .replace("spin, 0)", 'spin, 0, core.array("both"))')
+    .replace("spin, 1)", 'spin, 1, core.array("both"))')
+    .replace("rows.items()}", 'rows.items()} | {"shared": [Buffer("both", u8, 4, "l2_shared")]}')
+)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
+def test_a_kernel_that_does_not_end_is_told_with_its_line_where_it_waited_for_its_turn(
+    tmp_path: Path,
+) -> None:
+    """One that meets the other core is run when the simulated time is there, from no line of the firmware."""
+    (tmp_path / "endless.py").write_text(MEETS_THE_OTHER_CORE)
+    command = [sys.executable, "-m", "bfsim", "run", "--firmware", "endless:fw"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        wait_for_the_kernel(process, tmp_path)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate()
+    line = next(
+        number for number, each in enumerate(MEETS_THE_OTHER_CORE.splitlines(), 1) if "spin, 1" in each
+    )
+    assert err.endswith(f", in a kernel that does not end ({tmp_path}/endless.py:{line})\n")
+
+
 SCRIPT = """
 import sys
 from pathlib import Path

@@ -15,9 +15,8 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 from bfsim.errors import FirmwareError
-from bfsim.loading.libraries import INSTALLED
 from bfsim.loading.modules import SHIPPED
-from bfsim.machine.firmware_lines import is_firmware
+from bfsim.machine.firmware_lines import INSTALLED, is_firmware
 from bfsim.machine.program import Firmware
 
 Namespace = Mapping[str, Any]

@@ -14,11 +14,10 @@ from itertools import accumulate
 from pathlib import Path
 
 from bfsim.loading.importing import ImportedFile, relative_name
+from bfsim.machine.firmware_lines import INSTALLED
 
 OURS = "bfsim"
 """Our own package has its version in every identity."""
-INSTALLED = {"site-packages", "dist-packages"}
-"""Folders with installed packages are called so."""
 
 
 def add_libraries(sources: dict[str, ImportedFile], built_in: Path) -> None:

@@ -26,6 +26,8 @@ NOT_FIRMWARE = re.compile(
     )
 )
 """Matches the paths of what firmware calls: bfsim, numpy and Python's own library, in which installed firmware may lie."""
+INSTALLED = {"site-packages", "dist-packages"}
+"""Folders with installed packages are called so."""
 TASKS = str(Path(__file__).parent / "core" / "tasks" / "tasks.py")
 """What goes on with the generators of the firmware."""
 
@@ -71,7 +73,8 @@ def line_at_work(interruption: KeyboardInterrupt) -> str:
     tasks = [number for number, each in enumerate(calls) if each.filename == TASKS and each.name == "perform"]
     called = calls[tasks[-1] + 1 :] if tasks else []
     own = list(takewhile(lambda each: is_firmware(each.filename), called))
-    said = f", {interruption}" if str(interruption) else ""
+    said = str(interruption)
+    said = f", {said}" if said and not said.startswith(" (") else said
     return f"{said} ({own[-1].filename}:{own[-1].lineno})" if own else said
 
 
@@ -94,10 +97,11 @@ def failure_of(error: BaseException) -> str:
 
 
 def _last_call(error: BaseException) -> traceback.FrameSummary | None:
-    """Return the innermost call of the firmware that `error` came through.
+    """Return the innermost call of the firmware that `error` came through; what is installed is firmware only if nothing else is.
 
     Of a generator that ends by a StopIteration Python makes another error, outside of it.
     """
     raised = error.__cause__ if isinstance(error.__cause__, StopIteration) else error
     calls = [each for each in traceback.extract_tb(raised.__traceback__) if is_firmware(each.filename)]
-    return calls[-1] if calls else None
+    own = [each for each in calls if INSTALLED.isdisjoint(Path(each.filename).parts)]
+    return next(reversed(own or calls), None)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba import njit
 
 from bfsim.machine.firmware_lines import NOT_FIRMWARE, line_of
 
@@ -13,6 +14,13 @@ def test_an_error_inside_a_library_is_the_firmwares_line() -> None:
     """What json raises is told with the line that called it."""
     with pytest.raises(json.JSONDecodeError) as raised:
         json.loads("{")
+    assert line_of(raised.value).startswith(f" ({__file__}:")
+
+
+def test_an_error_inside_an_installed_package_is_the_firmwares_line() -> None:
+    """It was told with a line of numba, or of whatever library firmware had asked in vain."""
+    with pytest.raises(TypeError) as raised:
+        njit(3)
     assert line_of(raised.value).startswith(f" ({__file__}:")
 
 

@@ -114,6 +114,26 @@ def test_a_part_must_lie_in_its_rows(start: int, count: int) -> None:
         in_frame(lambda core, frame: core.part(core.rows("wide_image"), start, count))
 
 
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (
+            lambda core: core.part("image", 0, 4),
+            r"core\.part\(rows, first, count\) must get rows such as frame\.rows and two int",
+        ),
+        (lambda core: core.part(core.rows("image"), "0", 4), r"two integers, not \(.*'0', 4\)"),
+        (
+            lambda core: core.use_size((8, 4)),
+            r"core\.use_size must get a bfsim\.api\.FrameSize, not \(8, 4\)",
+        ),
+    ],
+)
+def test_what_is_no_part_and_no_size_is_told(ask: Any, message: str) -> None:
+    """Each was an error of Python's in a line of bfsim's."""
+    with pytest.raises(FirmwareError, match=message):
+        in_frame(lambda core, frame: ask(core))
+
+
 def test_remarks_are_in_the_record_of_their_frame() -> None:
     """With the core that made them, in order."""
 

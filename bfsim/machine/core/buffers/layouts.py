@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from bfsim.errors import FirmwareError
+import numpy as np
+
+from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.types import Number
 from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.memories import Memories, Row
@@ -59,6 +61,8 @@ class Layouts:
         """Give out the buffers for pictures of `size` from now on. Raises FirmwareError where they find no room."""
         if size == self._size:
             return
+        if not isinstance(size, FrameSize):
+            raise FirmwareError(f"core.use_size must get a bfsim.api.FrameSize, not {shown(size)}")
         if size not in self._layouts:
             self._layouts[size] = {
                 each.name: self._laid_out(each, size) for each in self._declared(size).values()
@@ -108,6 +112,11 @@ class Layouts:
         return self._parts[kind]
 
     def _cut(self, rows: Rows, first: int, count: int) -> Rows:
+        are_whole = all(isinstance(each, int | np.integer) for each in (first, count))
+        if not (are_whole and all(isinstance(each, Row) for each in rows)):
+            raise FirmwareError(
+                f"core.part(rows, first, count) must get rows such as frame.rows and two integers, not {shown((rows, first, count))}"
+            )
         if not rows or not 0 <= first < first + count <= len(rows[0].array):
             length = len(rows[0].array) if rows else 0
             raise FirmwareError(

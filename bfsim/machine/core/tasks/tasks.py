@@ -219,6 +219,8 @@ class Tasks:
             return work.run()
         except KernelError as error:
             raise self._in_call(error, line_at(task)) from error
+        except KeyboardInterrupt as error:  # the line that asked for it has been left
+            raise KeyboardInterrupt(f"{error}{line_at(task)}") from None
 
     def _in_call(self, error: KernelError, line: str) -> KernelError:
         """Return a mistake in a kernel with where and when the firmware called it."""
