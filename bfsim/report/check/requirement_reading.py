@@ -45,7 +45,7 @@ def parse_requirement(text: str, where: str) -> Requirement:
     """Read a sentence. Raises ConfigError that names `where` it stands, with a caret under what is wrong."""
     sentence = _Sentence(text, where)
     parts, at = sentence.parts()
-    stands_for = parts[-1][1] if len(parts) > 1 and parts[-1][1] in STATISTICS else ""
+    stands_for = parts[-1][1] if len(parts) > _least(parts[0][1]) and parts[-1][1] in STATISTICS else ""
     name = tuple(part for _, part in (parts[:-1] if stands_for else parts))
     sentence.require_name(name, parts)
     comparison, begin = sentence.comparison(at)
@@ -91,11 +91,10 @@ class _Sentence:
     def require_name(self, name: Name, parts: Sequence[tuple[int, str]]) -> None:
         """Fail where a name has more parts, or fewer, than what it begins with."""
         most = 2 if (name[:1]) not in {FRAME_RATE, MISSED, LATENCY, FRAME} else 1
-        least = 2 if name[0] in {MEMORY, *COUNTS} else 1
         if len(name) > most:
             what = f"{', '.join(STATISTICS[:-1])} or {STATISTICS[-1]}"
             self.fail(f"{dotted(name[:most])} must be followed by {what}, or nothing", parts[most][0])
-        if len(name) < least:
+        if len(name) < _least(name[0]):
             self.fail(f"{name[0]} must be followed by a name, such as {name[0]}.L2", len(name[0]))
 
     def comparison(self, at: int) -> tuple[str, int]:
@@ -136,6 +135,11 @@ class _Sentence:
         if len(self.text) > len(cut(self.text)):
             raise ConfigError(f"{self.where}: {problem} ({cut(self.text)})")
         raise ConfigError(f"{self.where}: {problem}\n    {cut(self.text)}\n    {' ' * at}^")
+
+
+def _least(first: str) -> int:
+    """Return how many parts a name has at least that begins so; an object may be called max."""
+    return 2 if first in {MEMORY, *COUNTS} else 1
 
 
 def _meant(name: Name) -> str:

@@ -60,6 +60,19 @@ def test_a_lost_ball_is_a_failure_that_says_so(tmp_path: Path) -> None:
     ]
 
 
+def test_an_object_may_have_the_name_of_a_statistic(tmp_path: Path) -> None:
+    """`objects.min == 1*2` was read as the least of no object at all, and `--update` refused what it had written."""
+    path = tmp_path / "bfsim.toml"
+    case = measured(path, result(edge_run(950, 1050), ["min", "max"], ["min"]))
+    assert [each for each in case.limits if "objects" in each] == ["objects.min == 1*2", "objects.max == 1 0"]
+    assert broken(hold(result(edge_run(950, 1050), ["min"], ["min"]), path)) == [
+        "objects.max",
+        "distance_mm.max",
+    ]
+    replace_in(path, 'name = "drive"', 'name = "drive"\nrequire = ["objects.min.min >= 1"]')
+    assert hold(result(edge_run(950, 1050), ["min", "max"], ["min"]), path).passed
+
+
 def test_a_result_is_told_of_the_frame_that_is_most_off(tmp_path: Path) -> None:
     """Not as totals, which may be the same; beside a limit of nothing stands no percentage."""
     path = tmp_path / "bfsim.toml"
