@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 
 from bfsim.report.check.baseline import Case, Costs, KeptLine, KeptOwner
 from bfsim.report.check.figures import OBJECTS, RESULTS, Name
@@ -89,6 +90,8 @@ def kept_side(case: Case) -> Side:
         "board numbers": SEPARATOR.join(on.board_numbers),
         "compiler numbers": SEPARATOR.join(on.compiler_numbers),
     }
+    if case.recording:
+        configuration["recording"] = Path(case.recording).name
     if on.width_px:
         configuration |= {"width px": str(on.width_px), "height px": str(on.height_px)}
     counts = dict(_counts(case))

@@ -35,7 +35,12 @@ def changes(outcome: Outcome) -> Iterator[str]:
     """Yield what else is not as it was when the limits were measured: the firmware, the LDF, bfsim."""
     then, now = outcome.case.measured_on, outcome.run.identity
     if then is None:
-        yield "No limits were measured yet: --update does that."
+        yield (
+            "What the limits were measured on is not in the file any more, so that nothing says whether they are of these "
+            "pictures and this hardware: --update measures them anew."
+            if outcome.case.limits
+            else "No limits were measured yet: --update does that."
+        )
         return
     place = outcome.run.firmware_place
     what = "the same as" if then.firmware == now.firmware_digest else "another than"

@@ -13,8 +13,12 @@ from bfsim.errors import ConfigError
 from bfsim.files.save import write_text
 from bfsim.report.check.baseline import Case
 from bfsim.report.check.baseline_file import read_baseline
+from bfsim.report.check.judge import judge
 from bfsim.report.check.kept import kept_side
+from bfsim.report.check.sentences import changes
 from bfsim.report.check.update import loosened, write_cases
+from bfsim.report.diff.compare import difference_between
+from bfsim.report.diff.result_side import result_side
 from bfsim.trace import RunRecord
 from tests.report.check_rig import (
     hold,
@@ -87,6 +91,24 @@ def test_update_for_code_of_another_gcc_begins_anew(tmp_path: Path) -> None:
     assert loosened(old, result(edge_run(3000)), path)
     assert loosened(old, result(replace(by("GCC 14.1.0 -O2"), frames=edge_run(3000).frames)), path) == []
     assert kept_side(old).configuration["code"] == "GCC 12.2.0 -O2"
+
+
+def test_the_name_of_a_recording_is_kept_for_a_comparison(tmp_path: Path) -> None:
+    """Pictures of runs of other lengths have other digests: `bfsim diff` said of two recordings that nothing but `frames` differs."""
+    kept = kept_side(measured(tmp_path / "bfsim.toml", edge_run(1000, 1000), recording="drives/night.mcap"))
+    now = result_side(result(edge_run(1000)), {0})
+    assert ("recording", "night.mcap", IDENTITY.recording) in [
+        (each.what, each.before, each.after) for each in difference_between(kept, now).configuration
+    ]
+
+
+def test_limits_that_say_no_more_what_they_are_of(baseline: Path) -> None:
+    """Somebody removed `measured_on`: all limits were kept, and it was said that none had been measured."""
+    case = read_baseline(baseline).run[0].model_copy(update={"measured_on": None})
+    (told,) = changes(judge(case, result(edge_run(1000)), baseline))
+    assert told.startswith("What the limits were measured on is not in the file any more")
+    (told,) = changes(judge(case.model_copy(update={"limits": []}), result(edge_run(1000)), baseline))
+    assert told == "No limits were measured yet: --update does that."
 
 
 def test_a_stage_that_is_gone(baseline: Path) -> None:
