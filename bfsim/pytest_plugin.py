@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
+from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -51,13 +52,18 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 @pytest.fixture
 def bfsim(request: pytest.FixtureRequest) -> Callable[..., Run]:
     """Return `bfsim.run.simulate`, which runs the same configuration once a session, and fails the test if a run breaks its `frame_budget`."""
+    from bfsim.errors import BfsimError
     from bfsim.result import Run
 
     with _mistakes():
         required = [each for mark in request.node.iter_markers(MARK) for each in _sentences(mark)]
 
     def run(*recording: Any, **what: Any) -> Run:
-        result = _once(request.config, *recording, **what)
+        __tracebackhide__ = True
+        try:
+            result = _once(request.config, *recording, **what)
+        except BfsimError as error:
+            raise error.with_traceback(_firmware_alone(error.__traceback__)) from _cause(error)
         with _mistakes():
             broken = _broken(result, required)
         request.node.stash[_IS_HELD] = True
@@ -139,6 +145,27 @@ def _mistakes() -> Iterator[None]:
         yield
     except BfsimError as error:
         raise pytest.fail.Exception(str(error), pytrace=False) from None
+
+
+def _cause(error: BaseException) -> BaseException | None:
+    """Return what the firmware itself raised, if it did, without the code that called it."""
+    from bfsim.errors import BfsimError
+
+    cause = error.__cause__
+    while isinstance(cause, BfsimError):  # the same: simpy makes it once more
+        cause = cause.__cause__
+    return cause and cause.with_traceback(_firmware_alone(cause.__traceback__))
+
+
+def _firmware_alone(calls: TracebackType | None) -> TracebackType | None:
+    """Return a traceback without what is not the firmware's."""
+    from bfsim.machine.firmware_lines import INSTALLED, is_firmware
+
+    if calls is None:
+        return None
+    inner, file = _firmware_alone(calls.tb_next), calls.tb_frame.f_code.co_filename
+    is_own = is_firmware(file) and INSTALLED.isdisjoint(Path(file).parts)
+    return TracebackType(inner, calls.tb_frame, calls.tb_lasti, calls.tb_lineno) if is_own else inner
 
 
 def _sentences(mark: pytest.Mark) -> list[str]:

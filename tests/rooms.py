@@ -47,7 +47,7 @@ MAY_IMPORT = _sets(
         ),
         "planning": "trace running run",
         "checking": "errors shipped report loading running run planning",
-        "pytest_plugin": "errors seen report result run checking",
+        "pytest_plugin": "errors seen machine report result run checking",
         "sweeping": (
             "errors process files trace shipped fields machine_code report loading running result run planning checking"
         ),

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.eyes import FIRMWARE
 from tests.tiers import exhaustive
 
 ROOT = Path(__file__).parent.parent
@@ -79,6 +80,12 @@ def test_kept_limits(bfsim_check):
 def test_broken_limits(bfsim_check):
     bfsim_check()
 
+def test_firmware_that_fails(bfsim):
+    bfsim(firmware="failing.py", frames=1)
+
+def test_no_frames(bfsim):
+    bfsim(frames=0)
+
 def test_no_baseline(bfsim_check):
     bfsim_check("limits.toml")
 
@@ -102,6 +109,7 @@ def suite(folder: Path, *options: str) -> str:
     """Run the suite in a process of its own, and return what it prints."""
     (folder / "test_budget.py").write_text(SUITE)
     (folder / "budget.toml").write_text(BASELINE)
+    (folder / "failing.py").write_text(FIRMWARE.replace("bright = 0", "bright = 1 // 0"))
     (folder / "bare.toml").write_text('[[run]]\nname = "bare"\nframes = 1\n')
     (folder / "pytest.ini").write_text("[pytest]\naddopts = --strict-markers\n")
     command = [
@@ -123,7 +131,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "8 failed, 5 passed, 5 errors" in told
+    assert "10 failed, 5 passed, 5 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -146,7 +154,14 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
     assert "limits.toml must be a baseline file, but there is none" in told
     assert "bare.toml: run 'bare' must have limits or a require, but has neither" in told
-    # a mistake in a marker or a baseline is told without the code that found it
+    # a mistake in firmware, a marker or a baseline is told without the code that found it
+    assert ">           bright = 1 // 0\n" in told
+    assert told.count('>       bfsim(firmware="failing.py", frames=1)\n') == 1
+    assert (
+        ">       bfsim(frames=0)\nE       bfsim.errors.ConfigError: frames must be at least 1, not 0\n"
+        in told
+    )
+    assert not re.search(r"/bfsim/\w+\.py:\d+: ", told)
     assert "pytest_plugin.py:" not in told
     assert "another exception occurred" not in told
 
