@@ -19,7 +19,7 @@ import tempfile
 import warnings
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cache
 from importlib.resources import files
 from io import FileIO
@@ -72,17 +72,25 @@ def save(name: str, body: bytes) -> None:
     place = _trusted(folder())
     if place is None or not _is_writable(place):
         return
-    with suppress(OSError):
-        place /= name[:2]
-        place.mkdir(mode=PRIVATE, exist_ok=True)
-        handle, aside = tempfile.mkstemp(dir=place)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(_checksum(name, body) + body)
-            Path(aside).replace(place / name)
-        except BaseException:
-            Path(aside).unlink()
-            raise
+    try:
+        _write(place / name[:2], name, _checksum(name, body) + body)
+    except FileNotFoundError:  # somebody empties it
+        pass
+    except OSError as error:
+        _tell_refusal(place, str(error.strerror))
+
+
+def _write(place: Path, name: str, data: bytes) -> None:
+    """Write a file as a whole, or not at all."""
+    place.mkdir(mode=PRIVATE, exist_ok=True)
+    handle, aside = tempfile.mkstemp(dir=place)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        Path(aside).replace(place / name)
+    except BaseException:
+        Path(aside).unlink()
+        raise
 
 
 @contextmanager
@@ -127,15 +135,12 @@ def _trusted(place: Path) -> Path | None:
         place.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
         stranger = _stranger(place.stat())
         must = f"private, for what is in it is run, but {stranger}" if stranger else ""
+        advice = "`chmod 700` makes a folder of your own private, and "
     except OSError as error:
-        must = f"a folder, and there is none and none can be made: {error.strerror}"
+        must, advice = f"a folder, and there is none and none can be made: {error.strerror}", ""
     if must:
-        warnings.warn(
-            f"the kernel cache {shown(str(place))} must be {must}: it is not used, and every start compiles all "
-            "kernels; `chmod 700` makes a folder of your own private, and BFSIM_CACHE_DIR names another one",
-            BfsimWarning,
-            stacklevel=2,
-        )
+        every = f"it is not used, and every start compiles all kernels; {advice}"
+        _warn(place, f"be {must}: {every}")
         return None
     return place
 
@@ -145,13 +150,23 @@ def _is_writable(place: Path) -> bool:
     """Return whether the user can write to the cache's folder; otherwise after a warning."""
     if os.access(place, os.W_OK | os.X_OK):
         return True
-    warnings.warn(
-        f"the kernel cache {shown(str(place))} must be writable: every start compiles what is not in it; "
-        "`chmod u+w` makes it so, and BFSIM_CACHE_DIR names another one",
-        BfsimWarning,
-        stacklevel=2,
-    )
+    _warn(place, "be writable: every start compiles what is not in it; `chmod u+w` makes it so, and ")
     return False
+
+
+@cache
+def _tell_refusal(place: Path, why: str) -> None:
+    """Warn, once, that nothing more can be kept."""
+    _warn(place, f"take more, and does not ({why}): every start compiles what is not in it; ")
+
+
+def _warn(place: Path, must: str) -> None:
+    """Warn of what the cache's folder must be."""
+    warnings.warn(
+        f"the kernel cache {shown(str(place))} must {must}BFSIM_CACHE_DIR names another one",
+        BfsimWarning,
+        stacklevel=3,
+    )
 
 
 def _stranger(found: os.stat_result) -> str:

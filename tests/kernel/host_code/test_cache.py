@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import subprocess
@@ -182,15 +183,22 @@ def test_a_damaged_entry_is_made_again(
 def test_a_folder_that_cannot_be_written_is_no_obstacle(
     folder: Path, compiles: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Without a cache every start compiles, which is told where there can be none, and nothing is left half-written."""
+    """Without a cache every start compiles, which is told, and nothing is left half-written. A full disk was told of nowhere."""
     folder.write_text("a file, not a folder")
     with pytest.warns(
         BfsimWarning, match="must be a folder, and there is none and none can be made: File exists"
-    ):
+    ) as told:
         assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
+    assert "chmod" not in str(told[0].message)
     folder.unlink()
-    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
-    assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
+    store._trusted.cache_clear()
+    full = OSError(errno.ENOSPC, "No space left on device")
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(full))
+    with pytest.warns(
+        BfsimWarning, match=r"must take more, and does not \(No space left on device\): every start"
+    ) as told:
+        assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
+    assert len(told) == 1
     assert compiles == ["f", "f"]
     assert entries(folder) == []
 
@@ -240,6 +248,9 @@ print(follow.address() > 0)
 """
 
 
+ROOM_FOR_NONE = 64
+
+
 def follow_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> None:
     """Compile a part as the tracing of accesses is one, in a process that can write files of a limited size, or take it from the cache."""
     program = folder.with_name("follow.py")
@@ -254,13 +265,14 @@ def follow_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> Non
         env=surroundings,
         text=True,
     )
-    assert (done.stdout, done.stderr) == ("True\n", "")
+    assert done.stdout == "True\n"
+    assert ("(File too large): every start compiles" in done.stderr) == (limit_bytes == ROOM_FOR_NONE)
 
 
 @pytest.mark.exhaustive
 def test_a_damaged_or_full_cache_of_the_follower_is_no_obstacle(folder: Path) -> None:
     """It is compiled again, and kept if there is room."""
-    follow_in(folder, limit_bytes=64)
+    follow_in(folder, limit_bytes=ROOM_FOR_NONE)
     assert entries(folder) == []
     follow_in(folder)
     (entry,) = entries(folder)
