@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,8 @@ class Pool(Executor):
     def __init__(self, processes: int) -> None:
         self._processes = processes
         self._context = get_context("spawn")
+        with _deaf():
+            ensure_running()  # a helper of Python's: it lets SIGINT through again, and to who is started behind it in the same block
         self._leash, self._hand = self._context.Pipe(duplex=False)
         self._all: list[Executor] = []
         self._free: list[Executor] = []

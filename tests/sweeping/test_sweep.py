@@ -282,3 +282,23 @@ def test_a_process_that_dies_takes_its_call_along_and_nothing_else() -> None:
     assert isinstance(endless.exception(), Pool.deaths)
     with pytest.raises(ProcessLookupError):
         os.kill(other, 0)
+
+
+DEAF = """
+import signal
+from bfsim.sweeping.workers import Pool
+
+if __name__ == "__main__":
+    with Pool(2) as pool:
+        masks = [pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()) for _ in range(2)]
+        print([signal.SIGINT in each.result() for each in masks])
+"""
+
+
+def test_no_process_of_a_sweep_hears_ctrl_c(tmp_path: Path) -> None:
+    """The first one did, for Python starts a helper with it that lets SIGINT through again: its traceback stood in the terminal."""
+    (tmp_path / "deaf.py").write_text(DEAF)
+    done = subprocess.run(
+        [sys.executable, "deaf.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[True, True]\n"
