@@ -129,6 +129,18 @@ def test_pictures_of_a_video_come_when_they_came(
     assert [each.left_ns / 1e6 for each in frames_of(tmp_path / "even.mcap")] == [0, 100, 200, 300]
 
 
+def test_a_video_that_was_cut_off_is_told(tmp_path: Path) -> None:
+    """FFmpeg takes it as one that is over: half of a copy was imported without a word."""
+    video(tmp_path / "a.mkv", range(0, 4000, 100))
+    whole = (tmp_path / "a.mkv").read_bytes()
+    assert import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True, fps=10).notes == ()
+    (tmp_path / "b.mkv").write_bytes(whole[: len(whole) // 2])
+    cut = import_recording([tmp_path / "b.mkv"], tmp_path / "b.mcap", mono=True, fps=10)
+    assert 10 < cut.frame_count < 30
+    assert f"b.mkv: the pictures end after {cut.frame_count / 10:.2f} of 3.93 s" in cut.notes[0]
+    assert cut.notes[0].endswith(", as if the file were cut off there")
+
+
 @pytest.mark.parametrize("name", ["cam.h264", "cam.265", "CAM.HEVC", "cam.m2v", "phone.3gp", "handycam.MTS"])
 def test_videos_of_cameras_are_told_by_their_names(name: str) -> None:
     """Those of a Raspberry Pi, which are codec alone, needed `--format video`."""

@@ -54,8 +54,10 @@ def test_a_mosaic_is_told_and_neither_a_grey_picture_nor_a_coloured_one(tmp_path
         np.random.default_rng(2).integers(0, 256, (HEIGHT, WIDTH), np.uint8),
         np.tile(np.arange(WIDTH, dtype=np.uint8), (HEIGHT, 1)),
         np.tile(np.array([0, 200], np.uint8), (HEIGHT, WIDTH // 2)),
+        np.array([[3, 9], [9, 40]], np.uint8),
+        np.tile(np.array([[0, 255], [255, 0]], np.uint8), (HEIGHT // 2, WIDTH // 2)),
     ],
-    ids=["black", "a pixel", "noise", "a ramp", "upright lines"],
+    ids=["black", "a pixel", "noise", "a ramp", "upright lines", "four pixels", "black and white, dithered"],
 )
 def test_what_has_no_pattern_of_colours_is_none(pixels: np.ndarray) -> None:
     assert not is_mosaic(pixels)

@@ -138,7 +138,8 @@ def import_recording(
         skipped=tuple(pairs.skipped),
         notes=(
             *(bag.notes if bag else ()),
-            *(note for source in opened for note in source.notes if fps is None),
+            *(note for source in opened for note in source.notes),
+            *(note for source in opened for note in source.notes_on_times if fps is None),
             *rig.notes,
             *size_doubts,
             *mosaics,

@@ -35,12 +35,16 @@ def _is_grey(picture: YuvPlanes) -> bool:
 
 
 def is_mosaic(luma: Plane) -> bool:
-    """Whether pixels of shape (height, width) differ more from their neighbours than from those behind these, both across and down."""
+    """Whether pixels of shape (height, width) differ more from their neighbours than from those behind these, both across and down.
+
+    Black and white that was dithered does so, too, and what has no pixels behind others says nothing.
+    """
+    if min(luma.shape) < 3 or ((luma == luma.min()) | (luma == luma.max())).all():
+        return False
     pixels = luma.astype(np.int16)
     return all(_apart(each, 1) > MOSAIC_RATIO * _apart(each, 2) for each in (pixels, pixels.T))
 
 
 def _apart(rows: NDArray[np.int16], step: int) -> float:
-    """Return by how much pixels differ in the mean that are so far apart in their row; 0 where there are none."""
-    differences = np.abs(rows[:, step:] - rows[:, :-step])
-    return float(differences.mean()) if differences.size else 0.0
+    """Return by how much pixels differ in the mean that are so far apart in their row."""
+    return float(np.abs(rows[:, step:] - rows[:, :-step]).mean())

@@ -60,7 +60,8 @@ class PictureSource:
     count is None when only reading to the end tells; fps is None when the source does not say. `pictures`
     opens the source and yields from the first picture on, one in memory at a time; in the place of one that cannot be
     read, why not. `skipped` are files beside them that are no pictures. `times_ns` says when each was taken, if the
-    source knows, at least of those that it has yielded. `notes` are for who imports it.
+    source knows, at least of those that it has yielded. `notes` are for who imports it, `notes_on_times` if it
+    keeps its times.
     """
 
     name: str
@@ -71,6 +72,7 @@ class PictureSource:
     skipped: tuple[Skipped, ...] = ()
     times_ns: Sequence[int] | None = None
     notes: tuple[str, ...] = ()
+    notes_on_times: tuple[str, ...] = ()
 
 
 def guess_format(source: str) -> SourceFormat | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,6 +18,7 @@ from bfsim.recording.planes import YuvPlanes
 
 LARGEST_JITTER_S = Fraction(1, 1000)
 """Pictures of an even rate may be off by less than this, or than a tick of the video's clock."""
+DURATION = re.compile(r"(\d+):(\d+):(\d+(?:\.\d+)?)$")
 
 
 def open_video(source: str) -> PictureSource:
@@ -30,11 +32,12 @@ def open_video(source: str) -> PictureSource:
             each.pts * stream.time_base for each in container.demux(stream) if each.pts is not None
         )
         jitter_s = max(stream.time_base, LARGEST_JITTER_S)
+        ends = _break_off(source, times_s, _duration_s(stream), rate)
         first = next((each for each in _pictures(source, []) if isinstance(each, YuvPlanes)), None)
     if first is None:
         raise RecordingError(f"{source}: video must have at least one frame that can be decoded, not none")
     own = PictureSource(
-        name=source, size=first.size, count=None, fps=rate, pictures=lambda: _pictures(source, [])
+        name=source, size=first.size, count=None, fps=rate, pictures=lambda: _pictures(source, []), notes=ends
     )
     gaps_s = [after - before for before, after in pairwise(times_s)]
     is_even = rate and all(
@@ -49,7 +52,35 @@ def open_video(source: str) -> PictureSource:
         fps=len(gaps_s) / sum(gaps_s),
         pictures=lambda: _pictures(source, times_ns),
         times_ns=times_ns,
-        notes=(f"{source}: pictures are {least} to {most} ms apart, as there; `--fps` spaces them evenly",),
+        notes_on_times=(
+            f"{source}: pictures are {least} to {most} ms apart, as there; `--fps` spaces them evenly",
+        ),
+    )
+
+
+def _duration_s(stream: Any) -> Fraction | None:
+    """Return how long a stream says it is; Matroska does so in words, 00:00:02.960000000."""
+    if stream.duration:
+        return Fraction(stream.duration * stream.time_base)
+    found = DURATION.match(stream.metadata.get("DURATION", ""))
+    if not found:
+        return None
+    hours, minutes, seconds = map(Fraction, found.groups())
+    return 3600 * hours + 60 * minutes + seconds
+
+
+def _break_off(
+    source: str, times_s: list[Fraction], duration_s: Fraction | None, rate: Fraction | None
+) -> tuple[str, ...]:
+    """Return a note where pictures end long before their stream says that it does: FFmpeg takes a file that was cut as one that is over."""
+    if not (times_s and duration_s and rate):
+        return ()
+    longest_s = max([1 / rate, *(after - before for before, after in pairwise(times_s))])
+    end_s = times_s[-1] - times_s[0] + longest_s
+    if end_s + 2 * longest_s > duration_s:
+        return ()
+    return (
+        f"{source}: the pictures end after {float(end_s):.2f} of {float(duration_s):.2f} s, as if the file were cut off there",
     )
 
 
