@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from bfsim.errors import KernelError
 from bfsim.kernel.emitting.emit import Sites, sites_of
-from bfsim.kernel.host_code.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, SourcePlace
+from bfsim.kernel.host_code.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, Shift, SourcePlace
 from bfsim.kernel.language import tree
 from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import i32, u32
@@ -23,7 +23,7 @@ def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> Kernel
     first, *others = sorted({each.line for each in sites}) or [max(1, here.line)]
     same = f"; or line {' or '.join(str(routine.first_line + each - 1) for each in others)}" if others else ""
     calls = "".join(f"; called at {_place(routines[each.routine], each.line)}" for each in callers)
-    told = {tree.Binary: _of_divisor, tree.For: _of_steps}.get(guard.node, _of_index)
+    told = {tree.Binary: _of_divisor, tree.For: _of_steps, Shift: _of_shift}.get(guard.node, _of_index)
     what, must_be = told(sites, note[FIRST], note[SECOND])
     return KernelError(
         f"{_place(routine, first)}: {what} in kernel {routine.name}{same}; {must_be}{calls}\n"
@@ -87,6 +87,11 @@ def _of_steps(_sites: Sites, step: int, stop: int) -> tuple[str, str]:
         f"a range to {stop} in steps of {step} goes beyond {HIGHEST}",
         "its counter must stay an i32: take a smaller step, or end it earlier",
     )
+
+
+def _of_shift(_sites: Sites, count: int, _: int) -> tuple[str, str]:
+    """Return what is wrong with a shift, and what it must be."""
+    return f"a shift is by {count}", "a shift must be by 0 to 31"
 
 
 def _place(routine: Function, line: int) -> str:

@@ -1,5 +1,7 @@
 """Guards, written into the text of the optimised IR: they check every index before its access, every divisor, and every step.
 
+In code that was not optimised they check by how much is shifted, too. LLVM changes the upper bits of that where it leaves the lower five alone.
+
 The IR has been costed by then: guards cost the host time, and the Blackfin nothing. An access goes to the element that its
 distance from the array's first one names, counted modulo 2**32 as the chip's registers count, and only if the array has it.
 The first guard that fails notes its number and two values, and the whole call of the kernel ends there.
@@ -19,6 +21,8 @@ from bfsim.kernel.language import tree
 
 ACCESS = re.compile(r"^(  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr )(%[\w.$-]+)(.*)$")
 DIVISION = re.compile(r"^  %[\w.$-]+ = ([su])(?:div|rem)(?: exact)? (i\d+) ([^,]+), ([^,]+)")
+MASK = re.compile(r"^  (%[\w.$-]+) = and i32 ([^,]+), 31\b")
+SHIFT = re.compile(r"^  %[\w.$-]+ = (?:shl|lshr|ashr) i32 [^,]+, (%[\w.$-]+)")
 DEBUG = re.compile(r"!dbg !(\d+)")
 LOCATION = re.compile(r"^!(\d+) = (?:distinct )?!DILocation\((.*)\)")
 FIELD = re.compile(r"(\w+): !?(\d+)")
@@ -28,7 +32,12 @@ NUMBER, FIRST, SECOND, CALLS = range(4)
 """Words of the note: the guard that failed and its two values; then, for each routine, the place that called it last."""
 JUMP_WORDS = 128  # no C library's jmp_buf has more
 
-Node = type[tree.Load | tree.Store | tree.Binary | tree.For | tree.KernelCall]
+
+class Shift:
+    """Stands for one in a guard: it has no number in the source, as what else is guarded has."""
+
+
+Node = type[tree.Load | tree.Store | tree.Binary | tree.For | tree.KernelCall | Shift]
 FAIL = """
 declare void @longjmp(ptr, i32) noreturn
 define internal void @bfsim.fail(i64 %number, i64 %first, i64 %second) cold noinline noreturn {{
@@ -101,6 +110,19 @@ right:
 """
 """A loop ends if its step is 1 or more, and if the counter that ends it does not wrap."""
 
+SHIFTS = """
+define internal void @bfsim.shifts(i32 %count, i64 %number) alwaysinline {
+  %is_wrong = icmp ugt i32 %count, 31
+  br i1 %is_wrong, label %wrong, label %right
+wrong:
+  %first = sext i32 %count to i64
+  call void @bfsim.fail(i64 %number, i64 %first, i64 0)
+  unreachable
+right:
+  ret void
+}
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class SourcePlace:
@@ -133,15 +155,16 @@ def note_name(entry: str) -> str:
 
 
 class Guarded:
-    """The module `text` with guards, for the entry point `entry`."""
+    """The module `text` with guards, for the entry point `entry`; `shifts`: of shifts, too, for nothing was optimised."""
 
-    def __init__(self, text: str, entry: str) -> None:
+    def __init__(self, text: str, entry: str, *, shifts: bool) -> None:
         rows = text.splitlines()
         self._note = f"@{note_name(entry)}"
         self._places = _places(rows)
         self._kinds: set[str] = set()
         self._divisions: set[tuple[str, str]] = set()
         self._has_steps = False
+        self._shifts = shifts
         self._routine = ""
         self.guards: list[Guard] = []
         """Guards and calls by their numbers, which begin with 1."""
@@ -170,6 +193,8 @@ class Guarded:
             rows.append(DIVISIBLE.format(sign=sign, kind=kind, lowest=lowest, signed=signed, extend=extend))
         if self._has_steps:
             rows.append(ENDS)
+        if self._shifts:
+            rows.append(SHIFTS)
         return "\n".join(rows)
 
     def _module(self, rows: list[str]) -> Iterator[str]:
@@ -184,6 +209,7 @@ class Guarded:
 
     def _body(self, pointers: Pointers, body: list[str]) -> Iterator[str]:
         checked: dict[tuple[str, str], str] = {}
+        mask = None  # in the row before
         for row in body:
             if LABEL.match(row):
                 checked = {}  # what was checked in this block already
@@ -202,10 +228,13 @@ class Guarded:
                 continue
             if division := DIVISION.match(row):
                 yield self._check_divisor(division, self._number(row, tree.Binary))
+            elif self._shifts and mask and (shift := SHIFT.match(row)) and shift[1] == mask[1]:
+                yield f"  call void @bfsim.shifts(i32 {mask[2]}, i64 {self._number(row, Shift)})"
             elif (call := KERNEL_CALL.search(row)) and call[1] in self.routines:
                 yield self._note_call(call[1], self._number(row, tree.KernelCall))
             yield row
             yield from pointers.companions(row)
+            mask = MASK.match(row)
 
     def _check_index(self, to: Origin, kind: str, number: int) -> str:
         self._kinds.add(kind)

@@ -40,15 +40,16 @@ def instrument(
     *,
     traced: bool,
     checked: bool,
+    as_written: bool,
 ) -> str:
     """Return the module `text` with the counters of `program` and the entry point `entry`.
 
     With `traced`, every access that was costed is also reported to the access trace that the argument block names. With `checked`,
-    every index and divisor is checked (`guards`).
+    every index and divisor is checked (`guards`), and of code that is `as_written`, and not optimised, every shift.
     """
     counters = program.costs.counters
     counter_rows = CounterRows(program, _derived(text, counters))
-    guarded = Guarded(text, entry) if checked else None
+    guarded = Guarded(text, entry, shifts=as_written) if checked else None
     whole = guarded.text if guarded else text
     tracing = Tracing(whole, program) if traced else None
     return "\n".join(

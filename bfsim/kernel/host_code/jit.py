@@ -81,8 +81,9 @@ def compile_kernel(
         from bfsim.kernel.host_code.instrument import instrument
 
         text = instrument(
-            optimised(function, profile), function, program, entry, traced=traced, checked=checked
-        )
+            optimised(function, profile), function, program, entry, traced=traced, checked=checked,
+            as_written=not profile.optimises,
+        )  # fmt: skip
         code = machine_code.host_code(text, effort)
         store.save(key, code)
     if not machine_code.address_of(entry):  # else an equal function has loaded it, and its note is there
@@ -103,7 +104,7 @@ def _failure(function: Function, profile: CompilerProfile, entry: str) -> Kernel
     from bfsim.kernel.host_code.failures import failure
     from bfsim.kernel.host_code.guards import Guarded, note_name
 
-    guarded = Guarded(optimised(function, profile), entry)
+    guarded = Guarded(optimised(function, profile), entry, shifts=not profile.optimises)
     note = (ctypes.c_int64 * guarded.note_words).from_address(machine_code.address_of(note_name(entry)))
     return failure(function, guarded, list(note))
 

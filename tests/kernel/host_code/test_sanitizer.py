@@ -56,6 +56,27 @@ def test_what_the_compiler_leaves_out_is_checked_as_well(index: int, words: str)
         look.sanitize((row_of(), index))
 
 
+@kernel
+def shift(a: i32, n: i32, row: u8[:]) -> i32:
+    masked = a >> (n & 31)
+    up = a << n
+    row[(u32(a) >> u32(31 - n)) & 7] = 1
+    return masked + up
+
+
+@pytest.mark.parametrize(("count", "line", "told"), [(-1, 4, -1), (40, 4, 40), (32, 4, 32)])
+def test_a_shift_beyond_the_bits_is_told(count: int, line: int, told: int) -> None:
+    """The compiled kernel takes its lower five bits: a negative one went unnoticed. `31 - n` is 0 to 31 for those that are right."""
+    shift(1, count, row_of())
+    place = f"{__file__}:{shift.function.first_line + line - 1}: "
+    with pytest.raises(
+        KernelError, match=rf"^{place}a shift is by {told} in kernel shift; a shift must be by 0 to 31\n"
+    ):
+        shift.sanitize((1, count, row_of()))
+    for right in (0, 1, 31):
+        shift.sanitize((1, right, row_of()))
+
+
 def test_the_next_run_is_checked_anew() -> None:
     """A kernel that was caught once can be right the next time."""
     with pytest.raises(KernelError):
