@@ -67,7 +67,9 @@ def hottest_row_us(heats: Iterable[SeenHeat]) -> float:
 
 
 def heated(image: Image.Image, heat: SeenHeat, hottest_us: float) -> Image.Image:
-    """Return a picture, magnified or not, under its heat; `hottest_us` a row is the end of the scale."""
+    """Return a picture, magnified or not, under its heat; `hottest_us` a row is the end of the scale, 0 if no work had a place."""
+    if not hottest_us:
+        return image
     parts = np.clip(row_us(heat) / hottest_us, 0, 1)
     paint = Image.fromarray(COLOURS[(parts * (_STEPS - 1)).round().astype(int)], "RGB")
     return Image.blend(image, paint.resize(image.size, Image.Resampling.NEAREST), SHARE)

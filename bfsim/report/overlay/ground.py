@@ -31,7 +31,7 @@ def picture_with_edges(
     large = rgb_of(seen.picture).resize(size, Image.Resampling.BICUBIC).point(style.dark_levels())
     if seen.map:
         large = _with_map(large, seen.map)
-    if seen.heat and hottest_us:
+    if seen.heat:
         large = heated(large, seen.heat, hottest_us)
     edges, picture = seen.edges, np.array(large)
     if not len(edges.y_px):

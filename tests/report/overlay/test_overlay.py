@@ -27,7 +27,7 @@ from bfsim.seen import (
     SeenText,
     colours,
 )
-from bfsim.seen.heat import COLOURS, SHARE
+from bfsim.seen.heat import COLOURS, SHARE, heated
 from bfsim.seen.in_space import no_edges_3d
 from bfsim.seen.pictures import rgb_of
 from tests import seen_frames as made
@@ -306,6 +306,14 @@ def test_heat_lies_over_the_picture_by_what_a_place_cost() -> None:
     assert tuple(sheet[style.HEAD + 30 * SCALE, after + 10]) != tuple(
         sheet[style.HEAD + 10 * SCALE, after + 10]
     )
+
+
+def test_work_without_a_place_heats_nothing() -> None:
+    """A firmware that takes its lines by a DMA of its own has none: `--mcap` with `--heat` ended in a traceback."""
+    picture = rgb_of(made.grey())
+    assert np.array_equal(heated(picture, hot(0), 0.0), picture)
+    cold = made.frame(0, *(Seen(camera=each, picture=made.grey(), heat=hot(0)) for each in ("left", "right")))
+    assert overlay_of(cold).height > overlay_of(one()).height, "the legend says what it cost elsewhere"
 
 
 def test_bars_say_what_each_row_cost_by_stage() -> None:
