@@ -239,7 +239,14 @@ def test_an_interrupted_run_leaves_the_file_as_it_was(
     ("what", "said"),
     [
         ({"frames": 1}, r"must be played for as many frames as it has, 2, not for 1"),
-        ({"profile": "gcc-O2"}, r"must be recorded with the same compiler, 'gcc-O2', not with 'gcc-adi'"),
+        (
+            {"profile": "gcc-O2"},
+            r"must be recorded with the same compiler, 'gcc-O2', not with 'gcc-adi': give it again by --profile, or",
+        ),
+        (
+            {"firmware": "tinyphoon"},
+            r"firmware, 'tinyphoon', not with 'fw_mixed:eyes': give it again by --firmware, or record it",
+        ),
     ],
 )
 def test_another_run_is_refused(
@@ -249,7 +256,7 @@ def test_another_run_is_refused(
     recording, path = small(tmp_path, monkeypatch)
     simulate(recording, firmware="fw_mixed:eyes", record_work=path)
     with pytest.raises(WorkError, match=said):
-        simulate(recording, firmware="fw_mixed:eyes", work=path, **what)
+        simulate(recording, work=path, **{"firmware": "fw_mixed:eyes"} | what)
 
 
 def test_what_needs_more_than_cycles_is_refused(work: Path, folder: Path) -> None:

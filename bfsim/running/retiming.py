@@ -39,6 +39,8 @@ SAME = {
     "llvm_version": "version of LLVM",
 }
 """Fields of an identity in which a recorded run and the one that it is played for must be the same, in words."""
+SAID_BY = {"recording": "a RECORDING before the options", "firmware": "--firmware", "compiler": "--profile"}
+"""How that of the recorded run is given again, for it is not taken from the file."""
 
 
 @contextmanager
@@ -178,9 +180,10 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
         raise ConfigError("--work must go with --fidelity fast: only there the same buses play it again")
     for field, what in SAME.items():
         if recorded.identity.get(field) != getattr(identity, field):
+            again = f"give it again by {SAID_BY[field]}, or " if field in SAID_BY else ""
             raise WorkError(
                 f"{path} must be recorded with the same {what}, {shown(getattr(identity, field))}, "
-                f"not with {shown(recorded.identity.get(field))}: record it again"
+                f"not with {shown(recorded.identity.get(field))}: {again}record it again"
             )
     if total != len(recorded.frames.digests):
         raise WorkError(
