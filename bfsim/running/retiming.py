@@ -33,12 +33,14 @@ SAME = {
     "firmware": "firmware",
     "compiler": "compiler",
     "compiler_digest": "compiler",
-    "code_digest": "code of the compiler",
+    "code_digest": "code of its kernels",
     "file_compiler": "compiler of kernels in C",
     "script_digest": "script for the device",
     "llvm_version": "version of LLVM",
 }
 """Fields of an identity in which a recorded run and the one that it is played for must be the same, in words."""
+DIGEST_SHOWN = 12
+"""Digits of a digest that are shown."""
 SAID_BY = {"recording": "a RECORDING before the options", "firmware": "--firmware", "compiler": "--profile"}
 """How that of the recorded run is given again, for it is not taken from the file."""
 
@@ -179,11 +181,13 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
     if machine.fidelity is not Fidelity.FAST:
         raise ConfigError("--work must go with --fidelity fast: only there the same buses play it again")
     for field, what in SAME.items():
-        if recorded.identity.get(field) != getattr(identity, field):
+        now, then = getattr(identity, field), recorded.identity.get(field)
+        if now != then:
+            if field.endswith("digest"):
+                now, then = (str(each)[:DIGEST_SHOWN] for each in (now, then))
             again = f"give it again by {SAID_BY[field]}, or " if field in SAID_BY else ""
             raise WorkError(
-                f"{path} must be recorded with the same {what}, {shown(getattr(identity, field))}, "
-                f"not with {shown(recorded.identity.get(field))}: {again}record it again"
+                f"{path} must be recorded with the same {what}, {shown(now)}, not with {shown(then)}: {again}record it again"
             )
     if total != len(recorded.frames.digests):
         raise WorkError(
