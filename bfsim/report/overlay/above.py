@@ -11,14 +11,16 @@ from bfsim.report.overlay.labels import Label, write_labels
 from bfsim.seen import PointMm, SeenFrame, SeenGeometry, SeenObject, Solid
 from bfsim.seen.colours import DepthScale
 
+LEAST_HEIGHT = 96  # beside pictures of a few lines
 LEAST_MARK = 4  # radius of an object in the drawing
 
 
 def above_of(frame: SeenFrame, scale: DepthScale, height: int) -> Image.Image:
-    """Return the ground before the cameras, `height` pixels high and three quarters as wide, up to the end of the scale.
+    """Return the ground before the cameras, `height` pixels high, or the least, and three quarters as wide, up to the end of the scale.
 
     The left camera looks up from the middle of the lower border. Without a geometry its axis is taken to be level.
     """
+    height = max(height, LEAST_HEIGHT)
     width = 3 * height // 4
     geometry = next(iter(frame.geometries.values()), None)
     floor = _Floor(width, height, scale.far_mm, geometry.tilt_deg if geometry else 0.0)

@@ -39,6 +39,7 @@ def overlay_of(
     panels = [_panel(frame, each, wanted_px, scale, hottest_us) for each in frame.cameras]
     highest = max(image.height for image, _ in panels)
     above = above_of(frame, scale, highest) if ABOVE in layers and _sees_depth(frame) else None
+    highest = max(highest, above.height if above else 0)
     inside = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) - 1)
     inside += above.width + style.MARGIN if above else 0
     inside += (BARS + GAP) * len(heats)

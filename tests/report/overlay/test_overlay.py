@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from bfsim.report.overlay import style
+from bfsim.report.overlay.above import LEAST_HEIGHT
 from bfsim.report.overlay.ground import MAP_SHARE, picture_with_edges
 from bfsim.report.overlay.heat import BARS, GAP, LINE, STAGES, _time
 from bfsim.report.overlay.layers import LAYERS
@@ -74,6 +75,13 @@ def test_words_above_a_picture_never_overprint(wanted_px: int) -> None:
     end = round(2 * style.MARGIN + font.getlength("left camera") + font.getlength(when))
     assert (head[:, end - 12 : end] != style.PAPER).any()
     assert (head[:, end + 2 : end + style.MARGIN - 2] == style.PAPER).all()
+
+
+def test_pictures_of_a_line_have_a_view_from_above_beside_them() -> None:
+    """It was as high as they are, and had no pixels where that was one: a page of it ended in a traceback."""
+    flat = {"picture": made.grey(640, 1), "geometry": made.GEOMETRY}
+    sheet = overlay_of(made.frame(0, *(Seen(camera=each, **flat) for each in ("left", "right"))))  # type: ignore[arg-type]
+    assert sheet.height == style.HEAD + LEAST_HEIGHT + style.FOOT
 
 
 def test_the_legend_is_of_what_is_drawn() -> None:
