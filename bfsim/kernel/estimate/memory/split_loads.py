@@ -1,7 +1,8 @@
 """Loads that LLVM has made one, because they differ in their addresses only, are made on each way again.
 
 LLVM turns the same load on several ways into one load behind them, from an address that the ways choose
-[foldPHIArgLoadIntoPHI]; if only some ways from there need it, it even sinks below. GCC leaves each load where the source has it.
+[foldPHIArgLoadIntoPHI]; if only some ways from there need it, it even sinks below. Of elements of two arrays with one index, as in
+`left[node] if low else right[node]`, the ways choose the array [SinkCommonCodeFromPredecessors]. GCC leaves each load where the source has it.
 The kernel language has no pointers, so an address that is chosen always comes of that.
 """
 
@@ -10,11 +11,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow
-from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, each_arm, phi_of
+from bfsim.kernel.ir.edges import put_between
+from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, arms_of, each_arm, phi_of, renamed
 
 
 def split_loads(routine: Routine) -> Routine:
     """Return `routine` with a load at the end of each block that leads to a chosen address."""
+    routine = _with_addresses_on_ways(routine)
     flow = ControlFlow(routine)
     chosen = [
         (block.label, phi, flow.users.get(phi.result or "", []))
@@ -26,10 +29,71 @@ def split_loads(routine: Routine) -> Routine:
     for label, phi, loads in chosen:
         arms = each_arm(phi)
         ends_there = all(flow.blocks[source].successors == (label,) for _, source in arms)
-        carried = any(label in flow.dominators[source] for _, source in arms)
+        carried = _is_carried(flow, label, phi)
         if loads and ends_there and not carried and all(_may_move(flow, label, each) for each in loads):
             _split(blocks, label, phi, arms, loads)
     return replace(routine, blocks=tuple(blocks.values()))
+
+
+def _with_addresses_on_ways(routine: Routine) -> Routine:
+    """Return `routine` with elements of an array that the ways choose as addresses that the ways choose."""
+    while (found := _chosen_array(routine)) is not None:
+        label, phi, users = found
+        blocks = {each.label: each for each in routine.blocks}
+        for source in {source for _, source in each_arm(phi) if len({*blocks[source].successors}) > 1}:
+            put_between(blocks, source, label, f"{source}.to.{label}")
+        for address in users:
+            _compute_on_ways(blocks, label, phi.result or "", address)
+        rows = tuple(each for each in blocks[label].instructions if each.result != phi.result)
+        blocks[label] = replace(blocks[label], instructions=rows)
+        routine = replace(routine, blocks=tuple(blocks.values()))
+    return routine
+
+
+def _chosen_array(routine: Routine) -> tuple[str, Instruction, list[Instruction]] | None:
+    """Return the first such array with its block and the addresses of its elements, if their indices are known on the ways."""
+    flow = ControlFlow(routine)
+    for label, block in flow.blocks.items():
+        for phi in block.instructions:
+            users = flow.users.get(phi.result or "", [])
+            is_chosen = phi.text.startswith("phi ptr") and users and not _is_carried(flow, label, phi)
+            if is_chosen and all(_is_known_before(flow, label, phi, each) for each in users):
+                return label, phi, users
+    return None
+
+
+def _is_carried(flow: ControlFlow, label: str, phi: Instruction) -> bool:
+    """Whether a loop carries what is chosen before block `label` from iteration to iteration."""
+    return any(label in flow.dominators[source] for _, source in each_arm(phi))
+
+
+def _is_known_before(flow: ControlFlow, label: str, phi: Instruction, address: Instruction) -> bool:
+    """Whether an address is that of an element of a chosen array, by an index that block `label` is entered with."""
+    if address.opcode != "getelementptr" or address.operands[0] != phi.result:
+        return False
+    home, index = flow.defined.get(address.operands[-1], ("", None))
+    return (
+        index is None
+        or (home != label and home in flow.dominators[label])
+        or (home == label and index.opcode == "phi")
+    )
+
+
+def _compute_on_ways(blocks: dict[str, BasicBlock], label: str, array: str, address: Instruction) -> None:
+    """Put an address at the end of each block that leads to block `label`, and choose one of these there."""
+    phis = {each.result: arms_of(each) for each in blocks[label].instructions if each.opcode == "phi"}
+    merged = []
+    for way, source in enumerate(phis[array]):
+        names = {name: phis[name][source] for name in address.operands if name in phis}
+        made = replace(renamed(address, names), result=f"{address.result}.{way}")
+        *before, last = blocks[source].instructions
+        blocks[source] = replace(blocks[source], instructions=(*before, made, last))
+        merged.append((f"{address.result}.{way}", source))
+    for name, block in blocks.items():
+        rows = tuple(each for each in block.instructions if each is not address)
+        blocks[name] = replace(block, instructions=rows)
+    chosen = phi_of(address.result or "", "ptr", merged, address)
+    blocks[label] = replace(blocks[label], instructions=(chosen, *blocks[label].instructions))
 
 
 def _may_move(flow: ControlFlow, label: str, user: Instruction) -> bool:
