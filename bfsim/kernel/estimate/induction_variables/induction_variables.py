@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bfsim.kernel import operations
@@ -64,15 +63,8 @@ class InductionVariable:
 class InductionVariables:
     """The induction variables of one routine; `of` finds that of an access by its identity."""
 
-    def __init__(
-        self,
-        flow: ControlFlow,
-        evolution: ScalarEvolution,
-        frequency: Mapping[str, float],
-        profile: CompilerProfile,
-    ) -> None:
-        """`frequency`: of each block."""
-        self.flow, self.evolution, self.frequency, self.profile = flow, evolution, frequency, profile
+    def __init__(self, flow: ControlFlow, evolution: ScalarEvolution, profile: CompilerProfile) -> None:
+        self.flow, self.evolution, self.profile = flow, evolution, profile
         self.all: list[InductionVariable] = []
         self.of: dict[int, InductionVariable] = {}
         found: dict[tuple[str, tuple[tuple[str, int], ...]], InductionVariable] = {}
@@ -139,9 +131,9 @@ class InductionVariables:
     def _serves(self, one: InductionVariable, other: InductionVariable) -> bool:
         """Whether the pointer of one variable takes the place of another's [cost of an iv use, tree-ssa-loop-ivopts.cc].
 
-        An access that not every iteration makes costs less where it is computed from a pointer that is there than with a pointer
-        of its own, which every iteration would have to step: as long as an iteration makes one of them at most, by the guess of how often
-        each block runs [determine_group_iv_cost_address].
+        An access that not every iteration makes costs less where it is computed from a pointer that is there than with a pointer of its own,
+        which every iteration would have to step. Of several each is computed, whatever the guess of how often its block runs: a block counts
+        once at least [determine_group_iv_cost_address; determine_scaling_factor].
         """
         if (
             one is other
@@ -158,13 +150,8 @@ class InductionVariables:
             and not one.increment.symbolic
             and self.is_steady(one)
             and not self.is_steady(other)
-            and self._share(other) <= 1
+            and len(other.accesses) <= 1
         )
-
-    def _share(self, variable: InductionVariable) -> float:
-        """How many of its accesses an iteration makes."""
-        total = sum(self.frequency[label] for label, _, _ in variable.accesses)
-        return total / self.frequency[variable.loop.header]
 
     def is_steady(self, variable: InductionVariable) -> bool:
         """Whether every iteration makes one of the accesses."""

@@ -50,9 +50,7 @@ class Context:
         self.second_parts = {each.second: each.inside for each in self.ranges.values()}
         """Blocks whose test is part of the one before, and where they lead if both hold."""
         self.likelihood = Likelihood(self.flow, self.second_parts, profile.without)
-        self.induction_variables = InductionVariables(
-            self.flow, self.evolution, self.likelihood.frequency, profile
-        )
+        self.induction_variables = InductionVariables(self.flow, self.evolution, profile)
         has_fields = profile.applies(Rule.FIELD_ADDRESSES)
         self.fields = FieldAddresses(self.flow, self.induction_variables) if has_fields else None
         counts_bits = profile.applies(Rule.BIT_COUNTS)
