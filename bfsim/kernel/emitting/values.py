@@ -11,7 +11,7 @@ from llvmlite import ir
 from bfsim.kernel.emitting import divisions, floats
 from bfsim.kernel.emitting.floats import register_type
 from bfsim.kernel.intrinsics.meaning import function_type
-from bfsim.kernel.ir.text import ENTERS, HOLDS, NO_HINT, STEPS
+from bfsim.kernel.ir.text import COUNTS, ENTERS, HOLDS, NO_HINT, STEPS
 from bfsim.kernel.language import tree
 from bfsim.kernel.language.function import Function
 from bfsim.kernel.types import FloatType, IntType, Number, u32
@@ -164,8 +164,8 @@ class Values:
             return divisions.signed(self.builder, node.op, left, right, constant)
 
     def _shift(self, node: tree.Binary, left: ir.Value, right: ir.Value) -> ir.Value:
-        if not isinstance(node.right, tree.Const):
-            right = self.builder.and_(right, I32(SHIFT_MASK))
+        if not _is_within_word(node.right):
+            right = self.builder.and_(right, I32(SHIFT_MASK), COUNTS)
         if node.op == "<<":
             return self.builder.shl(left, right)
         return (self.builder.lshr if node.type is u32 else self.builder.ashr)(left, right)
@@ -280,3 +280,15 @@ class Values:
             mark.attributes.add("inaccessiblememonly")
             mark.attributes.add("nounwind")
         self.builder.call(mark, given)
+
+
+def _is_within_word(count: tree.Expr) -> bool:
+    """Whether the source itself says that a value is shifted by less than a word: by a number, or by the low bits of something."""
+    if isinstance(count, tree.Cast):
+        return isinstance(count.to, IntType) and count.to.bits == WORD_BITS and _is_within_word(count.operand)
+    if isinstance(count, tree.Binary) and count.op == "&":
+        return any(
+            isinstance(each, tree.Const) and 0 <= each.value <= SHIFT_MASK
+            for each in (count.left, count.right)
+        )
+    return isinstance(count, tree.Const)

@@ -13,6 +13,8 @@ from bfsim.kernel.estimate.arithmetic.even_addresses import with_even_addresses
 from bfsim.kernel.estimate.arithmetic.factored_sums import factor_sums
 from bfsim.kernel.estimate.arithmetic.remainders import with_remainders
 from bfsim.kernel.estimate.arithmetic.saturations import without_saturations
+from bfsim.kernel.estimate.arithmetic.shift_counts import with_wide_counts
+from bfsim.kernel.estimate.arithmetic.shifted_bits import with_shifted_bits
 from bfsim.kernel.estimate.arithmetic.shifted_products import with_shifted_products
 from bfsim.kernel.estimate.arithmetic.strength_reduction import with_reduced_strength
 from bfsim.kernel.estimate.arithmetic.subtractions import with_subtractions
@@ -68,8 +70,10 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_same_truths,
     with_tests_of_next_values,
     split_loads,
+    with_wide_counts,
     with_operations_on_sides,
     with_shifted_products,
+    with_shifted_bits,
     with_sides_apart,
     with_reduced_strength,
     with_summed_indices,

@@ -42,6 +42,8 @@ HOLDS = "bfsim.holds"
 """A call that does nothing, in the header of a loop that is not to be rotated, until loops are."""
 OF_VARIABLE = "cut.variable"
 """In the name of what a store cuts off a local variable, and of what LLVM makes of that: in C the variable is a whole word until then."""
+COUNTS = "shift.count"
+"""In the name of a mask that the language puts on what a value is shifted by: the shifter does it, where one of the source is an operation."""
 HIDES = "bfsim.hides"
 """A call that returns its number, of which LLVM is to know nothing."""
 

@@ -7,8 +7,7 @@ scale; a load, a store and a sum count one; phis and widenings are free.
 from __future__ import annotations
 
 from bfsim.kernel.ir.control_flow import ControlFlow, pointee_nbytes
-from bfsim.kernel.ir.text import Instruction
-from bfsim.kernel.ir.widths import WORD
+from bfsim.kernel.ir.text import COUNTS, Instruction
 
 TEST_SIZE = 2  # [tree-inline.cc] of a comparison that a branch takes
 FREE = ("phi", "trunc", "zext", "sext", "freeze", "bitcast", "unreachable", "ret")
@@ -33,8 +32,9 @@ def statement_size(flow: ControlFlow, each: Instruction) -> int:
 def _is_shift_mask(flow: ControlFlow, each: Instruction) -> bool:
     """Whether it only keeps what a shift is by within a word, for which C does not ask."""
     users = flow.users.get(each.result or "", [])
-    mask = each.opcode == "and" and each.operands[1] == str(WORD - 1)
-    return mask and all(user.opcode in SHIFTS and user.operands[1] == each.result for user in users)
+    return COUNTS in (each.result or "") and all(
+        user.opcode in SHIFTS and user.operands[1] == each.result for user in users
+    )
 
 
 def _address_size(flow: ControlFlow, address: Instruction) -> int:

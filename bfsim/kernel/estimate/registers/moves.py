@@ -52,6 +52,10 @@ class Moves:
         by_rule = instruction.op is Op.COND_MOVE and self.webs.context.profile.applies(Rule.CONDITIONAL_MOVES)
         numbers = [name for name in instruction.overwrites if name.startswith("#")]
         others = [self.find(name) for name in instruction.overwrites if name not in numbers]
+        if numbers and instruction.op is Op.SHIFT:
+            return (
+                self.flow.innermost(label) is not None
+            )  # it is loaded before the loop, and shifted in each iteration
         if by_rule:
             is_kept = not numbers or ("#poison" not in numbers and self.flow.innermost(label) is not None)
         else:

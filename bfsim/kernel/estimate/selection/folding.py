@@ -7,7 +7,7 @@ from functools import cached_property
 from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
 from bfsim.kernel.estimate.arithmetic.remainders import quotient_of_rest
 from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow
-from bfsim.kernel.ir.text import Instruction, is_number, predicate
+from bfsim.kernel.ir.text import COUNTS, Instruction, is_number, predicate
 from bfsim.kernel.operations import ADDRESS_SHIFTS
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -104,9 +104,10 @@ class Folding:
 
     def is_shift_mask(self, each: Instruction) -> bool:
         """Whether an `and 31` is only the language's rule for shift counts: the shifter does it."""
-        return each.opcode == "and" and each.operands[1] == "31" and all(
-            user.opcode in SHIFTS and user.operands[1] == each.result for user in self.users(each.result or "")
-        )  # fmt: skip
+        return COUNTS in (each.result or "") and all(
+            user.opcode in SHIFTS and user.operands[1] == each.result
+            for user in self.users(each.result or "")
+        )
 
     def bit_tested(self, compare: Instruction) -> str | None:
         """The value of which a comparison tests a single bit."""

@@ -123,7 +123,8 @@ class NarrowValues:
         """Whether a mask takes some bits of what was loaded, and so none that an extension makes."""
         mask = user.operands[1] if user.opcode == "and" else ""
         is_within = mask.isdigit() and int(mask) < 1 << load.bits
-        return is_within and self.profile.applies(Rule.NARROW_BITS)
+        is_operation = not self.folding.is_shift_mask(user)
+        return is_within and is_operation and self.profile.applies(Rule.NARROW_BITS)
 
     def in_narrow_tree(self, each: Instruction) -> bool:
         """Whether only the low bits of a result are wanted, for a narrow value that is stored."""

@@ -17,14 +17,13 @@ from bfsim.kernel.estimate.unoptimised.expressions import (
     extreme_of,
     simplified,
 )
-from bfsim.kernel.ir.text import TRUTHS, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir.text import COUNTS, TRUTHS, BasicBlock, Instruction, Routine
 from bfsim.kernel.ir.widths import BYTE
 
 ARITHMETIC = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shl": "<<", "lshr": ">>",
               "ashr": ">>", "udiv": "udiv", "urem": "urem", "sdiv": "sdiv", "srem": "srem"}  # fmt: skip
 INTRINSICS = {"smin": "min", "smax": "max", "umin": "umin", "umax": "umax", "abs": "abs"}
 UNSIGNED = ("lshr", "udiv", "urem")
-SHIFT_MASK = "31"
 
 
 def base(label: str) -> str:
@@ -198,7 +197,7 @@ class Trees:
         operands = each.operands
         if each.opcode in ("shl", "lshr", "ashr") and operands[1] in self.home:
             count = self.home[operands[1]][1]
-            if count.opcode == "and" and count.operands[1] == SHIFT_MASK:
+            if COUNTS in (count.result or ""):
                 right = self.expr(count.operands[0], self.home[operands[1]][0])
         if each.opcode == "xor" and right == const(1) and " i1 " in each.text:
             return Expr("not", (left,))

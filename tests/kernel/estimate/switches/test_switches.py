@@ -132,7 +132,7 @@ CASES = {
     "low numbers": (
         IN_A_LOOP.format("a[i] & 31", ANY_OF.format("c == 2 or c == 7 or c == 12 or c == 17")),
         4529,
-        0.04,
+        0.09,
     ),
     "neighbours": (IN_A_LOOP.format("a[i]", ANY_OF.format("c == 88 or c == 89 or c == 90")), 3804, 0.01),
     "a bit apart": (IN_A_LOOP.format("a[i]", ANY_OF.format("c == 69 or c == 101")), 4208, 0.01),
