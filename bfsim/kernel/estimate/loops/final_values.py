@@ -56,6 +56,8 @@ class _FinalValues:
     def __init__(self, flow: ControlFlow, loop: Loop) -> None:
         self.flow, self.loop = flow, loop
         self.is_only_exit = flow.exits(loop) == [loop.latch]
+        self.quotient = list[Instruction]()
+        """What computes how often the loop iterates, less one, where that takes a shift."""
         self.iterations = None if flow.is_split(loop) else self._iterations()
 
     def rewritten(self) -> Routine:
@@ -70,7 +72,7 @@ class _FinalValues:
         if not finals:
             return routine
         blocks = {each.label: each for each in routine.blocks}
-        rows: list[Instruction] = []
+        rows = [*self.quotient]
         names = {name: self._computed(name, final, rows) for name, final in sorted(finals.items())}
         has_phis = any(each.opcode == "phi" for each in blocks[behind].instructions)
         if not self.is_only_exit or (rows and (has_phis or len(self.flow.predecessors[behind]) > 1)):
@@ -119,12 +121,32 @@ class _FinalValues:
             return None
         bound, relation = test.operands[1], predicate(test)
         counter = self._stepped(test.operands[0])
-        if counter is None or abs(counter.step) != 1 or not self.flow.is_invariant(bound, self.loop):
+        if counter is None or not self.flow.is_invariant(bound, self.loop):
             return None
+        if abs(counter.step) != 1:
+            return self._shifted(counter, test)
         left = _atom(bound).plus(_atom(counter.start), -1).plus(Affine(constant=-counter.more))
         iterations = Affine(constant=1).plus(left, counter.step)
         by_order = relation != "ne" and STEPS.get(relation[1:]) == counter.step
         return iterations if relation == "ne" or (by_order and self._is_guarded(iterations, test)) else None
+
+    def _shifted(self, counter: _Stepped, test: Instruction) -> Affine | None:
+        """How often the loop iterates if its counter steps by a power of two; what takes a division GCC computes in the loop [expression_expensive_p]."""
+        step, bound, at = abs(counter.step), test.operands[1], self.flow.instruction(counter.phi)
+        sign = counter.step // step
+        ends = counter.more == counter.step and STEPS.get(predicate(test)[1:]) == sign
+        rest = (
+            _atom(bound).plus(_atom(counter.start), -1)
+            if sign > 0
+            else _atom(counter.start).plus(_atom(bound), -1)
+        )
+        is_power = step.bit_count() == 1 and bool(rest.terms)
+        if at is None or not (ends and is_power and self.is_only_exit and self._is_guarded(rest, test)):
+            return None
+        distance = self._computed(counter.phi, rest.plus(Affine(constant=-1)), self.quotient)
+        bits = str(step.bit_length() - 1)
+        name = _append(self.quotient, f"lshr i32 {distance}, {bits}", (distance, bits), counter.phi, at)
+        return _atom(name).plus(Affine(constant=1))
 
     def _is_guarded(self, iterations: Affine, last: Instruction) -> bool:
         """Whether the loop is only come to if so many iterations are at least one: its last test was made before, or is known to hold there."""
