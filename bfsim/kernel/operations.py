@@ -113,6 +113,7 @@ LONG_IMMEDIATE = range(-(1 << 15), 1 << 16)  # R = imm16 (X) or (Z) in four byte
 ADDRESS_SHIFTS = (1, 2)  # P = P + (P << 1), P = P + (P << 2)
 
 BYTE_BITS = 8
+SHORT_OFFSETS = 16  # [PRM] from 0 on, in half-words or words
 LONG_FORM_BYTES = 4  # [PRM] offsets of bytes, shifts with three operands, immediates beyond seven bits
 
 DATA_REGISTERS = 8  # [PRM] R0-R7

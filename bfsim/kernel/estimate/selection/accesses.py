@@ -50,20 +50,20 @@ class Accesses:
         )
 
     def _access_bytes(self, each: Instruction) -> int | None:
-        """Bytes have no short form with an offset [PRM]."""
-        is_byte = each.bits == operations.BYTE_BITS
-        return operations.LONG_FORM_BYTES if is_byte and self._has_offset(each) else None
+        """The long form, for an offset that the short one has no room for: bytes have none there, others a few of their own width, upwards [PRM]."""
+        nbytes = each.bits // operations.BYTE_BITS
+        in_short = range(0, operations.SHORT_OFFSETS * nbytes if nbytes > 1 else 1, nbytes)
+        return None if self._offset(each) in in_short else operations.LONG_FORM_BYTES
 
-    def _has_offset(self, each: Instruction) -> bool:
+    def _offset(self, each: Instruction) -> int:
+        """By how many bytes an access is beyond its pointer."""
         variable = self.context.induction_variables.of.get(id(each))
         if variable is not None:
-            return variable.distance_of(each) != 0
+            return variable.distance_of(each)
         pointer = self.flow.instruction(each.operands[-1])
-        return (
-            pointer is not None
-            and pointer.opcode == "getelementptr"
-            and not pointer.operands[-1].startswith("%")
-        )
+        if pointer is None or pointer.opcode != "getelementptr" or not is_number(pointer.operands[-1]):
+            return 0
+        return int(pointer.operands[-1]) * pointee_nbytes(pointer)
 
     def _address(self, each: Instruction) -> str:
         """Return the pointer that an access uses: one that walks along, or one that was computed."""
