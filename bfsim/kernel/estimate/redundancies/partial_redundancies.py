@@ -1,7 +1,7 @@
 """Partial redundancies: an operation that changes nothing on one way to it is done on the other ways alone.
 
 Of `s + (v if v > t else 0)` one way has s already, so GCC makes `if v > t: s = s + v` of it, with a branch, where LLVM chooses between v
-and 0 and adds [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. What phiopt has made of a choice before is none any more:
+and 0 and adds [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. So is what one way knows: `x - last`, where last is x there. What phiopt has made of a choice before is none any more:
 minimum, maximum, absolute value, and a flag, be it shifted.
 """
 
@@ -34,6 +34,8 @@ NEUTRAL = {
 """On the right of these nothing is changed."""
 ABSORBING = {"mul": "0", "and": "0"}
 """With these nothing else counts."""
+SAME = {"sub": "0", "xor": "0", "or": "", "and": ""}
+"""What these give of a value and itself; nothing: that value."""
 SHIFTS = ("shl", "lshr", "ashr")
 SAME_IN_ALL_WIDTHS = 1 << 7
 """Numbers from 0 to before it."""
@@ -193,6 +195,8 @@ def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
         return left if right == "0" else None
     if left == "0" and opcode in SHIFTS:
         return left
+    if left == right and opcode in SAME:
+        return SAME[opcode] or left
     absorbed = ABSORBING.get(opcode)
     if absorbed in (left, right):
         return absorbed
