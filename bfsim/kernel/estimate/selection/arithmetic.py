@@ -25,6 +25,8 @@ class Arithmetic:
         self.emitter, self.append = emitter, emitter.append
         self.context, self.flow = emitter.context, emitter.context.flow
         self.divisions = divisions
+        self.factors = set[tuple[str, str]]()
+        """Bytes that have been extended for a product, with the block in which that was: other products there take the same."""
 
     def add(self, each: Instruction) -> None:
         if self.context.folding.in_shifted_sum(each):
@@ -126,7 +128,9 @@ class Arithmetic:
                 value = result or ""
         elif self._short(each) or self._is_made_narrow(each) or self.context.narrow.in_narrow_tree(each):
             for factor in dict.fromkeys((left, right)):
-                if self.context.narrow.extended_for_product(factor):
+                is_extended = (self.emitter.label, factor) in self.factors
+                if self.context.narrow.extended_for_product(factor) and not is_extended:
+                    self.factors.add((self.emitter.label, factor))
                     self.append(Op.EXTEND, each, None, DATA, (factor, DATA))
             self.append(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
         else:
