@@ -13,15 +13,23 @@ from bfsim.kernel.ir.widths import WORD
 
 CHOSEN = "chosen"
 """Beginning of the label of a block behind the two sides of a conditional expression, and of the name of its value (`emitting/values.py`)."""
+SUNK = ".value"
+"""End of the name of what several ways store."""
 NARROWED = ("add", "sub", "mul", "and", "or", "xor")
 
 
 def stored_bits(flow: ControlFlow, phi: Instruction) -> int:
     """Return how many bits of a choice are wanted, if all that is done with it is to store them; else those of a word."""
     users = flow.users.get(phi.result or "", [])
-    while len(users) == 1 and users[0].opcode == "trunc":
+    while len(users) == 1 and (users[0].opcode == "trunc" or _is_stored_behind(users[0])):
         users = flow.users.get(users[0].result or "", [])
     return users[0].bits if len(users) == 1 and users[0].opcode == "store" else WORD
+
+
+def _is_stored_behind(user: Instruction) -> bool:
+    """Whether a value is chosen to be stored where several ways that store to one place meet (`memory/sunk_stores.py`)."""
+    name = user.result or ""
+    return user.opcode == "phi" and name.startswith(f"%{CHOSEN}.") and name.endswith(SUNK)
 
 
 def is_narrowed(flow: ControlFlow, phi: Instruction) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from bfsim.kernel.estimate.choices.narrow_choices import CHOSEN
+from bfsim.kernel.estimate.choices.narrow_choices import CHOSEN, SUNK
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.edges import going_to
 from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, phi_of, renamed
@@ -64,7 +64,7 @@ def _sunk(flow: ControlFlow, block: BasicBlock, stores: Sequence[Instruction]) -
     are_wide = all(each is not None for each in wide)
     values = tuple(each or "" for each in wide) if are_wide else tuple(each.operands[0] for each in stores)
     kind = f"i{WORD}" if are_wide else _kind(first)
-    value = f"%{label}.value"
+    value = f"%{label}{SUNK}"
     rows = [each for each in block.instructions if each.opcode == "phi"]
     rows.append(phi_of(value, kind, zip(values, sources, strict=True), stores[0]))
     if are_wide:
