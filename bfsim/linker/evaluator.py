@@ -24,6 +24,9 @@ from bfsim.linker.script import (
 )
 from bfsim.linker.source import LdfLine, Source
 
+ADDRESSES = range(1 << 32)
+"""Of a Blackfin: one digit too many, and a segment would be gigabytes of what no chip has."""
+
 Files = frozenset[str]
 _start = attrgetter("start")
 
@@ -85,7 +88,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
     def value_of(self, name: str, offset: int) -> int:
         """Return the number that was assigned to a symbol above, outside the output sections."""
         if name not in self._constants:
-            problem = f"expression must be made of numbers and #define names, not '{name}'"
+            problem = f"expression must be made of numbers and #define names, not '{cut(name)}'"
             raise ExpressionError(offset, problem)
         return self._constants[name]
 
@@ -111,12 +114,16 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
                 name, f"segment '{name}' must have WIDTH(8), a Blackfin's, not WIDTH({given['WIDTH']})"
             )
         start = given["START"]
+        for keyword in ("START", "END"):
+            if given.get(keyword, 0) not in ADDRESSES:
+                problem = f"must {keyword} at an address of 32 bits, not at {_address(given[keyword])}"
+                raise self._error(name, f"segment '{name}' {problem}")
         if "END" in given and given["END"] < start:
             problem = f"must END at or after its START 0x{start:08X}, not at 0x{given['END']:08X}"
             raise self._error(name, f"segment '{name}' {problem}")
         nbytes = given["LENGTH"] if "LENGTH" in given else given["END"] - start + 1
-        if start < 0 or nbytes <= 0:
-            problem = f"must have a positive size from a positive address, not {nbytes} bytes from {start}"
+        if nbytes <= 0 or start + nbytes - 1 not in ADDRESSES:
+            problem = f"must have a positive size, and end at an address of 32 bits, not have {nbytes} bytes from 0x{start:08X}"
             raise self._error(name, f"segment '{name}' {problem}")
         segment = Segment(self._place(name), self._unique(name), start, nbytes, self._processor)
         self._check_disjoint(name, segment)
@@ -199,3 +206,8 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
 
     def either(self, left: bool, right: bool) -> bool:
         return left or right
+
+
+def _address(value: int) -> str:
+    """Return an address as messages have it, one with a sign, too."""
+    return f"{'-' * (value < 0)}0x{abs(value):08X}"

@@ -80,6 +80,12 @@ def test_macro_that_names_itself_ends(parse: Parse) -> None:
         segment(parse, "START(LOOP) LENGTH(1)", "#define LOOP (LOOP + 1)")
 
 
+def test_long_names_are_shortened_where_they_are_told(parse: Parse) -> None:
+    """A file that is no LDF may be one word of a megabyte."""
+    with pytest.raises(LinkError, match=r"not 'a+\[99920 more characters\]a+'"):
+        segment(parse, f"START({'a' * 100_000}) LENGTH(1)")
+
+
 def test_macros_that_explode_are_refused(parse: Parse) -> None:
     """A chain of macros that double each other stops at a bound instead of filling the memory."""
     doubling = "\n".join(f"#define M{i} M{i + 1} M{i + 1}" for i in range(40))
@@ -283,9 +289,18 @@ def test_mistakes_are_named_with_their_place(parse: Parse, text: str, message: s
     ("bounds", "message"),
     [
         ("START(8) END(7)", r"segment 'M' must END at or after its START 0x00000008, not at 0x00000007"),
-        ("START(8) LENGTH(0)", r"segment 'M' must have a positive size from a positive address, not 0 bytes"),
-        ("START(8) LENGTH(-4)", r"must have a positive size from a positive address, not -4 bytes from 8"),
-        ("START(-8) LENGTH(4)", r"must have a positive size from a positive address, not 4 bytes from -8"),
+        (
+            "START(8) LENGTH(0)",
+            r"segment 'M' must have a positive size, and end at an address of 32 bits, not have 0 bytes",
+        ),
+        ("START(8) LENGTH(-4)", r"must have a positive size, and .*, not have -4 bytes from 0x00000008"),
+        ("START(-8) LENGTH(4)", r"segment 'M' must START at an address of 32 bits, not at -0x00000008"),
+        ("START(8) END(-1)", r"segment 'M' must END at an address of 32 bits, not at -0x00000001"),
+        (
+            "START(0xFF800000) END(0xFF803FFFF)",
+            r"segment 'M' must END at an address of 32 bits, not at 0xFF803FFFF",
+        ),
+        ("START(0xFF800000) LENGTH(128M)", r"must have a positive size, and end at an address of 32 bits"),
         ("START(8)", r"must have one START and one END or LENGTH, not START"),
         ("START(8) START(9) END(9)", r"must have one START and one END or LENGTH, not START, START, END"),
         ("START(8) END(9) LENGTH(2)", r"must have one START and one END or LENGTH, not START, END, LENGTH"),
