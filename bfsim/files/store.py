@@ -42,7 +42,10 @@ def folder() -> Path:
     return _path(os.environ.get("BFSIM_CACHE_DIR") or platformdirs.user_cache_dir("bfsim"))
 
 
-_path = cache(Path)  # a start asks hundreds of times
+@cache
+def _path(name: str) -> Path:
+    """Return a folder by its name, in which nobody but a shell puts the home of `~`; a start asks for it hundreds of times."""
+    return Path(os.path.expanduser(name))  # noqa: PTH111  # `Path` raises for a user who is not there
 
 
 def can_keep() -> bool:

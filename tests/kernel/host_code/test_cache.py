@@ -335,6 +335,19 @@ def test_a_folder_that_cannot_be_written_is_told_of(
     assert not store.can_keep()
 
 
+def test_the_home_folder_may_be_written_as_in_a_shell(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A file of a CI service that sets BFSIM_CACHE_DIR to `~/...` made a folder called `~`."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    for name, folder in (
+        ("~/kept-here", tmp_path / "kept-here"),
+        ("~nobody-at-all/x", Path("~nobody-at-all/x")),
+    ):
+        monkeypatch.setenv("BFSIM_CACHE_DIR", name)
+        assert store.folder() == folder
+
+
 def test_a_new_folder_is_private(folder: Path, tmp_path: Path) -> None:
     """Nobody else writes in it, whatever the user's umask is."""
     before = os.umask(0)
