@@ -75,7 +75,10 @@ def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
 
     @wraps(simulate)
     def repeatable(*arguments: Given.args, **options: Given.kwargs) -> Run:
-        bound = signature(simulate).bind(*arguments, **options)
+        try:
+            bound = signature(simulate).bind(*arguments, **options)
+        except TypeError as error:  # which names no function
+            raise TypeError(f"simulate() {error}") from None
         bound.apply_defaults()
         require_kinds(bound.arguments)
         with _ONE_AT_A_TIME, streams_kept():

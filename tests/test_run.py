@@ -205,6 +205,15 @@ def test_bad_input_is_told_by_its_name(
         simulate(**good | how)  # type: ignore[arg-type]
 
 
+def test_an_argument_that_there_is_not_is_told_with_the_function() -> None:
+    """`got an unexpected keyword argument 'frame'` stood at the end of twenty lines of Python's `inspect`."""
+    with pytest.raises(
+        TypeError, match=r"^simulate\(\) got an unexpected keyword argument 'frame'$"
+    ) as caught:
+        simulate(frame=1)  # type: ignore[call-arg]
+    assert caught.traceback[-1].path.name == "run.py"
+
+
 def test_a_recording_that_breaks_off_is_told_with_its_name(home: Path) -> None:
     """Half a file: the error is the recording's, and nothing was reported before it."""
     recording = record(home / "drive.mcap", 20)
