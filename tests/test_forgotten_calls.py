@@ -67,6 +67,14 @@ def test_a_generator_that_nobody_takes_is_told_with_its_line(folder: Path, name:
     )
 
 
+def test_one_under_a_name_that_nobody_reads_is_told_too(folder: Path) -> None:
+    """`count = lines(core)` took no time, without a word."""
+    with pytest.raises(
+        FirmwareError, match=r"^lines\(\.\.\.\) does nothing: write `yield from` before it \(.*eye\.py:20\)$"
+    ):
+        load_firmware(written("count = lines(core)"))
+
+
 def test_main_loops_that_a_function_makes_are_looked_at_as_well(folder: Path) -> None:
     """What they close over may call it."""
     text = (
@@ -129,6 +137,8 @@ def test_a_wait_for_a_ring_that_nobody_takes_is_told(folder: Path, call: str) ->
         "unknown(core)",
         "Eye().see(core)",
         "later = lines(core); yield from later",
+        "global later; later = lines(core)",
+        "core.later = lines(core)",
         "lines = print; lines(core)",
         "[lines(core) for each in 'AB']",
     ],

@@ -1,7 +1,7 @@
 """Generator functions of firmware that it calls as if they were functions: nothing of them runs, for lack of a `yield from`.
 
 Waits that a core makes are noticed as firmware runs (`machine.core.waits`). Of the firmware's own ones its source tells: a statement that
-is nothing but such a call does nothing. So it does of waits of rings: a ring that is in use may have what is asked for at once.
+is nothing but such a call does nothing, and neither does one that gives it a name which nobody reads. So it does of waits of rings: a ring that is in use may have what is asked for at once.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 def check_calls(firmware: Firmware) -> None:
     """Look at the main loops of firmware that is not built in, and at what they call.
 
-    Raises FirmwareError for a statement of a generator function that does nothing but make a generator.
+    Raises FirmwareError for a statement that does nothing but make a generator.
     """
     pending: list[Any] = [*firmware.mains.values()]
     seen: set[FunctionType] = set()
@@ -80,12 +80,23 @@ def _check(function: FunctionType) -> None:
         if first not in lines:
             continue
         for statement in _own_nodes(each):
-            if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
+            if isinstance(statement, ast.Expr | ast.Assign) and isinstance(statement.value, ast.Call):
+                if isinstance(statement, ast.Assign) and not _is_forgotten(statement.targets, each):
+                    continue
                 called = statement.value.func
                 if _makes_a_generator(called, (*above, each), function.__globals__):
                     raise FirmwareError(
                         f"{ast.unparse(called)}(...) does nothing: write `yield from` before it ({file}:{statement.lineno})"
                     )
+
+
+def _is_forgotten(targets: Sequence[ast.expr], function: ast.AST) -> bool:
+    """Whether what is assigned is kept under a local name that nobody in the function reads."""
+    names = {each.id for each in targets if isinstance(each, ast.Name)}
+    nodes = list(ast.walk(function))
+    read = {each.id for each in nodes if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Load)}
+    elsewhere = {name for each in nodes if isinstance(each, ast.Global | ast.Nonlocal) for name in each.names}
+    return len(names) == len(targets) and names.isdisjoint(read | elsewhere)
 
 
 def _parsed(file: str) -> ast.AST:
