@@ -17,11 +17,12 @@ from itertools import takewhile
 from bfsim.kernel.host_code.entry import RETURN
 from bfsim.kernel.host_code.pointers import Origin, Pointers, nbytes_of
 from bfsim.kernel.ir.reading import DEFINE, KERNEL_CALL, LABEL, STEPPING
+from bfsim.kernel.ir.text import COUNTS
 from bfsim.kernel.language import tree
 
 ACCESS = re.compile(r"^(  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr )(%[\w.$-]+)(.*)$")
 DIVISION = re.compile(r"^  %[\w.$-]+ = ([su])(?:div|rem)(?: exact)? (i\d+) ([^,]+), ([^,]+)")
-MASK = re.compile(r"^  (%[\w.$-]+) = and i32 ([^,]+), 31\b")
+MASK = re.compile(rf"^  (%{re.escape(COUNTS)}[\d.]*) = and i32 ([^,]+), 31\b")
 SHIFT = re.compile(r"^  %[\w.$-]+ = (?:shl|lshr|ashr) i32 [^,]+, (%[\w.$-]+)")
 DEBUG = re.compile(r"!dbg !(\d+)")
 LOCATION = re.compile(r"^!(\d+) = (?:distinct )?!DILocation\((.*)\)")
