@@ -1,7 +1,8 @@
 """Loops of so few and so small iterations that a compiler writes them out [try_unroll_loop_completely in tree-ssa-loop-ivcanon.cc].
 
 GCC does so at -O2 where the code does not grow by its own estimate: two thirds of the iterations without what becomes
-constant in them, against one iteration. LLVM is asked to unroll those and no others.
+constant in them, against one iteration. So of a loop that may end early, whose other ends were guessed to be seldom before [PRED_LOOP_EXIT].
+LLVM is asked to unroll those and no others.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from bfsim.kernel.estimate.prediction.loop_guards import guards_of
 from bfsim.kernel.estimate.prediction.predict import LOOP_GUARD
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.ir.reading import placed_rows, read_module
-from bfsim.kernel.ir.text import TARGET, BasicBlock, Instruction, Routine, is_number
+from bfsim.kernel.ir.text import LEAVES, TARGET, BasicBlock, Instruction, Routine, is_number
 from bfsim.kernel.ir.writing import with_names, write_module
 
 MOST_ITERATIONS = 8  # [max-completely-peel-times]
@@ -61,15 +62,29 @@ def _hinted(routine: Routine, loops: Sequence[tuple[Loop, bool]]) -> Routine:
         if loop.latch in unrolled
         for guard in guards_of(flow, loop, around)
     )
-    return replace(routine, blocks=tuple(_guessed(each, guards.get(each.label)) for each in routine.blocks))
+    guesses = {label: (way, GUARDED) for label, way in guards.items()}
+    for loop in flow.loops:
+        if loop.latch in unrolled:
+            guesses |= {
+                label: (_leaving(flow, loop, label), LEAVES)
+                for label in flow.exits(loop)
+                if label != loop.latch
+            }
+    return replace(routine, blocks=tuple(_guessed(each, guesses.get(each.label)) for each in routine.blocks))
 
 
-def _guessed(block: BasicBlock, way: str | None) -> BasicBlock:
-    """Return a block with the guess that its test seldom leads this way, if there is no other guess."""
+def _leaving(flow: ControlFlow, loop: Loop, label: str) -> str:
+    """The way out of a loop from one of its blocks."""
+    return next(way for way in flow.blocks[label].successors if way not in loop.blocks)
+
+
+def _guessed(block: BasicBlock, guess: tuple[str, tuple[int, int]] | None) -> BasicBlock:
+    """Return a block with the guess that its test seldom leads a way, and how seldom, if there is no other guess."""
     *rows, end = block.instructions
-    if way is None or end.weights or end.opcode != "br":
+    if guess is None or end.weights or end.opcode != "br":
         return block
-    weights = GUARDED if block.successors[0] == way else GUARDED[::-1]
+    way, seldom = guess
+    weights = seldom if block.successors[0] == way else seldom[::-1]
     return replace(block, instructions=(*rows, replace(end, weights=weights, hint="")))
 
 
@@ -90,7 +105,7 @@ def _loops(routine: Routine) -> Iterator[tuple[Loop, bool]]:
 def _shrinks(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> bool:
     inside = [each for label in flow.inside(loop) for each in flow.blocks[label].instructions]
     iterations = evolution.iterations(loop)
-    if iterations is None or iterations > MOST_ITERATIONS or flow.exits(loop) != [loop.latch]:
+    if iterations is None or iterations > MOST_ITERATIONS or loop.latch not in flow.exits(loop):
         return False
     if any(each.is_call or each.is_division for each in inside):
         return False
