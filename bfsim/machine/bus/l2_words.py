@@ -37,13 +37,16 @@ PUT, LOAD, DRAIN = range(3)
 
 
 @native
-def play_words(state: State, until: int) -> bool:
-    """Play what the cores want of L2 until one of them wants something else; return whether there was anything.
+def play_words(state: State, core: int, until: int) -> bool:
+    """Play what the cores want of L2, `core` first, until one of them wants something else; return whether there was anything.
 
     Until tick `until` no DMA can want the port. The last access of a call is left, and so is one before something else.
     """
-    mine, its = request_of(state, 0), request_of(state, 1)
-    limit = min(until, left_until(state, 0, mine), left_until(state, 1, its))
+    mine = request_of(state, core)
+    if not begins(state, mine):
+        return False
+    its = request_of(state, w.CORES - 1 - core)
+    limit = min(until, left_until(state, w.CORES - 1 - core, its))
     free, last, had_any = state[w.L2_FREE], state[w.LAST_CORE_AT_L2], False
     held, latency = hold_of(state, w.CORE_WORD_BYTES), stall_of_word(state)
     while True:
@@ -73,11 +76,16 @@ def play_words(state: State, until: int) -> bool:
             free, last = at + held, mine[CORE]
             mine = load(state, mine, at, latency)
         had_any = True
-    if free != state[w.L2_FREE]:
-        state[w.L2_FREE], state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = free, last, 0
+    keep_port(state, free, last)
     keep(state, mine)
     keep(state, its)
     return had_any
+
+
+@native
+def begins(state: State, request: Request) -> bool:
+    """Whether a core's next access is played here: most often it is soon known where none is."""
+    return request[CORE] != w.NONE and (request[SPIN] != 0 or is_followed(state, request))
 
 
 @native
@@ -148,6 +156,13 @@ def left_until(state: State, core: int, request: Request) -> int:
     return min(
         state[w.MASTERS_AT + w.CORE_A + core + w.READY], state[w.MASTERS_AT + w.STORES_A + core + w.READY]
     )
+
+
+@native
+def keep_port(state: State, free: int, last: int) -> None:
+    """Keep when the port is free, and who had it last."""
+    if free != state[w.L2_FREE]:
+        state[w.L2_FREE], state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = free, last, 0
 
 
 @native

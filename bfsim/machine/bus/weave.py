@@ -214,7 +214,7 @@ def go_ahead(state: State, core: int, at: int, until: int) -> bool:
     """
     if state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN]:
         core = w.CORES - 1 - core
-    return fetch_ahead(state, core, at, until) or play_words(state, until)
+    return fetch_ahead(state, core, at, until) or play_words(state, core, until)
 
 
 @native
