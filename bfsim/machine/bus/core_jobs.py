@@ -43,11 +43,16 @@ def charge_site(state: State, core: int, site: int, reason: int, cycles: int) ->
 @native
 def cycles_until(state: State, issued: int, done: int) -> int:
     """Return for how many cycles an access that was `issued` at a tick stalls a core if it is `done` at another: all but its own one."""
-    ticks, cclk = done - issued, state[w.CCLK]
-    if ticks <= cclk:
-        return 0
-    # a division takes the host longer than all else here
-    return ticks - 1 if cclk == 1 else (ticks - 1) // cclk
+    ticks = done - issued
+    return whole_cycles(state, ticks - 1) if ticks > state[w.CCLK] else 0
+
+
+@native
+def whole_cycles(state: State, ticks: int) -> int:
+    """Return how many whole cycles there are in so many ticks."""
+    return (
+        ticks if state[w.CCLK] == 1 else ticks // state[w.CCLK]
+    )  # a division takes the host longer than all else here
 
 
 @native

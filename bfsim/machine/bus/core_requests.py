@@ -9,7 +9,7 @@ from __future__ import annotations
 from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import bytes_of, charge, go_past, next_entry, site_of, wait
+from bfsim.machine.bus.core_jobs import bytes_of, charge, go_past, next_entry, site_of, wait, whole_cycles
 from bfsim.machine.bus.core_logs import kind_of, site_at
 from bfsim.machine.bus.l2_port import read_l2, test_and_set, try_lock
 from bfsim.machine.bus.memory_owners import owner_for
@@ -56,7 +56,6 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     arbitration, then perhaps for a refresh, and else for the page.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
-    cclk = state[w.CCLK]
     through = access(state, at, offset, False)
     nbytes = bytes_of(state, kind)
     more = max(0, (nbytes >> state[w.WORD_BITS]) - 1)
@@ -66,19 +65,7 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
         whole = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
         if kind != log.FETCH:
             state[job + w.LINE_DONE] = whole
-    owner = owner_for(state, core, offset, site_of(state, core))
-    count_access(state, w.CORE_A + core, owner, 1 + more)
-    count_traffic(state, w.CORE_A + core, owner, False, nbytes)
-    state[w.LAST_CORE] = core
-    edge = state[w.MASTERS_AT + w.CORE_A + core + w.READY]
-    done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
-    cycles = wait(state, core, done)
-    waited = refreshed = 0  # most often; a division takes the host longer than all else here
-    if state[w.BEGAN] > edge:
-        waited = min(cycles, (state[w.BEGAN] - edge) // cclk)
-    if state[w.REFRESH_WAIT] > 0:
-        granted = state[w.BEGAN] + state[w.REFRESH_WAIT]
-        refreshed = min(cycles - waited, (granted - max(edge, state[w.BEGAN])) // cclk)
+    count_read(state, core, offset, more, nbytes)
     reason = (
         w.PAGE_HIT + state[w.PAGE_CLASS]
         if kind == log.LOAD
@@ -86,9 +73,31 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
         if kind == log.FILL
         else w.CODE_FETCH
     )
+    return charge_read(state, core, through, reason)
+
+
+@native
+def count_read(state: State, core: int, offset: int, more: int, nbytes: int) -> None:
+    """Count what a core's present access has just read from SDRAM: a word and so many more."""
+    owner = owner_for(state, core, offset, site_of(state, core))
+    count_access(state, w.CORE_A + core, owner, 1 + more)
+    count_traffic(state, w.CORE_A + core, owner, False, nbytes)
+    state[w.LAST_CORE] = core
+
+
+@native
+def charge_read(state: State, core: int, through: int, reason: int) -> int:
+    """Charge what a core's present access waits for data of SDRAM that are through at a tick; return when they are at the core."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    edge = state[w.MASTERS_AT + w.CORE_A + core + w.READY]
+    done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
+    cycles = wait(state, core, done)
+    waited, refreshed = min(cycles, whole_cycles(state, max(0, state[w.BEGAN] - edge))), 0
+    if state[w.REFRESH_WAIT] > 0:
+        granted = state[w.BEGAN] + state[w.REFRESH_WAIT]
+        refreshed = min(cycles - waited, whole_cycles(state, granted - max(edge, state[w.BEGAN])))
     charge(state, core, reason, cycles - waited - refreshed)
+    charge(state, core, w.ARBITRATION, waited)  # often nothing, but the host does not know when
     if refreshed:
         charge(state, core, w.REFRESHING, refreshed)
-    if waited:
-        charge(state, core, w.ARBITRATION, waited)
     return done

@@ -21,6 +21,15 @@ def others_quiet_until(state: State, until: int) -> int:
 
 
 @native
+def devices_quiet_until(state: State, until: int) -> int:
+    """Until when no DMA but a memory DMA asks for its bus."""
+    limit = until
+    for number in range(w.MDMA1_0):
+        limit = min(limit, state[w.MASTERS_AT + number + w.READY])
+    return min(limit, state[w.MASTERS_AT + w.IMDMA_0 + w.READY], state[w.MASTERS_AT + w.IMDMA_1 + w.READY])
+
+
+@native
 def copies_quiet_until(state: State, until: int) -> int:
     """Until when none of the memory DMAs asks for its bus."""
     limit = until

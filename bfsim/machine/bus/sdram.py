@@ -71,7 +71,12 @@ def hold_up(state: State, now: int) -> bool:
 def access(state: State, now: int, offset: int, write: bool) -> int:
     """Read or write the word at `offset`, not before `now` (on an SCLK edge); return when its data are through."""
     hold_up(state, max(now, state[w.COMMAND_FREE]))
-    command = max(now, state[w.COMMAND_FREE])
+    return access_at(state, max(now, state[w.COMMAND_FREE]), offset, write)
+
+
+@native
+def access_at(state: State, command: int, offset: int, write: bool) -> int:
+    """Do that from the tick of a `command` on: no refresh is due, and the bus is free."""
     state[w.REFRESH_WAIT] = (
         state[w.REFRESH_ENDS] - state[w.REFRESH_BEGAN] if command == state[w.REFRESH_ENDS] else 0
     )

@@ -21,8 +21,9 @@ from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
 from bfsim.machine.bus.l2_words import play_words
 from bfsim.machine.bus.pacing import arrival
-from bfsim.machine.bus.runs import copies_quiet_until, l2_left_until, others_quiet_until
+from bfsim.machine.bus.runs import copies_quiet_until, devices_quiet_until, l2_left_until, others_quiet_until
 from bfsim.machine.bus.sdram import hold_up
+from bfsim.machine.bus.sdram_words import is_word, play_words
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.store_buffer import serve_stores
 from bfsim.machine.bus.stretches import act, resume, who_acts
@@ -182,7 +183,7 @@ def is_more_urgent(state: State, number: int, other: int, at: int) -> bool:
 
 
 @native
-def serve_cores(state: State, until: int) -> int:
+def serve_cores(state: State, memory: Memory, until: int) -> int:
     """Serve the cores for as long as no DMA comes between; return who is woken.
 
     At the port of L2 they go ahead of the DMAs that use the SDRAM bus: neither keeps the other waiting. Where buffers or code lie
@@ -191,12 +192,18 @@ def serve_cores(state: State, until: int) -> int:
     number, at = first_of_cores(state, until)
     if number == w.NONE:
         return w.NONE
-    l2_until, sdram_until = l2_left_until(state, w.NONE, until), until
-    for other in range(w.STORES_A):
-        sdram_until = min(sdram_until, state[w.MASTERS_AT + other + w.READY])
+    l2_until, sdram_until = l2_left_until(state, w.NONE, until), devices_quiet_until(state, until)
     while number != w.NONE and at < l2_until:
         in_sdram = state[w.MASTERS_AT + number + w.USES] == w.SDRAM
-        if in_sdram and (at >= sdram_until or hold_up(state, at)):
+        if in_sdram and at < sdram_until and is_word(state, number):
+            woken = play_words(state, memory, min(l2_until, sdram_until))
+            if woken != w.NONE:
+                return woken
+            number, at = first_of_cores(state, l2_until)
+            if number == w.NONE:
+                return w.NONE
+            in_sdram = state[w.MASTERS_AT + number + w.USES] == w.SDRAM
+        if in_sdram and (at >= copies_quiet_until(state, sdram_until) or hold_up(state, at)):
             return w.NONE
         if in_sdram or number < w.CORE_A or not go_ahead(state, number - w.CORE_A, at, l2_until):
             woken = serve_core_or_stores(state, number, at, l2_until)
@@ -247,7 +254,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
 def grant(state: State, memory: Memory, until: int) -> int:
     """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE."""
     while True:
-        woken = serve_cores(state, until)
+        woken = serve_cores(state, memory, until)
         if woken != w.NONE:
             return woken
         first, at = first_request(state, until)
