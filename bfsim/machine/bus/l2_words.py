@@ -34,7 +34,7 @@ PUT, LOAD, DRAIN = range(3)
 
 
 @native
-def play_words(state: State, core: int, until: int) -> bool:
+def play_l2_words(state: State, core: int, until: int) -> bool:
     """Play what the cores want of L2, `core` first, until one of them wants something else; return whether there was anything.
 
     Until tick `until` no DMA can want the port. The last access of a call is left, and so is one before something else.

@@ -32,7 +32,7 @@ def is_word(state: State, number: int) -> bool:
 
 
 @native
-def play_words(state: State, memory: Memory, until: int) -> int:
+def play_sdram_words(state: State, memory: Memory, until: int) -> int:
     """Play words of SDRAM before tick `until`, and what a core does between two of its own; return who is woken.
 
     By then no DMA but a memory DMA asks for anything, nor does one want the port of L2.

@@ -19,11 +19,11 @@ from bfsim.machine.bus.core_jobs import start_jobs
 from bfsim.machine.bus.core_requests import serve_core
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.fetch_requests import fetch_ahead
-from bfsim.machine.bus.l2_words import play_words
+from bfsim.machine.bus.l2_words import play_l2_words
 from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.runs import copies_quiet_until, devices_quiet_until, l2_left_until, others_quiet_until
 from bfsim.machine.bus.sdram import hold_up
-from bfsim.machine.bus.sdram_words import is_word, play_words
+from bfsim.machine.bus.sdram_words import is_word, play_sdram_words
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.store_buffer import serve_stores
 from bfsim.machine.bus.stretches import act, resume, who_acts
@@ -196,7 +196,7 @@ def serve_cores(state: State, memory: Memory, until: int) -> int:
     while number != w.NONE and at < l2_until:
         in_sdram = state[w.MASTERS_AT + number + w.USES] == w.SDRAM
         if in_sdram and at < sdram_until and is_word(state, number):
-            woken = play_words(state, memory, min(l2_until, sdram_until))
+            woken = play_sdram_words(state, memory, min(l2_until, sdram_until))
             if woken != w.NONE:
                 return woken
             number, at = first_of_cores(state, l2_until)
@@ -221,7 +221,7 @@ def go_ahead(state: State, core: int, at: int, until: int) -> bool:
     """
     if state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN]:
         core = w.CORES - 1 - core
-    return fetch_ahead(state, core, at, until) or play_words(state, core, until)
+    return fetch_ahead(state, core, at, until) or play_l2_words(state, core, until)
 
 
 @native
