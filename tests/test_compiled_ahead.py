@@ -23,11 +23,12 @@ from bfsim.shipped import FIRMWARE
 from tests.eyes import FIRMWARE as EYES
 
 KILLED = """
-import os, signal, time
+import multiprocessing, os, signal, time
 from bfsim.kernel.build import Build
 from bfsim.run import simulate
 Build.keep = lambda *_, **__: time.sleep(0.2)
 def kill(*_):
+    print(len(multiprocessing.active_children()), flush=True)
     os.kill(os.getpid(), signal.SIGKILL)
 simulate(on_call=kill)
 """
@@ -119,8 +120,11 @@ def test_a_system_without_room_for_a_process_is_no_mistake(
 def test_nobody_outlives_a_run_that_is_killed(tmp_path: Path) -> None:
     """Not for longer than it takes to compile a kernel."""
     environment = os.environ | {"BFSIM_CACHE_DIR": str(tmp_path)}
-    with subprocess.Popen([sys.executable, "-c", KILLED], env=environment, start_new_session=True) as process:
-        process.wait()
+    command = [sys.executable, "-c", KILLED]
+    with subprocess.Popen(
+        command, env=environment, start_new_session=True, stdout=subprocess.PIPE
+    ) as process:
+        assert int(process.communicate()[0]) >= 1
     with pytest.raises(ProcessLookupError):
         for _ in range(200):
             os.killpg(process.pid, 0)

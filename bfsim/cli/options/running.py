@@ -60,8 +60,9 @@ _RUN_PARAMETERS = (
         "--sanitize",
         is_flag=True,
         help="Run every kernel twice, first as it is written: an index outside an array or a division by zero is then an "
-        "error even where the compiler would leave it out, and so is a shift by less than 0 or more than 31. Without it, what estimated code does is checked; where the "
-        "compiler's own code runs that does not come with bfsim, the first frame is run twice. Slower.",
+        "error even where the compiler would leave it out, and so is a shift by less than 0 or more than 31. Without it, what "
+        "estimated code does is checked; where the compiler's own code runs that does not come with bfsim, the first frame is "
+        "run twice. Slower.",
     ),
 )
 
