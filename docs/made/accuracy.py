@@ -65,15 +65,15 @@ def of_the_firmware() -> str:
 
     def cells(variant: str) -> tuple[str, ...]:
         error = firmware_accuracy.frame_error(rows, variant)
-        side = "dear" if error.signed > 0 else "cheap"
+        side = "high" if error.signed > 0 else "low"
         return MAY[variant], f"{abs(error.signed):.1f} % too {side}", f"{error.by_share:.1f} % off"
 
     plain = next(iter(MAY))
     farthest = sorted(rows, key=lambda each: -abs(each.error(plain)))[:SHOWN]
     named = ", ".join(f"`{each.kernel}` {each.error(plain):+.0f} %" for each in farthest)
     return (
-        f"{len(rows)} of its kernels are {firmware_accuracy.covered(rows, LEVEL):.1f} % of a frame's cycles.\n\n"
-        + table(["GCC may", "a frame is predicted", "kernel by kernel, by share"], map(cells, MAY))
+        f"{len(rows)} of its kernels make up {firmware_accuracy.covered(rows, LEVEL):.1f} % of a frame's cycles.\n\n"
+        + table(["GCC may", "estimate of a frame", "kernel by kernel, weighted by share"], map(cells, MAY))
         + f"\n\nThe largest deviations: {named}."
     )
 

@@ -41,7 +41,9 @@ def of_the_mean(column: Column) -> str:
         (row, f"{found / column.robot[row]:.2f}", f"{column.fitted[row] / column.robot[row]:.2f}")
         for row, found in column.default.items()
     )
-    return table(["mean of three scenes, by the robot's", "nothing fitted", "fitted to one of them"], rows)
+    return table(
+        ["mean of three scenes, relative to the robot", "nothing fitted", "fitted to one of them"], rows
+    )
 
 
 def main(folder: Path) -> None:
