@@ -108,11 +108,11 @@ PREDICTED = (
     "low",
     "`thesis`",
     "high",
-    "by robot",
+    "/ robot",
     "fitted",
-    "by robot",
+    "/ robot",
     "`tinyphoon`",
-    "robot by it",
+    "robot / `tinyphoon`",
 )
 """Titles of `cells`."""
 

@@ -46,10 +46,10 @@ def of_smaller_pictures(whole: Times, smaller: Times) -> Iterator[Claim]:
     yield (
         "if its first three rows shrink to a quarter and the others stay",
         in_hz(quarter),
-        f"what stays of each row: {shares}",
+        f"remaining share of each row: {shares}",
     )
     yield (
-        "if its rows shrink as ours, and each picture is captured before it is processed",
+        "if its rows shrink like ours, and each picture is captured before it is processed",
         in_hz(sum(robot[row] * smaller[row] / whole[row] for row in ROWS) + CAMERA_MS),
         in_hz(smaller[FRAME] + CAMERA_MS),
     )
@@ -67,7 +67,7 @@ def of_an_area(whole: Times, area: Times) -> Iterator[Claim]:
     yield (
         "320x240, and an area of 300x200, if each picture is captured before it is processed",
         "4.5 Hz, above 5 Hz",
-        f"of the robot's frame {in_hz(robot + CAMERA_MS)}, {in_hz(robot / gain + CAMERA_MS)}",
+        f"from the robot's frame {in_hz(robot + CAMERA_MS)}, {in_hz(robot / gain + CAMERA_MS)}",
     )
 
 
@@ -81,7 +81,7 @@ def of_balls(folder: Path) -> Claim:
     numbers = range(1, MOST_BALLS + 1)
     slope, none = linear_regression(numbers, found)
     return (
-        "shape detection rises linearly with the balls, significantly",
+        "shape detection rises linearly and significantly with the number of balls",
         "said",
         f"{none:.1f} ms and {slope:.2f} ms a ball, R² {correlation(numbers, found) ** 2:.3f} for 1 to {MOST_BALLS}",
     )
@@ -96,7 +96,7 @@ def of_content(columns: dict[str, Times]) -> Claim:
 
     robots = [robot_times(cells) for _, cells in COLUMNS.values()]
     return (
-        "content changes most the time of lines and shapes",
+        "content mostly changes the time of lines and shapes",
         "; ".join(spread(robots, row) for row in ROWS[:-1]),
         "; ".join(spread(list(columns.values()), row) for row in ROWS[:-1]),
     )

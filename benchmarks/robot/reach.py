@@ -76,9 +76,9 @@ def in_a_sentence(found: list[Reach]) -> str:
         min(found, key=lambda each: each.farthest_frame),
     )
     return (
-        f"Of the {len(found)} settings, {in_words(by_rows.setting)} has the rows of the other two columns nearest: the farthest is "
+        f"Of the {len(found)} settings, {in_words(by_rows.setting)} comes closest in the rows of the other two columns: the worst is "
         f"{by_rows.farthest_row:.0%} off, and the frames are {' and '.join(f'{each:.2f}' for each in by_rows.frames)} of the robot's. "
-        f"The nearest frames, {' and '.join(f'{each:.2f}' for each in by_frames.frames)}, have a row that is {by_frames.farthest_row:.0%} off."
+        f"The closest frames, {' and '.join(f'{each:.2f}' for each in by_frames.frames)}, come with a row that is {by_frames.farthest_row:.0%} off."
     )
 
 
