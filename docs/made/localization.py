@@ -62,8 +62,8 @@ def said(runs: list[list[Step]]) -> str:
     return (
         f"On the drive of {len(runs[0])} frames, over {len(runs)} seeds and from frame {SETTLED} on, the place is off by {np.mean(mm):.0f} mm\n"
         f"(median {np.median(mm):.0f}, at most {max(mm):.0f}) and the heading by {np.mean(deg):.1f} degrees "
-        f"(median {np.median(deg):.1f}, at most {max(deg):.1f}). By the wheels\n"
-        f"alone, from the true start, the robot is {np.mean(wheels):.0f} mm off at the end. The picture is of seed {SEEDS[0]}.\n\n"
+        f"(median {np.median(deg):.1f}, at most {max(deg):.1f}). With the\n"
+        f"wheels alone, from the true start, the robot is {np.mean(wheels):.0f} mm off at the end. The picture shows seed {SEEDS[0]}.\n\n"
     )
 
 
