@@ -26,10 +26,10 @@ def boards(name: str | None, settings: dict[str, str]) -> None:
     """List the boards that --board takes; with NAME, print every number of that board.
 
     Each number stands beside its path, which --set takes. Units are in the names: _cclk and _sclk are cycles of the core
-    and of the bus, and nCL, nRAS, nRP, nRCD and nWR are SCLK cycles, too. With --set, what changes comes first, with what
-    follows from it: the clocks from the PLL, or the PLL from the clocks, and the memory map from the SDRAM.
+    and of the bus; nCL, nRAS, nRP, nRCD and nWR are SCLK cycles, too. With --set, the changes come first, with what follows
+    from them: the clocks from the PLL, or the PLL from the clocks, and the memory map from the SDRAM.
 
-    NAME may also be a board of yours: FILE.py:NAME, or PACKAGE:NAME.
+    NAME may also be your own board, FILE.py:NAME or PACKAGE:NAME.
 
     \b
     Examples:

@@ -49,16 +49,18 @@ _OUTPUT_OPTIONS = [
     type=click.Path(path_type=Path),
     help="TOML file with the limits, kept in your repository.",
 )
-@click.option("--case", "name", metavar="NAME", help="Check or update the run of that name only.")
-@click.option("--update", is_flag=True, help="Make what is measured the limits; adds the run if it is new.")
-@click.option("--reason", metavar="TEXT", help="Why --update loosens limits: is kept in the file.")
+@click.option("--case", "name", metavar="NAME", help="Check or update only the run of this name.")
+@click.option(
+    "--update", is_flag=True, help="Make the measured figures the limits; add the run if it is new."
+)
+@click.option("--reason", metavar="TEXT", help="Why --update loosens limits; kept in the file.")
 @json_option("every verdict and figure")
 @takes(_OUTPUT_OPTIONS)
 @click.option(
     "--history",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Append a line for each run, JSON with commit, configuration and figures, and draw the trend.",
+    help="Append a line of JSON for each run, with commit, configuration and figures, and draw the trend.",
 )
 def check(
     path: Path,
@@ -70,17 +72,17 @@ def check(
     sanitize: bool,
     **what: Any,
 ) -> None:
-    """Check all runs in a baseline file, or that of RECORDING and options, and exit with 1 if a limit is broken.
+    """Check all runs in a baseline file, or only that of RECORDING and the options; exit with 1 if a limit is broken.
 
-    Limits of the last --update are on frame rate, latency, medians and maxima of stages and frames, memory, and what was
-    found; a run may be worse by its tolerance_percent. Beside them stands what you `require` yourself. Being faster breaks
-    nothing.
+    The last --update set limits on frame rate, latency, medians and maxima of stages and frames, memory, and what was
+    found. A run may be worse by its tolerance_percent. The file also has your own requirements (`require`). Being faster
+    breaks nothing.
 
     \b
     Examples:
       bfsim check --baseline bfsim.toml --update     once, then commit the file
       bfsim check --baseline bfsim.toml              after every change: all runs in it
-      bfsim check drive.mcap --ldf l2 --baseline bfsim.toml --update     one run more
+      bfsim check drive.mcap --ldf l2 --baseline bfsim.toml --update     add a run
       bfsim check --baseline bfsim.toml --update --reason "a second ball"
     """
     from bfsim.checking import arguments_of, require_comparable, require_held

@@ -42,7 +42,7 @@ class _Area(click.ParamType[tuple[int, int, int, int]]):
     "--script",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="What the firmware's devices are told, as for `bfsim run`: thresholds of colours that hold in that frame.",
+    help="JSON or TOML file as for `bfsim run`: colours use the thresholds that hold in that frame.",
 )
 @click.option(
     "--grey",
@@ -68,8 +68,8 @@ def colours(
 ) -> None:
     """Print what the firmware calls each colour of PICTURE, in degrees of its hue, and how much of the picture has it.
 
-    PICTURE is an image file, or a recording (see `bfsim record`); without it, the built-in one. Below the table the firmware says which white balance
-    would make the picture grey on average, and with --grey the patch.
+    PICTURE is an image file, or a recording (see `bfsim record`); without it, the built-in one. Below the table the
+    firmware says which white balance would make the picture grey on average, or with --grey the patch.
 
     \b
     Examples:

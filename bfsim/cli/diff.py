@@ -48,13 +48,13 @@ def _run(**what: Any) -> dict[str, Any]:
     show_default=True,
     help="Show the N causes that contribute most.",
 )
-@json_option("all of it")
+@json_option("everything")
 @click.option("--markdown", is_flag=True, help="Print it as Markdown, for a comment on a pull request.")
 @click.option(
     "--html",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Write all of it as one HTML page, too; with the pictures of the frames that changed most, of what is run on the spot.",
+    help="Also write everything as one HTML page, with the pictures of the frames that changed most, if run on the spot.",
 )
 def diff(
     before: str, after: str, top: int, json_path: Path | None, markdown: bool, html: Path | None
@@ -62,8 +62,9 @@ def diff(
     """Print what differs between two runs: the configuration, then the cycles by stage, kernel, source line and cause.
 
     BEFORE and AFTER are each a result, FILE.json as `bfsim run --json` writes it; a run of a baseline of `bfsim check`,
-    FILE.toml or FILE.toml:NAME; or in quotes what would stand behind `bfsim run`, which is then run on the spot. The
-    contributions sum to the difference. Waits for the other core or for the cameras are shown apart: they follow from the rest.
+    FILE.toml or FILE.toml:NAME; or, in quotes, the arguments of a `bfsim run`, which is then run on the spot. The
+    contributions sum to the difference. Waits for the other core or for the cameras are shown apart, because they follow
+    from the rest.
 
     \b
     Examples:

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 @click.argument("kernel")
 @takes_a_run
 @click.option("--run", "runs", is_flag=True, help="Run the firmware first, and add how often each line ran.")
-@json_option("the lines, or instructions,")
+@json_option("the lines or instructions")
 @click.option(
     "--asm",
     "as_assembly",
     is_flag=True,
-    help="Print the compiler's instructions beneath the source lines, with their cycles, and what bounds each loop; not with "
-    "--profile vdsp-O2, of which there is no code.",
+    help="Print the compiler's instructions beneath the source lines, with their cycles, and what limits each loop; not with "
+    "--profile vdsp-O2, which has no code.",
 )
 def explain(
     kernel: str,
@@ -38,8 +38,8 @@ def explain(
     """Print the source of KERNEL with the operations chosen for each line and their cycles.
 
     KERNEL is FILE.py:NAME, PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
-    the firmware runs and each line shows how often it was executed and its cycles in all, with those of routines of the compiler's
-    library that it calls, such as a division. With --asm, the same of each instruction.
+    the firmware runs, and each line shows how often it was executed and its total cycles, including library routines that
+    it calls, such as a division. --asm shows the same for each instruction.
 
     \b
     Examples:

@@ -15,11 +15,11 @@ import click
     is_flag=True,
     help="Add #line, so that the compiler's messages and a debugger point to the Python.",
 )
-@click.option("--force", is_flag=True, help="Write over files that are there already.")
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
 def export(firmware: str, folder: Path, line_directives: bool, force: bool) -> None:
     """Write the kernels of FIRMWARE to FOLDER as C99, with a header and a makefile.
 
-    FIRMWARE is a built-in one's name, FILE.py:NAME, or PACKAGE:NAME, in the current folder first. Each Python file becomes one
+    FIRMWARE is the name of a built-in one, FILE.py:NAME or PACKAGE:NAME, from the current folder first. Each Python file becomes one
     of C, with its own names, comments and docstrings; helpers that only their file calls are static.
 
     \b

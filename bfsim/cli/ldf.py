@@ -25,7 +25,7 @@ from bfsim.process.terminal import print_report
     metavar="WxH",
     default="320x240",
     show_default=True,
-    help="Pictures to make room for.",
+    help="Size of the pictures to make room for.",
 )
 @takes(PREPROCESSOR_OPTIONS)
 @click.option("--symbols/--no-symbols", default=True, show_default=True, help="List every symbol.")
@@ -33,7 +33,7 @@ from bfsim.process.terminal import print_report
     "--picture",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Draw the map, too, as FILE.png or FILE.svg.",
+    help="Also draw the map, as FILE.png or FILE.svg.",
 )
 @json_option("the memory map")
 def ldf(
@@ -50,10 +50,10 @@ def ldf(
     picture: Path | None,
     json_path: Path | None,
 ) -> None:
-    """Link the firmware by FILE and print the memory map: what lies where, what is free, what to look at.
+    """Link the firmware by FILE and print the memory map: what lies where, what is free, and possible problems.
 
     FILE is a linker description file of VisualDSP++, or the name of a shipped one, such as l2; without it,
-    the board's placement is shown. An LDF for other cores than the firmware's is shown without it.
+    the board's placement is shown. An LDF for other cores than the firmware's is shown without the firmware.
 
     \b
     Examples:

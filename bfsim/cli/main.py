@@ -52,8 +52,8 @@ def main() -> None:
 
     Without arguments, `bfsim run` runs the built-in recording through the built-in firmware.
 
-    Exit codes: 0 done, 1 a limit of `bfsim check` is broken, 2 a mistake in what was given, 70 a fault of bfsim's own;
-    130 Ctrl-C, 143 SIGTERM, 129 SIGHUP, and 141 nobody reads the output any more.
+    Exit codes: 0 success; 1 a broken limit of `bfsim check`, or a difference of `bfsim verify`; 2 a mistake in the input;
+    70 a bug of bfsim; 130 Ctrl-C; 143 SIGTERM; 129 SIGHUP; 141 nobody reads the output any more.
     """
 
 

@@ -37,14 +37,14 @@ if TYPE_CHECKING:
     show_default=True,
     help="Show the N moves that save most.",
 )
-@json_option("every buffer, with why it lies where it does,")
+@json_option("every buffer and why it lies where it does")
 def place(output: Path | None, force: bool, top: int, json_path: Path | None, **what: Any) -> None:
     """Run RECORDING, and find where buffers and code must lie for the shortest frame.
 
-    The run tells who accesses what how often, and what waits for it. An integer programme then gives each buffer the
-    memory that makes the slower core's frame shortest, within the memories of the LDF; that is run, and done again from
-    what it measured, as long as it gets faster. Code moves where some of it lies outside L1. Segments, reserves, stack,
-    heap and caches stay as the LDF has them: --ldf cache finds the best placement with caches.
+    The run measures the accesses to each buffer and the waits for it. An integer programme then assigns each buffer to
+    one of the LDF's memories so that the slower core's frame is shortest. The result is run, and the search repeated from
+    its measurements, as long as it gets faster. Code moves, too, if some of it lies outside L1. Segments, reserves, stack,
+    heap and caches stay as in the LDF: --ldf cache finds the best placement with caches.
 
     \b
     Examples:

@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     type=click.Choice(["kernel", "line", "buffer", "reason", "frame", "caller"]),
     default="kernel",
     show_default=True,
-    help="What to break the cycles down by; frame: what the worst frames have more than the median one.",
+    help="What to break the cycles down by; `frame` compares the worst frames with the median one.",
 )
-@click.option("--stage", metavar="NAME", help="Look at one stage only, a row of the budget.")
+@click.option("--stage", metavar="NAME", help="Show one stage only, a row of the budget.")
 @json_option("the whole profile")
 @takes_html
 @takes_timelines
@@ -56,7 +56,7 @@ def profile(
 ) -> None:
     """Run RECORDING and print where the cycles go, and why: three sentences, then a table.
 
-    Every cycle has an owner: work, stalls and idling of each kernel, source line, ring, semaphore ... add up to the frames.
+    Every cycle has an owner: work, stalls and idling of each kernel, source line, ring, semaphore ... add up to the total of the frames.
 
     \b
     Examples:

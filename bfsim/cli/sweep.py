@@ -48,7 +48,7 @@ def _axes(_ctx: click.Context, _param: click.Parameter, given: str | None) -> Ax
         raise click.BadParameter(str(error)) from error
 
 
-@click.command(short_help="Run many recordings and options, each once, on all cores.")
+@click.command(short_help="Run many combinations of recordings and options, on all cores.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--store",
@@ -68,9 +68,9 @@ def _axes(_ctx: click.Context, _param: click.Parameter, given: str | None) -> Ax
     "--scheduler",
     "address",
     metavar="ADDRESS",
-    help="Run them on the workers of the Dask scheduler at ADDRESS, such as tcp://10.0.0.1:8786, instead of here.",
+    help="Run points on the workers of the Dask scheduler at ADDRESS, such as tcp://10.0.0.1:8786, instead of here.",
 )
-@click.option("--dry-run", is_flag=True, help="List the points and the time that they will take, and stop.")
+@click.option("--dry-run", is_flag=True, help="List the points, estimate their time, and stop.")
 @click.option("--strict", is_flag=True, help="Stop before the first run if any point can never work.")
 @click.option(
     "--plot",
@@ -99,8 +99,8 @@ def sweep(
 ) -> None:
     """Run all points of FILE, a TOML file, and compare what a frame costs in each.
 
-    A point is a run, and its options are called as those of `bfsim run`. [base] is what all points share; of the lists in
-    [axes] every combination runs; each [[point]] is one more:
+    A point is a run; its options have the names of those of `bfsim run`. All points share [base]. Every combination of the
+    lists in [axes] is a point, and each [[point]] is one more:
 
     \b
       [base]
@@ -113,9 +113,9 @@ def sweep(
       name = "slow SDRAM"
       set.sdram.nRP = 4
 
-    Every result is kept under the identity of its run: what was done is never done again, whatever ended the sweep and
-    however FILE changes. All points are read and checked before the first one runs. One that fails is reported, and the
-    others go on; the exit code is then 2, of a --dry-run, too.
+    Every result is kept under the identity of its run, so no run is repeated, whatever ended the sweep and however FILE
+    changes. All points are read and checked before the first one runs. A point that fails is reported, and the others go
+    on; the exit code is then 2, also with --dry-run.
 
     \b
     Examples:

@@ -26,16 +26,22 @@ from bfsim.process.terminal import print_report
     help="Play at most N calls of each kernel, spread evenly over the run.",
 )
 @click.option(
-    "--top", metavar="N", type=click.IntRange(min=1), default=20, show_default=True, help="Show N kernels."
+    "--top",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=20,
+    show_default=True,
+    help="Show the N kernels that cost most.",
 )
 @json_option("the comparison")
 def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
-    """Run RECORDING, then play the kernels' calls once more: by GCC's code for the Blackfin.
+    """Run RECORDING, then repeat the kernels' calls with GCC's code for the Blackfin.
 
-    Every kernel is written as C (see `bfsim export`) and compiled by bfin-elf-gcc at the level of --profile; that of the built-in
-    firmware comes with bfsim. Its instructions are translated and run here, and also under the GNU simulator if that is installed,
-    whose cycles they must take in every call. These cycles, without memory, caches and interlocks, are compared with the issue cycles
-    that the run estimates; what is left is compared bit for bit. Exit code 1 if a bit, or a cycle of the translation, differs.
+    Every kernel is written as C (see `bfsim export`) and compiled by bfin-elf-gcc at the level of --profile; the code of
+    the built-in firmware comes with bfsim. Its instructions are translated and run here. If the GNU simulator is
+    installed, it runs them, too, and must take the same cycles in every call. These cycles, without memory, caches and
+    interlocks, are compared with the issue cycles that the run estimates, and the results bit for bit. Exit code 1 if a
+    bit, or a cycle of the translation, differs.
 
     \b
     Examples:

@@ -17,5 +17,5 @@ def firmware_option(verb: str) -> Callable[[Any], Any]:
         metavar="NAME",
         default=FIRMWARE[0],
         show_default=True,
-        help=f"Firmware to {verb}: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
+        help=f"Firmware to {verb}: {', '.join(FIRMWARE)} (built in), or your own, FILE.py:NAME or PACKAGE:NAME, from the current folder first.",
     )

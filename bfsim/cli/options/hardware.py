@@ -37,7 +37,7 @@ BOARD_OPTIONS = (
         metavar="NAME",
         default="cm-bf561",
         show_default=True,
-        help="Board to run on: `bfsim boards` lists them; or one of yours, FILE.py:NAME or PACKAGE:NAME.",
+        help="Board to run on; `bfsim boards` lists them. Or your own, FILE.py:NAME or PACKAGE:NAME.",
     ),
     SET_OPTION,
 )
@@ -56,9 +56,9 @@ COMPILER_OPTIONS = (
         metavar="NAME",
         default="gcc-adi",
         show_default=True,
-        help="Compiler whose code is costed: gcc-adi runs the code that GCC makes of the kernels, where there is some, as Analog Devices "
-        "documents its time, and gcc as the GNU simulator times it; gcc-O2, gcc-O0 and vdsp-O2 are estimates; or one of yours, "
-        "FILE.py:NAME or PACKAGE:NAME.",
+        help="Compiler whose code is costed. gcc-adi and gcc run GCC's code of the kernels, if there is any, timed as Analog Devices "
+        "documents it or as the GNU simulator does. gcc-O2, gcc-O0 and vdsp-O2 are estimates. Or your own, FILE.py:NAME or "
+        "PACKAGE:NAME.",
     ),
     click.option(
         "--toolchain",
@@ -67,6 +67,6 @@ COMPILER_OPTIONS = (
         callback=_toolchain,
         is_eager=True,
         expose_value=False,
-        help="Where bfin-elf-gcc is, and bfin-elf-run, the GNU simulator.  [default: the PATH]",
+        help="Folder with bfin-elf-gcc and bfin-elf-run, the GNU simulator.  [default: the PATH]",
     ),
 )

@@ -41,13 +41,13 @@ _PARAMETERS = (
         "--html",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Write all of it as one HTML page, too, with pictures and charts; it opens offline.",
+        help="Also write everything as one HTML page with pictures and charts, which opens offline.",
     ),
     click.option(
         "--target",
         metavar="RATE|TIME",
         type=_TargetType(),
-        help="Frame rate or frame time that frames are compared with, such as 15Hz or 66ms.",
+        help="Compare frames with this frame rate or frame time, such as 15Hz or 66ms.",
     ),
 )
 

@@ -69,7 +69,7 @@ def json_option(what: str) -> Callable[[Any], Any]:
         is_flag=False,
         flag_value=str(STDOUT),
         type=_JsonFile(),
-        help=f"Print {what} as JSON, and nothing else; with FILE{SUFFIX} behind it write that there, beside what is printed.",
+        help=f"Print {what} as JSON, and nothing else; with FILE{SUFFIX}, write it there and print the report as well.",
     )
 
 

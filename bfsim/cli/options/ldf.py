@@ -36,7 +36,7 @@ PREPROCESSOR_OPTIONS = (
         metavar="FOLDER",
         multiple=True,
         type=click.Path(path_type=Path),
-        help="Look there, too, for what the LDF includes.",
+        help="Also search this folder for files that the LDF includes.",
     ),
 )
 """What every command takes that takes an LDF."""

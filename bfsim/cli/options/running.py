@@ -31,7 +31,7 @@ _RUN_PARAMETERS = (
         "--ldf",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
+        help=f"Linker description file that places buffers and code, or the name of a shipped one: {', '.join(LDFS)}.  [default: the board's]",
     ),
     *PREPROCESSOR_OPTIONS,
     *COMPILER_OPTIONS,
@@ -47,22 +47,21 @@ _RUN_PARAMETERS = (
         "--script",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="What the firmware's devices are told, JSON or TOML; the firmware says what it understands.",
+        help="JSON or TOML file for the firmware's devices, such as orders for the robot; the firmware defines its contents.",
     ),
     click.option(
         "--fidelity",
         type=click.Choice(["fast", "detailed"]),
         default="fast",
         show_default=True,
-        help="How the buses are simulated: fast, or with every transaction an event, to judge the fast way. Slow.",
+        help="How the buses are simulated. `detailed` makes every transaction an event: much slower, to check `fast`.",
     ),
     click.option(
         "--sanitize",
         is_flag=True,
-        help="Run every kernel twice, first as it is written: an index outside an array or a division by zero is then an "
-        "error even where the compiler would leave it out, and so is a shift by less than 0 or more than 31. Without it, what "
-        "estimated code does is checked; where the compiler's own code runs that does not come with bfsim, the first frame is "
-        "run twice. Slower.",
+        help="Run every kernel twice, first as it is written, to find indices outside an array, divisions by zero, and shifts by "
+        "less than 0 or more than 31, even in code that the compiler removes. Slower. Without it, estimated code checks "
+        "indices and divisions, and compiled code that does not come with bfsim runs twice in the first frame only.",
     ),
 )
 
@@ -76,14 +75,14 @@ _WORK_PARAMETERS = (
         "--record-work",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Record what the cores do, to be played again on other hardware with --work.",
+        help="Record the work of the cores, which --work plays on other hardware.",
     ),
     click.option(
         "--work",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Play what --record-work has recorded of the same run, on the board, settings and LDF given here, in place of the "
-        "firmware: the same cycles, sooner.",
+        help="Play the work that --record-work recorded, on the board, settings and LDF given here, instead of running the "
+        "firmware: the same cycles, faster.",
     ),
 )
 

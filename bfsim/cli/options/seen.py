@@ -46,7 +46,7 @@ class _Layers(click.ParamType[tuple[str, ...]]):
 
 
 _PARAMETERS = (
-    click.option("--show", is_flag=True, help="Draw what was seen over the pictures, and open that."),
+    click.option("--show", is_flag=True, help="Draw what was seen over the pictures, and open the result."),
     click.option(
         "--overlay",
         metavar="DIR|FILE",
@@ -65,8 +65,8 @@ _PARAMETERS = (
         metavar="[STAGE]",
         is_flag=False,
         flag_value=ALL_STAGES,
-        help="Draw where in the picture the time of STAGE went, or of all: a heat map, and the cost of each row by stage. "
-        "Of --layers only objects are drawn then, unless it says more.",
+        help="Draw where in the picture the time of STAGE, or of all stages, went: a heat map, and the cost of each row by stage. "
+        "Only objects are drawn over it unless --layers says otherwise.",
     ),
     click.option(
         "--mcap",

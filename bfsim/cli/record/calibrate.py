@@ -22,7 +22,7 @@ from bfsim.cli.record.recorded import view_text, views_text
     help="Inner corners of the chessboard, across and down.",
 )
 @click.option("--square", type=float, default=20.0, show_default=True, help="Side of its squares in mm.")
-@click.option("--height", type=float, metavar="MM", help="Height of the cameras over the floor in mm.")
+@click.option("--height", type=float, metavar="MM", help="Height of the cameras above the floor in mm.")
 @click.option("--tilt", type=float, metavar="DEG", help="How far the cameras look down, in degrees.")
 @click.option("--fisheye", is_flag=True, help="The lenses are fisheyes: 100 degrees and more across.")
 @click.option("--mono", is_flag=True, help="CHESSBOARDS holds pictures of the one camera of RECORDING.")
@@ -33,9 +33,11 @@ from bfsim.cli.record.recorded import view_text, views_text
     "--bits",
     type=click.IntRange(8, 16),
     metavar="N",
-    help="As of `record import`, for chessboards with pixels of 16 bits.",
+    help="As for `record import`, if the chessboards have pixels of 16 bits.",
 )
-@click.option("--output", type=click.Path(path_type=Path), help="Write this file and leave RECORDING alone.")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="Write this file and leave RECORDING unchanged."
+)
 def calibrate_command(
     chessboards: Path,
     path: Path,
@@ -51,9 +53,9 @@ def calibrate_command(
 ) -> None:
     """Write rectification tables and the geometry into RECORDING, made from chessboard pictures of its cameras.
 
-    The folder CHESSBOARDS holds pictures, or folders of them, whose names say left and right; left_03 and right_03 were
-    taken at once. Pictures without a board are skipped, and what does not fit the rest is left out; both are listed. Focal
-    length and baseline are measured; height and tilt must be given, here or at the import. Needs OpenCV:
+    The folder CHESSBOARDS has pictures, or folders of them, whose names say left and right; left_03 and right_03 were
+    taken at the same time. Pictures without a board are skipped, and pairs that do not fit the rest are left out; both are
+    listed. Focal length and baseline are measured; you give height and tilt, here or at the import. Needs OpenCV:
     pip install "bfsim[opencv]".
 
     \b

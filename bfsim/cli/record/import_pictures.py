@@ -25,27 +25,29 @@ SOURCE_FORMATS = (
 @click.argument("output", type=click.Path(path_type=Path))
 @click.argument("sources", nargs=-1, required=True, metavar="SOURCE [SOURCE2]")
 @click.option(
-    "--side-by-side", is_flag=True, help="Each picture of SOURCE is the left and the right camera's."
+    "--side-by-side",
+    is_flag=True,
+    help="Each picture of SOURCE shows the left and the right camera side by side.",
 )
-@click.option("--mono", is_flag=True, help="The one camera of SOURCE feeds both sides.")
+@click.option("--mono", is_flag=True, help="SOURCE is one camera, which feeds both sides.")
 @click.option(
     "--format",
     type=click.Choice(SOURCE_FORMATS),
-    help="What the sources are, if names do not tell.",
+    help="Format of the sources, if their names do not tell.",
 )
 @click.option("--size", type=Size(), metavar="WxH", help="Size of the frames in raw files.")
 @click.option(
     "--bits",
     type=click.IntRange(8, 16),
     metavar="N",
-    help="Pixels have 16 bits, of which the camera uses N: the upper 8 of these are taken. Of grey images, grey and Bayer frames, raw "
-    "or in a bag.",
+    help="Pixels have 16 bits and the camera uses N of them, of which the upper 8 are taken. For grey images, and for grey and "
+    "Bayer frames, raw or in a bag.",
 )
 @click.option(
     "--resize",
     type=Size(),
     metavar="WxH",
-    help="Scale every picture, by a triangle filter; what sticks out of the aspect ratio is cut off.",
+    help="Scale every picture with a triangle filter, and cut off what exceeds the aspect ratio.",
 )
 @click.option("--crop", type=Size(), metavar="WxH", help="Keep the middle of every picture, unscaled.")
 @click.option("--fps", type=float, help="Frames per second.  [default: the source's own, or 30]")
@@ -59,15 +61,15 @@ SOURCE_FORMATS = (
     "--slop",
     type=click.FloatRange(min=0),
     metavar="MS",
-    help="How far the time stamps of two pictures of a bag may be apart.  [default: half a frame]",
+    help="How far apart the time stamps of a pair of a bag may be.  [default: half a frame]",
 )
 @click.option(
     "--geometry",
     type=float,
     nargs=4,
     metavar="FOCAL BASELINE HEIGHT TILT",
-    help="Focal length in px of the recorded size, baseline (0 for one camera) and height over the floor in mm, degrees "
-    "the cameras look down.",
+    help="Focal length in px of the recorded size, baseline (0 for one camera) and height above the floor in mm, and how many "
+    "degrees the cameras look down.",
 )
 @click.option(
     "--rectification",
@@ -99,10 +101,11 @@ def import_command(
 
     A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file (.uyvy, .yuyv,
     .i420 or .yuv, .nv12, .grey; others by --format), a .y4m file or a video. Two sources are the left and the right camera.
-    A bag of ROS (.bag of ROS 1, .mcap, .db3 or the folder of ROS 2) is one source with both: pictures are paired by their time stamps, and
-    camera_info becomes geometry and rectification. Needs rosbags: pip install "bfsim[ros]".
-    Images that cannot be read, those without a picture of the other camera by their names (left_07 goes with
-    right_07), and other files in a folder are skipped and listed.
+    A ROS bag (.bag of ROS 1; .mcap, .db3 or the folder of ROS 2) is one source with both cameras: pictures are paired by
+    their time stamps, and camera_info becomes geometry and rectification. Needs rosbags: pip install "bfsim[ros]".
+
+    Images are paired by their names (left_07 with right_07). Images that cannot be read, images without a partner, and
+    other files in a folder are skipped and listed.
 
     \b
     Examples:

@@ -16,16 +16,16 @@ from bfsim.process.terminal import print_report, progress_bar
 SCHEMA = "bfsim.recording/1"
 
 
-@click.command(name="info", short_help="Say what is in a recording.")
+@click.command(name="info", short_help="Describe a recording.")
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
-@json_option("what is in it")
+@json_option("the description")
 @click.option(
     "--plot",
     type=click.Path(path_type=Path),
     help="Write the plot of the calibration's residuals to this PNG file.",
 )
 def info_command(path: Path, json_path: Path | None, plot: Path | None) -> None:
-    """Describe RECORDING. Reads all of it, so an answer also says that it is whole.
+    """Describe RECORDING. This reads all of it, so an answer also means that the file is intact.
 
     \b
     Examples:

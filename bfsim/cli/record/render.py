@@ -29,12 +29,12 @@ class _Distances(click.ParamType[tuple[float, ...]]):
 
 _RENDER_HELP = f"""Render SCENE with exact ground truth to the recording OUTPUT.
 
-SCENE is one scene or several of bfsim.recording.scenes, by FILE.py:NAME or PACKAGE:NAME, or built in:
+SCENE is one or several scenes of bfsim.recording.scenes, FILE.py:NAME or PACKAGE:NAME, or a built-in one:
 
 \b
 {fill(", ".join(shipped.SCENES), 76, break_on_hyphens=False)}
 
-Several scenes go to the folder OUTPUT, each to a recording of its name. Needs mitsuba: pip install "bfsim[scenes]".
+Several scenes go to the folder OUTPUT, one recording each. Needs mitsuba: pip install "bfsim[scenes]".
 
 \b
 Examples:
@@ -49,45 +49,46 @@ Examples:
 @click.command(name="render", short_help="Render a scene with exact ground truth.", help=_RENDER_HELP)
 @click.argument("name", metavar="SCENE")
 @click.argument("output", type=click.Path(path_type=Path))
-@click.option("--frames", type=click.IntRange(min=1), help="Render only so many frames.")
+@click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Render only the first N frames.")
 @click.option(
     "--samples",
+    metavar="N",
     type=click.IntRange(min=1, max=MOST_SAMPLES),
-    help="Light paths a pixel.  [default: the scene's]",
+    help="Light paths per pixel.  [default: the scene's]",
 )
 @click.option(
     "--distances",
     type=_Distances(),
     metavar="MM,MM,...",
-    help="A frame for each, of a scene that is made for distances.",
+    help="Render a frame at each distance; only for scenes that are made for it.",
 )
 @click.option(
     "--geometry",
     type=float,
     nargs=4,
     metavar="FOCAL BASELINE HEIGHT TILT",
-    help="Other cameras: focal length in px, baseline and height in mm, degrees they look down.",
+    help="Other cameras: focal length in px, baseline and height in mm, and how many degrees they look down.",
 )
 @click.option(
     "--distort",
     type=float,
     nargs=4,
     metavar="K1 K2 P1 P2",
-    help="Put lenses before both cameras: two radial and two tangential terms, as OpenCV counts them.",
+    help="Put lenses in front of both cameras: two radial and two tangential terms, as in OpenCV.",
 )
 @click.option(
     "--turn-right",
     type=float,
     nargs=3,
     metavar="X Y Z",
-    help="Turn the right camera, degrees round its right, down and forward.",
+    help="Turn the right camera, in degrees around its right, down and forward axes.",
 )
 @click.option(
     "--shift-right",
     type=float,
     nargs=3,
     metavar="X Y Z",
-    help="Shift the right camera, mm to its right, down and forward.",
+    help="Shift the right camera, in mm to its right, down and forward.",
 )
 @click.option(
     "--chessboards",
