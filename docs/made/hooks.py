@@ -1,4 +1,4 @@
-"""What MkDocs fills into the pages while it builds them: tables that are read from the sources, so that they stay true."""
+"""What MkDocs fills into the pages while it builds them: what is read from the sources, so that it stays true."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+import click
+
+from bfsim.cli.main import main
 
 ROOT = Path(__file__).parent.parent.parent
 CHIP = ROOT / "bfsim" / "chip"
@@ -34,7 +38,23 @@ def _readme() -> str:
     return (ROOT / "README.md").read_text().replace("](docs/", "](").replace('src="docs/', 'src="')
 
 
+def _helps(command: click.Command, parent: click.Context | None = None) -> Iterator[str]:
+    """Yield what `--help` prints of a command, and then of those below it, each under a heading."""
+    context = click.Context(
+        command,
+        parent,
+        info_name=command.name if parent else "bfsim",
+        terminal_width=80,
+        **command.context_settings,
+    )
+    yield f"## {context.command_path}\n\n```text\n{command.get_help(context)}\n```\n"
+    for _, each in sorted(getattr(command, "commands", {}).items()):
+        yield from _helps(each, context)
+
+
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    """Put the README and each table in the place of their comments, such as <!-- table: assumed numbers -->."""
-    markdown = markdown.replace("<!-- README -->", _readme())
+    """Put the README, the help and each table in the place of their comments, such as <!-- table: assumed numbers -->."""
+    markdown = markdown.replace("<!-- README -->", _readme()).replace(
+        "<!-- help -->", "\n".join(_helps(main))
+    )
     return re.sub(r"<!-- table: (.+?) -->", lambda found: TABLES[found[1]](), markdown)
