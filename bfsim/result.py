@@ -45,7 +45,7 @@ PAGE = ".html"
 class Run(RunRecord):
     """The records of one run, with their reports and tables. `repr` is one line; a notebook shows the screen of `bfsim run`.
 
-    `again` makes the run once more, for those who look at what a run does not keep.
+    `again` repeats the run, for reports that need what a run does not keep.
     """
 
     again: partial[Run] | None = field(default=None, compare=False)
@@ -66,9 +66,9 @@ class Run(RunRecord):
     def report(self, which: str | Path = "screen", *, target: str | None = None) -> str:
         """Return a report as text of 80 columns: the "screen" of `bfsim run`, its "full" one, or the "profile".
 
-        Or write the page of `bfsim run --html` to a file, `which` ends in .html then, and return its name: for its pictures
-        the run is made once more. `target` is what frames are compared with, such as "15Hz". Raises ConfigError for another
-        name, for a run without a frame, and for a page that cannot be written.
+        If `which` ends in .html, write the page of `bfsim run --html` to that file and return its name; this repeats the run
+        for the pictures. `target`, such as "15Hz", is compared with the frames. Raises ConfigError for another name, for a run
+        without a frame, and for a page that cannot be written.
         """
         goal = None if target is None else target_of(target)
         is_page = str(which).endswith(PAGE)
@@ -93,17 +93,17 @@ class Run(RunRecord):
         return "".join(f"{line.rstrip()}\n" for line in console.file.getvalue().splitlines())
 
     def tables(self, spans: Iterable[Span] = ()) -> dict[str, Columns]:
-        """Return the tables of the run by their names, each as lists by column: Polars, Arrow and others take them so.
+        """Return the tables of the run by name, each as a dict of lists by column, which Polars, Arrow and others accept.
 
         They are frames, results, stages, stalls, kernels, lines, owners, accesses, paths, buffers, traffic and spans;
-        `bfsim.report.columns.cells` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
+        `bfsim.report.columns.cells` says what a row of each is. `spans` are those of `simulate(on_spans=...)`.
         """
         from bfsim.report.columns.tables import tables_of
 
         return tables_of(self, spans)
 
     def to_pandas(self, spans: Iterable[Span] = ()) -> dict[str, Any]:
-        """Return the `tables` as pandas data frames. Raises ConfigError where pandas is not installed."""
+        """Return the `tables` as pandas data frames. Raises ConfigError if pandas is not installed."""
         try:
             import pandas as pd
         except ImportError:

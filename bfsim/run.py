@@ -123,35 +123,34 @@ def simulate(
 
     What runs, and on what:
 
-    - `recording`: a file, or without it the built-in one; `frames` stops early.
-    - `firmware`: a `Firmware`, or the name of one: a built-in one's, "FILE.py:NAME" or "PACKAGE:NAME". Of a `Firmware` the
-      identity has the source files as they are now; values that were set otherwise, such as at a prompt, are not in it.
-    - `board`: a shipped one's name, "FILE.py:NAME", "PACKAGE:NAME" or a BoardSpec. `settings` are numbers to change in it by
+    - `recording`: a file; by default the built-in one. `frames` stops early.
+    - `firmware`: a `Firmware`, or a name: of a built-in one, "FILE.py:NAME" or "PACKAGE:NAME". The identity of a `Firmware`
+      covers its source files as they are now, but not values set elsewhere, such as at a prompt.
+    - `board`: the name of a shipped one, "FILE.py:NAME", "PACKAGE:NAME" or a BoardSpec. `settings` changes numbers in it by
       their paths, such as {"sdram.nRP": 3}; see `bfsim.chip.settings`.
     - `profile`: the compiler whose code is costed, named in the same ways.
-    - `ldf`: a file or the name of a shipped one, or without it the board's. `defines` are macros for it, and `include_dirs`
+    - `ldf`: a file or the name of a shipped one; by default the board's. `defines` are macros for it, and `include_dirs` the
       folders that it may include files from.
     - `feed`: when pictures come. `fidelity`: how the buses are simulated.
-    - `script`: a JSON or TOML file that tells the firmware's devices what to do.
-    - `record_work`: a file to record what the cores do in. `work`: such a file, which is then played in place of the firmware:
-      the same records on another board or LDF, sooner.
-    - `sanitize` runs each kernel as it is written first, to find what is wrong even where the compiler would leave it out. So
-      does the first frame where kernels run as the code that a compiler made of them just now. What the code of estimated
-      kernels does is always checked.
+    - `script`: a JSON or TOML file for the firmware's devices.
+    - `record_work`: a file in which to record the work of the cores. `work`: such a file, played instead of running the
+      firmware: the same records on another board or LDF, faster.
+    - `sanitize` first runs each kernel as it is written, to find errors even in code that the compiler removes. Kernels that
+      run as newly compiled code do so in the first frame anyway. Estimated kernels are always checked.
 
-    Who is called meanwhile, which changes nothing in the records:
+    Functions that are called during the run; they change nothing in the records:
 
-    - `before` with what will run and how many frames of it, before the first one does. It may raise. The digest of the
-      recording is not known then.
-    - `progress` with (frames done, frames in all).
-    - `on_seen` with what was seen in each frame, if the firmware has a view.
-    - `on_time` now and then with the simulated time in seconds.
-    - `on_spans` with what the cores and devices did since the last time.
-    - `on_call` with each kernel and its arguments before it runs.
+    - `before`, with what will run and how many frames of it, before the first one. It may raise. The digest of the recording
+      is not known then.
+    - `progress`, with (frames done, frames in all).
+    - `on_seen`, with what was seen in each frame, if the firmware has a view.
+    - `on_time`, now and then, with the simulated time in seconds.
+    - `on_spans`, with what the cores and devices did since the last time.
+    - `on_call`, with each kernel and its arguments before it runs.
 
-    Raises a BfsimError for anything that is wrong with what was given. Ctrl-C ends the run with the frames done. Runs of
-    several threads come one after the other: use processes, as `bfsim sweep` does. A crash in native code ends the process, a
-    notebook's, too; standard error then has the name of the kernel.
+    Raises a BfsimError for any mistake in the arguments. Ctrl-C ends the run with the frames done. Runs of several threads
+    come one after the other: use processes, as `bfsim sweep` does. A crash in native code ends the process, even a
+    notebook's; standard error then has the name of the kernel.
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")

@@ -18,12 +18,12 @@ def kernel_from(
 ) -> Kernel:
     """Return the function `name` of a file as a kernel: `kernel_from("sobel.c", "sobel_row", line=u8[:], out=u8[:], n=i32)`.
 
-    `file` is C (.c), assembler (.s), an object file (.o, .doj) or a program (.elf, .dxe), beside the Python file that calls this. C and
-    assembler are compiled by bfin-elf-gcc -O2; where it is not on the PATH, code must be kept from before. `parameters` are declared in the
-    function's order, as those of a `@kernel` are; an array is a pointer to its first element. `result`: the type of what it returns.
+    `file` is C (.c), assembler (.s), an object file (.o, .doj) or a program (.elf, .dxe), beside the Python file that calls this.
+    bfin-elf-gcc -O2 compiles C and assembler; without it on the PATH, the code must be in the cache. `parameters` are declared in
+    the function's order, like those of a `@kernel`; an array is a pointer to its first element. `result` is the type of the result.
 
-    Raises KernelError for a file that is no code for the Blackfin or has no such function, and ConfigError where there is no
-    compiler, or with what it says.
+    Raises KernelError if the file is no code for the Blackfin or has no such function, and ConfigError if there is no
+    compiler, or with the compiler's message.
     """
     if not isinstance(file, (str, Path)):
         raise KernelError(f"the file of {name} must be a path, not {shown(file)}")

@@ -80,11 +80,10 @@ class RunnableCall(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Kernel:
-    """A kernel. Calling it runs the compiled code on numpy arrays, and `cost` says the cycles of a call.
+    """A kernel. Calling it runs the compiled code on numpy arrays; `cost` returns the cycles of a call.
 
-    `definition` is the function as it was written. A kernel of another language has none, but `object_code`, which runs as it is; the
-    profile says how it is timed.
-    `own_code` finds the code that a profile's compiler makes of one in Python, if there is any.
+    `definition` is the function as it was written. A kernel of another language has `object_code` instead, which runs as it
+    is; the profile says how it is timed. `own_code` finds the code that a profile's compiler makes of a kernel in Python.
     """
 
     function: Function
@@ -94,7 +93,7 @@ class Kernel:
 
     @cached_property
     def python(self) -> Callable[..., Any] | None:
-        """The function as plain Python, and so the kernels that it calls: for lists and ints, since elements of numpy arrays would wrap at their own width."""
+        """The function as plain Python, with the kernels that it calls. Use lists and ints: elements of numpy arrays wrap at their own width."""
         definition = self.definition
         if definition is None:
             return None

@@ -28,9 +28,9 @@ class FrameSize:
 class Buffer:
     """A variable of the firmware: `rows` rows of `columns` elements, placed by the LDF through its `section`.
 
-    `values` are its contents at the start (a table); without them it starts as zeros. `handed_over`: of a buffer that both cores share,
-    that only one of them works on it at a time, and that a semaphore, a lock or an interrupt says when the other one may. The simulator
-    holds them to it, and is faster: it need not wait for the cycle of each access.
+    `values` are its contents at the start (a table); without them it starts as zeros. `handed_over` is for a shared buffer: only
+    one core works on it at a time, and a semaphore, a lock or an interrupt says when the other one may. The simulator enforces
+    this, and runs faster because it need not wait for the cycle of each access.
     """
 
     name: str

@@ -137,22 +137,27 @@ def _check_rows(rows: Sequence[BudgetRow]) -> None:
 class Firmware:
     """A program for the whole chip.
 
-    `mains`: the main loop of each core of the chip; one without work only asks for the next frame, and has a `camera`, too. `buffers`: size of the pictures → the buffers of each core, "A" and "B", and under "shared" those of both. `camera`: the buffer of each core
-    that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `reference`: what the
-    `reference_ms` of the rows are, which must be said where a row has some. `calibration`: what a recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
-    `spi`: the script of the user, empty without one → the device at the other end of the SPI; raises a FirmwareError
-    that names the key of the script and what it must be. Without it nobody listens there. `uart`: the same for the UART.
-    `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
-    show; it is not simulated. Without it, pictures show what the camera saw and the numbers that were published.
-    `colours`: a UYVY picture of shape (height, 2 · width), the user's script and the number of a frame → what the firmware
-    calls the colours of the picture in that frame, for `bfsim colours`; not simulated either.
-    `losses`: what the firmware had to leave out, as published number → in words what it counts, such as {"edges_lost":
-    "edges without room in the store"}; a run that lost something ends with a warning. Where the firmware also publishes
-    edges_lost_top, edges_lost_bottom and edges_lost_percent, the warning names these rows of the picture, and which part was
-    lost there.
-    `assumed_geometry`: in words, where the firmware takes the cameras to be if the recording does not say, or not all; the
-    run ends with a warning then. Empty for firmware that does not ask.
-    `write_through`: memory segments of the LDF in SDRAM that the data caches write through; the rest is written back.
+    - `mains`: the main loop of each core of the chip. A core without work only asks for the next frame; it has a camera, too.
+    - `buffers`: a function from the size of the pictures to the buffers of each core, under "A" and "B", and to shared ones,
+      under "shared".
+    - `camera`: the buffer of each core that the PPI fills, a whole number of frames.
+    - `rows`: the stages in the order of the budget.
+    - `reference`: the meaning of the rows' `reference_ms`; required if a row has some.
+    - `calibration`: a function from the recording's knowledge of its cameras to the buffers that hold it. They are added, or
+      replace those of the same name.
+    - `spi`: a function from the user's script, which may be empty, to the device at the other end of the SPI. It raises a
+      FirmwareError that names the key of the script and what it must be. Without it nobody listens there.
+    - `uart`: the same for the UART.
+    - `view`: a function from the memory of a core at the end of a frame to what it saw, for people and files; None if there
+      is nothing to show. It is not simulated. Without it, pictures show what the camera saw and the published numbers.
+    - `colours`: a function from a UYVY picture of shape (height, 2 · width), the user's script and the frame number to the
+      firmware's names of the colours, for `bfsim colours`. It is not simulated.
+    - `losses`: what the firmware had to leave out: the published number and its meaning, such as {"edges_lost": "edges
+      without room in the store"}. A run that lost something ends with a warning. If the firmware also publishes
+      edges_lost_top, edges_lost_bottom and edges_lost_percent, the warning names these rows of the picture and the lost share.
+    - `assumed_geometry`: where the firmware takes the cameras to be, in words, if the recording does not say it completely;
+      the run then ends with a warning. Empty for firmware that does not ask.
+    - `write_through`: SDRAM segments of the LDF that the data caches write through; all others are written back.
     """
 
     mains: Mapping[str, Main]

@@ -56,10 +56,10 @@ class Place(NamedTuple):
 class Span(NamedTuple):
     """Something that went on from `begin_cclk` to `end_cclk` at `where`: a core, a DMA channel, a camera, a semaphore.
 
-    Spans of one track come in the order of time and never overlap. Of a core, issue + stall + idle = elapsed, and
-    `stage` is the row of the budget that it counts to; where in a call its stalls were is not known. `value` is the
-    bytes of what was moved, the level, or the index of the frame. `flow` is the same number in a transfer and in the
-    wait that it ended, else 0. `place` is where in the picture that the core looked at it was about, if that is known.
+    Spans of one track come in the order of time and never overlap. For a core, issue + stall + idle = elapsed, and `stage`
+    is its row of the budget; where in a call its stalls were is not known. `value` is the number of bytes moved, the level,
+    or the index of the frame. `flow` is the same number in a transfer and in the wait that it ended, otherwise 0. `place` is
+    the part of the core's picture that it belongs to, if known.
     """
 
     kind: SpanKind

@@ -39,7 +39,7 @@ class StallReason(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageCost:
-    """What one stage cost one core in one frame. A stall of no cycles is left out of `stall_cclk`."""
+    """The cost of one stage on one core in one frame. `stall_cclk` leaves out stalls of no cycles."""
 
     stage: str
     issue_cclk: int
@@ -48,7 +48,7 @@ class StageCost:
 
     @property
     def elapsed_cclk(self) -> int:
-        """Cycles from first to last, whatever the core did in them."""
+        """All cycles of the stage, whatever the core did in them."""
         return self.issue_cclk + sum(self.stall_cclk.values()) + self.idle_cclk
 
 
@@ -67,9 +67,9 @@ class OwnerCost(StageCost):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoreFrame:
-    """One frame on one core, from the end of the frame before to its own end; the stages fill it exactly.
+    """One frame on one core, from the end of the previous frame to its own end. The stages add up to it exactly.
 
-    The `owners` of each stage fill that exactly: issue, each reason of a stall, and idle.
+    The `owners` of each stage add up to that exactly, too: issue, each reason of a stall, and idle.
     """
 
     core: str
@@ -83,7 +83,7 @@ class CoreFrame:
 class FrameRecord:
     """One stereo frame. `index` counts in the recording; latency runs from `last_line_cclk` to `result_cclk`.
 
-    `cores` holds core A first. `results` are numbers that the firmware published for the frame (edges found ...),
+    `cores` begins with core A. `results` are the numbers that the firmware published for the frame (edges found ...),
     `remarks` its sentences (an order refused ...).
     """
 
@@ -96,10 +96,10 @@ class FrameRecord:
 
     @property
     def begin_cclk(self) -> int:
-        """When the first of its cores was done with the frame before."""
+        """When the first of its cores finished the previous frame."""
         return min(core.begin_cclk for core in self.cores)
 
     @property
     def end_cclk(self) -> int:
-        """When the last of its cores was done with it."""
+        """When the last of its cores finished it."""
         return max(core.end_cclk for core in self.cores)

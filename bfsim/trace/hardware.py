@@ -21,9 +21,9 @@ class BufferRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficRecord:
-    """What one master moved to and from one buffer over the whole run, over a bus; a core's accesses of L1 are not among it.
+    """What one master moved to and from one buffer over a bus in the whole run, without a core's accesses to L1.
 
-    `memory` is where the buffer lies; `buffer` is empty for what is in no buffer, such as code and semaphores. `master`
+    `memory` is where the buffer lies; `buffer` is empty for anything outside buffers, such as code and semaphores. `master`
     is a core, an MDMA stream or a PPI; a DMA transfer counts for the buffers that it begins in. The page counts are
     zero for memories without pages. `busy_cclk` is how long it held the memory's bus, in CCLK cycles.
     """

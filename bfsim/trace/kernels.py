@@ -32,10 +32,9 @@ class LineCost:
 class KernelRecord:
     """All calls of one kernel (or of a kernel called by it) by one core in one stage, over all frames, without its callees.
 
-    `symbol` tells kernels of one name apart. `file` and `LineCost.line` say where the source is; `text` holds its
-    lines, the first one being `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; where code lies
-    outside L1, the kernel's first line has the waits for it. `object_cclk` are those of its issue cycles that
-    instructions of object code took; the others are estimated.
+    `symbol` distinguishes kernels of the same name. `file` and `LineCost.line` say where the source is; `text` has its lines,
+    beginning with `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; if code lies outside L1, the kernel's
+    first line has the waits for it. `object_cclk` are the issue cycles of object code; the others are estimated.
     """
 
     core: str

@@ -26,7 +26,7 @@ class Reference:
 class BudgetRow:
     """A row of the budget: a stage of the firmware, and its milliseconds in the firmware's `Reference`, if they are known.
 
-    `within` is the stage that this one is a part of; its row holds the cycles of its parts too. One level is all.
+    `within` is the stage that this one is a part of; the row of that stage includes its parts. There is only one level.
     """
 
     stage: str
@@ -126,12 +126,13 @@ class BoardRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRecord(BoardRecord):
-    """One run: what its board left behind, and what ran there. `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
+    """One run: the records of its board, and what ran there.
 
-    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference. `geometry` says
-    where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware that does
-    not ask. `assumptions` are warnings of what was not given and had to be assumed, or was given and seems wrong;
-    `losses` say in words what those published numbers count that the firmware lost.
+    `firmware_place` is the file of the firmware, or "built in"; `ldf_place` is the LDF's, or "shipped". `reference` explains
+    the `reference_ms` of `rows`; it is None if the firmware has no reference. `geometry` says where the firmware takes the
+    cameras to be, and whether the recording said so; it is empty for firmware that does not ask. `assumptions` are warnings
+    of what was missing and had to be assumed, or was given and seems wrong. `losses` explain the published numbers of what
+    the firmware lost.
     """
 
     identity: Identity

@@ -34,7 +34,7 @@ class Core:
     """One core. Firmware gets it as the argument of its main loop."""
 
     run: Run
-    """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
+    """Run a kernel on rows and ints. Yield the result to charge the cycles and get the kernel's value."""
 
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
@@ -52,7 +52,7 @@ class Core:
 
     @property
     def now_ticks(self) -> int:
-        """The core's own clock, in ticks of the simulation. A core that runs ahead does not know what its firmware waits for."""
+        """The core's own clock, in ticks of the simulation. It does not include waits that a core running ahead has not met yet."""
         return self._parts.clock.ticks
 
     # ---- stages
@@ -84,43 +84,43 @@ class Core:
         return self._arrays[name]
 
     def has_buffer(self, name: str) -> bool:
-        """Whether there is a buffer called `name`: some come only with the tables of a recording."""
+        """Whether there is a buffer called `name`. Some exist only if the recording has tables."""
         return self._layouts.has_buffer(name)
 
     def overlay(self, buffer: str | Sequence[Row], element: Number, columns: int) -> tuple[Row, ...]:
-        """Return the memory of the buffer of that name, or of the rows of a picture, all as one, as rows of another kind: a union in C."""
+        """Return the memory of a buffer, by its name, or of the rows of a picture, as rows of another kind, like a union in C."""
         return self._layouts.overlay(buffer, element, columns)
 
     def part(self, rows: Sequence[Row], first: int, count: int) -> tuple[Row, ...]:
-        """Return `count` elements of each row from element `first` on, such as the columns of an area: no bytes move."""
+        """Return `count` elements of each row from element `first` on, such as the columns of an area. No bytes move."""
         return self._layouts.part(rows, first, count)
 
     def use_size(self, size: FrameSize) -> None:
-        """Have the buffers from now on as firmware declares them for pictures of `size`, in the memory of the full ones.
+        """Lay out the buffers as the firmware declares them for pictures of `size`, in the memory of the full ones.
 
-        Their contents are not moved. Raises FirmwareError for a size that the memory has no room for.
+        Contents are not moved. Raises FirmwareError for a size that does not fit.
         """
         self._layouts.use(size)
 
     # ---- lines of pictures, and other copies
 
     def input_ring(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
-        """Return a ring that fetches the lines of `image` into rows, or those of the buffer `ring`, one line ahead.
+        """Return a ring that fetches the lines of `image` one line ahead into `ring`, rows or the name of a buffer.
 
-        Where the LDF has the image cached, its own rows take the place of the ring's.
+        If the LDF has the image cached, its own rows are used instead of the ring's.
         """
         return self._parts.rings.input(image, ring)
 
     def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
-        """Return a ring that fetches the lines of `image` into `rows`, where kernels need them, even if it is cached."""
+        """Return a ring that fetches the lines of `image` into `rows` even if the image is cached."""
         return self._parts.rings.window(image, rows)
 
     def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
-        """Return a ring that takes finished lines from the rows of buffer `ring` to `image`, which may be cached as above."""
+        """Return a ring that moves finished lines from the buffer `ring` to `image`, which may be cached as above."""
         return self._parts.rings.output(ring, image)
 
     def memory_dma(self, name: str) -> MemoryDma:
-        """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to be programmed by its registers."""
+        """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to program its registers."""
         self._parts.progress.stay_in_step()  # what it moves may be anybody's
         return self._parts.dma.stream(name, self._parts.progress)
 
@@ -135,14 +135,13 @@ class Core:
     def at(
         self, rows: int | range | Pixels | None = None, columns: Columns | None = None, *taken: Any
     ) -> None:
-        """Say what the work from here on is about, for the heat map: rows and columns of the picture that is looked at.
+        """Say which rows and columns of the picture the work from here on belongs to, for the heat map.
 
-        `columns` may also be a function that returns single ones, such as those of edges, with what it takes behind it, and in the
-        place of both may be one that returns (row, column) of single pixels, such as those under lines: it is called only if someone
-        looks.
-        Without columns it is the whole rows, without anything no place. That holds until the next `at` or the end of the
-        stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
-        which is the place then. It takes no cycle.
+        Without columns it belongs to whole rows, without any argument to no place. `columns` may be a function, followed by its
+        arguments, that returns single columns, such as those of edges. In place of both, a function may return (row, column) of
+        single pixels, such as those under lines. Functions are called only if someone looks. The place holds until the next
+        `at` or the end of the stage. Rows without columns, or no place, hold only until the next line of a ring over a picture
+        as high as the camera's, which is then the place. It takes no cycles.
         """
         self._pictures.at(rows, columns, *taken)
 
@@ -168,11 +167,11 @@ class Core:
         return number
 
     def remark(self, text: str) -> None:
-        """Add a sentence about the current frame to the report, as one line. Raises FirmwareError for what is no text."""
+        """Add a sentence about the current frame to the report, as one line. Raises FirmwareError unless it is text."""
         self._pictures.remark(text)
 
     def set_camera(self, settings: CameraSettings) -> None:
-        """Give this core's camera new settings: its next pictures are off in brightness and colour until they have worked.
+        """Give this core's camera new settings. Brightness and colour of its next pictures are off until they take effect.
 
         The two-wire bus to the camera is not modelled.
         """
@@ -184,13 +183,13 @@ class Core:
     def set_picture_size(self, size: FrameSize) -> None:
         """Have this core's camera send pictures of `size`: the recorded one, half or a quarter of it.
 
-        It does so once every camera is told the same, from the next picture on that it begins.
+        The camera does so from its next picture on, once every camera has been given the same size.
         """
         self._parts.progress.when_there(partial(self._parts.capture.change_size, self.name, size))
 
     @awaited
     def ppi_status(self) -> Generator[Any, Any, int]:
-        """Read PPI_STATUS of this core's PPI, which clears it: the bits of `PpiStatusBit` that were set since the last time."""
+        """Read and clear PPI_STATUS of this core's PPI: the bits of `PpiStatusBit` set since the last time."""
         self._parts.progress.program_device(CAMERAS, writes=0, reads=1)
         yield from self._parts.progress.sync()
         return self._parts.capture.read_status(self.name)
@@ -199,12 +198,12 @@ class Core:
 
     @awaited
     def send(self, row: Row, nbytes: int, over: str = SPI) -> Generator[Any, Any, None]:
-        """Send the first `nbytes` of `row` to the device on the peripheral `over`, by DMA, once the message before is out."""
+        """Send the first `nbytes` of `row` by DMA to the device on the peripheral `over`, after the previous message."""
         yield from self._parts.messages.send(row, nbytes, over)
 
     @awaited
     def receive(self, row: Row, over: str = SPI) -> Generator[Any, Any, int]:
-        """Take the next message of the device on the peripheral `over` into `row`, if it has one; return its bytes, 0 without one."""
+        """Receive the next message of the device on the peripheral `over` into `row`; return its bytes, 0 if there is none."""
         nbytes: int = yield from self._parts.messages.receive(row, over)
         return nbytes
 
@@ -240,7 +239,7 @@ class Core:
     def on_interrupt(self, source: str, handler: CoreHandler) -> None:
         """Have `handler(core)` called at every interrupt of `source`, such as MDMA1_0, SPI_DMA or SUPPLEMENTAL_0.
 
-        A handler may be a generator function that yields kernels. Raises FirmwareError for what is no function, and for a coroutine's.
+        A handler may be a generator function that yields kernels. Raises FirmwareError unless it is a function, and for `async` ones.
         """
         if not callable(handler) or iscoroutinefunction(handler):
             what = "an `async` one" if callable(handler) else shown(handler)
@@ -255,5 +254,5 @@ class Core:
 
     @awaited
     def idle(self) -> Generator[Any, Any, None]:
-        """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
+        """Wait for an interrupt and run its handler. An interrupt that is already pending ends the wait at once."""
         yield from self._tasks.idle()

@@ -93,7 +93,7 @@ class MemoryDma:
 
     @awaited
     def start(self, source: DmaConfig, destination: DmaConfig) -> Generator[Any, Any, None]:
-        """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
+        """Write both CONFIG registers, which starts the first work unit. Raises MmrError for what the chip would flag."""
         place = running_line()
         self._progress.program_device(self.name, writes=2)
         yield from self._progress.sync()
@@ -109,7 +109,7 @@ class MemoryDma:
 
     @awaited
     def wait(self) -> Generator[Any, Any, None]:
-        """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
+        """Stall until the started work is done; with FLOW=AUTO, that is only after a `stop`."""
         yield from self._progress.wait_event(self.done, f"{self.name}", lambda: self._last)
 
     def _run(self, source: ChannelStep, destination: ChannelStep) -> Generator[Any, Any, None]:

@@ -28,7 +28,7 @@ class HasBuffers(Protocol):
 
 
 class Readout:
-    """What a core has in memory at the end of a frame, before anything of the next one is in it."""
+    """What a core has in memory at the end of a frame, before anything of the next one arrives."""
 
     def __init__(self, buffers: HasBuffers, frame: Frame, results: Mapping[str, int]) -> None:
         """`results`: the numbers published for the frame."""
