@@ -1,4 +1,4 @@
-"""Where the time of a frame goes: the simulator's own, in µs by part, as docs/architecture.md has it.
+"""Where the time of a frame goes: the simulator's own, in µs by part, as docs/speed.md has it.
 
     python benchmarks/frame_time.py [--frames 48] [--profile gcc-adi]
 
