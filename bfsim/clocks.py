@@ -1,8 +1,8 @@
-"""Time in whole numbers: ticks, the clocks that are multiples of a tick, and clocks that are not.
+"""Time in whole numbers: ticks, clocks whose cycles are multiples of a tick, and other clocks.
 
-A tick is the longest time of which a CCLK and an SCLK cycle are both whole multiples, so no rounding
-happens between core and bus. PPI_CLK and recorded time stamps are asynchronous; `PeriodicEdges` and
-`Clocks.ticks_of_ns` convert them exactly, in fractions, and round once per edge.
+A tick is the longest time of which both a CCLK and an SCLK cycle are whole multiples, so nothing is rounded
+between core and bus. PPI_CLK and recorded time stamps are asynchronous. `PeriodicEdges` and
+`Clocks.ticks_of_ns` convert them exactly, as fractions, and round once per edge.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from bfsim.errors import ConfigError, shown, with_article
 
 @dataclass(frozen=True, slots=True)
 class Clocks:
-    """The two synchronous clocks of the chip, in Hz (exact fractions: 133⅓ MHz is 400_000_000 / 3).
+    """The two synchronous clocks of the chip, in Hz, as exact fractions (133⅓ MHz is 400_000_000 / 3).
 
     `tick_hz` is the least common multiple of both; `cclk_ticks` and `sclk_ticks` are the ticks of one cycle.
     """
@@ -49,20 +49,20 @@ class Clocks:
         return -int(-(time_ns * self.tick_hz) // 1_000_000_000)
 
     def ns_of_ticks(self, ticks: int) -> int:
-        """Return the last whole ns at or before a tick."""
+        """Return the last whole nanosecond at or before a tick."""
         return int(ticks * 1_000_000_000 // self.tick_hz)
 
 
 @dataclass(frozen=True, slots=True)
 class PeriodicEdges:
-    """Edges of an asynchronous clock: edge n is at offset + n · period, rounded up to a tick, never drifting."""
+    """Edges of an asynchronous clock: edge n is at offset + n · period, rounded up to a tick, without drift."""
 
     period_ticks: Fraction
     offset_ticks: Fraction = Fraction(0)
 
     @classmethod
     def of(cls, clocks: Clocks, hz: Fraction, offset_cycles: Fraction = Fraction(0)) -> PeriodicEdges:
-        """Edges at every cycle of a clock of `hz`, the first one after `offset_cycles` of it."""
+        """Return the edges of a clock of `hz`, one per cycle, the first one after `offset_cycles` of its cycles."""
         cycle_ticks = clocks.tick_hz / hz
         return cls(cycle_ticks, cycle_ticks * offset_cycles)
 

@@ -1,8 +1,7 @@
-"""The errors of bfsim: one class per kind of mistake, each a child of the built-in that a caller expects.
+"""The errors of bfsim: one class per kind of mistake, each a subclass of the built-in error that a caller expects.
 
-A message says what must be, what was, and where. The command line prints it as one paragraph and exits with code 2.
-Values of any length stand in it as `shown` or `cut`. A missed deadline or a missed frame is a result and never an
-error.
+A message says what is required, what was found, and where. The command line prints it as one paragraph and exits with
+code 2. Values of any length are `shown` or `cut`. A missed deadline or a missed frame is a result, never an error.
 """
 
 from __future__ import annotations
@@ -12,21 +11,21 @@ from bdb import BdbQuit
 from collections.abc import Sequence
 
 LONGEST_VALUE = 80
-"""As many characters of a value go into a message; the whole of it is in the file that it is from."""
+"""Most characters of a value in a message. The whole value is in the file that it comes from."""
 LONGEST_EXCERPT = 100
-"""As many characters of a line are shown on either side of the caret."""
+"""Most characters of a line on either side of the caret."""
 
 
 def shown(value: object) -> str:
-    """Return a value as a message has it: text in quotes, and `cut`."""
+    """Return a value as messages show it: text in quotes, and `cut`."""
     try:
         return cut(repr(value))
-    except ValueError:  # Python writes no integer of more than 4,300 digits
+    except ValueError:  # Python refuses to write integers of more than 4,300 digits
         return "a number of thousands of digits"
 
 
 def cut(text: str) -> str:
-    """Return foreign text as a message has it: on one line, and without its middle where it is long."""
+    """Return foreign text as messages show it: on one line, without its middle if it is long."""
     hidden = len(text) - LONGEST_VALUE
     if hidden > 0:
         half = LONGEST_VALUE // 2
@@ -35,30 +34,30 @@ def cut(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return foreign text on one line, with what cannot be seen as Python writes it."""
+    """Return foreign text on one line, with invisible characters as Python escapes them."""
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
 def legible(text: str) -> str:
-    """Return text that can be written as UTF-8: of names of files that are none, each wrong byte is replaced."""
+    """Return text that can be written as UTF-8: each byte of a file name that is not UTF-8 is replaced."""
     return text.encode(errors="surrogateescape").decode(errors="replace")
 
 
 def pointed(line: str, column: int) -> str:
-    """Return a line of source, and below it a caret under its character `column`, as a message ends with it."""
+    """Return a line of source with a caret under its character `column`, as the end of a message."""
     begin, end = max(0, column - LONGEST_EXCERPT), column + LONGEST_EXCERPT
     margin = re.sub(r"\S", " ", line[begin:column])
     return f"\n    {line[begin:end]}\n    {margin}^"
 
 
 def listed(words: Sequence[str], most: int) -> str:
-    """Return words as a list of as many as `most`, and how many more there are."""
+    """Return words as a list of at most `most`, and how many more there are."""
     more = len(words) - most
     return ", ".join(words[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def with_article(name: str) -> str:
-    """Return the name of a type with its article, as one says it: an int, a uint8, an f32, an ndarray."""
+    """Return the name of a type with its article as pronounced: an int, a uint8, an f32, an ndarray."""
     return f"{'an' if name.lower().startswith((*'aeio', 'f32', 'ndarray')) else 'a'} {name}"
 
 
@@ -67,7 +66,7 @@ class BfsimError(Exception):
 
 
 class ConfigError(BfsimError, ValueError):
-    """Raised when a board, an option, a baseline or a mode says something that cannot be."""
+    """Raised when a board, an option, a baseline or a mode says something impossible."""
 
 
 class RecordingError(BfsimError, ValueError):
@@ -75,11 +74,11 @@ class RecordingError(BfsimError, ValueError):
 
 
 class KernelError(BfsimError, ValueError):
-    """Raised when a kernel leaves the language, is called wrongly, or indexes outside an array."""
+    """Raised when a kernel leaves the kernel language, is called wrongly, or indexes outside an array."""
 
 
 class LinkError(BfsimError, ValueError):
-    """Raised when an LDF cannot be parsed or does not have room for the firmware."""
+    """Raised when an LDF cannot be parsed or has no room for the firmware."""
 
 
 class FirmwareError(BfsimError, RuntimeError):
@@ -91,21 +90,21 @@ class DeadlockError(FirmwareError):
 
 
 class MmrError(BfsimError, ValueError):
-    """Raised when firmware programs a memory-mapped register with what the chip would flag."""
+    """Raised when firmware programs a memory-mapped register with a value that the chip would flag."""
 
 
 class WorkError(BfsimError, ValueError):
-    """Raised when a recorded run cannot be read, or cannot be played on the hardware that was asked for."""
+    """Raised when a recorded run cannot be read, or cannot be played on the requested hardware."""
 
 
 class EndError(BaseException):
-    """Raised where bfsim ends at once, whatever code of the user is at work: it is no failure of that."""
+    """Raised where bfsim ends at once, whatever user code is running. It is not a failure of that code."""
 
 
 def is_failure(error: BaseException) -> bool:
-    """Return whether code of the user that raised this has failed; Ctrl-C, `q` in pdb, and what ends bfsim itself, go through it."""
+    """Return whether user code that raised this has failed. Ctrl-C, `q` in pdb and `EndError` only pass through it."""
     return not isinstance(error, (KeyboardInterrupt, BdbQuit, EndError))
 
 
 class BfsimWarning(UserWarning):
-    """Given where a run goes on, but not as its user will have thought."""
+    """Issued when a run goes on, but not as its user will expect."""

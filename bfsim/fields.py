@@ -1,6 +1,6 @@
-"""Trees of frozen dataclasses as data: the type of every field, fields by their path, and values as they are written.
+"""Trees of frozen dataclasses as data: the type of every field, fields by path, and values as text.
 
-A path is the names of fields from the root of the tree with dots between them, and a number for one of a tuple:
+A path is the names of the fields from the root of the tree, joined by dots, with a number for each element of a tuple:
 `sdram.nRP`, `cameras.0.offset_ppm`.
 """
 
@@ -18,14 +18,14 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 from bfsim.errors import ConfigError, cut, shown, with_article
 
 NEAREST_FIELDS = 3
-"""As many names are offered to who asked for one that there is not."""
+"""Most names that are suggested when a field does not exist."""
 
 NUMBER = re.compile(
     r"(?P<sign>[+-]?)(?P<numerator>[\d_]{1,24}(\.\d{1,24})?|\d{1,3}(,\d{3}){1,6}(\.\d{1,24})?)(e(?P<exponent>[+-]?\d{1,2}))?"
     r"(/(?P<denominator>\d{1,18}))?",
     re.IGNORECASE | re.ASCII,
 )
-"""A number as people write it, or as reports print it: 3, -30, 500e6, 133_333_333.3, 600,000,000, 1/3, 400e6/3."""
+"""A number as people write it or as reports print it: 3, -30, 500e6, 133_333_333.3, 600,000,000, 1/3, 400e6/3."""
 HEXADECIMAL = re.compile(r"0x[0-9a-f]{1,16}", re.IGNORECASE)
 YES, NO = ("yes", "true", "on"), ("no", "false", "off")
 
@@ -34,7 +34,7 @@ Record = TypeVar("Record")
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A field that holds no record: where it is, what it holds, and the type that it is annotated with."""
+    """A field that holds no record: its path, its value and its annotated type."""
 
     path: str
     value: object
@@ -42,16 +42,16 @@ class Leaf:
 
     @property
     def is_settable(self) -> bool:
-        """Whether it is a number, or yes or no."""
+        """Whether it is a number or a yes/no value."""
         return self.hint in (int, Fraction, bool)
 
 
 _hints: Callable[[Any], Mapping[str, Any]] = cache(get_type_hints)
-"""The types of a record's fields, by its class. Annotations are text, which Python would compile each time that it is asked."""
+"""The types of a record's fields, by its class. Annotations are text, which Python would otherwise compile every time."""
 
 
 def leaves(record: Any, path: str = "") -> Iterator[Leaf]:
-    """Yield all fields of a tree that hold no record, in order; those that follow from others are left out."""
+    """Yield all fields of a tree that hold no record, in order, leaving out those that follow from others."""
     hints = _hints(type(record))
     for field in fields(record):
         if not field.init:
@@ -67,9 +67,9 @@ def leaves(record: Any, path: str = "") -> Iterator[Leaf]:
 
 
 def require_types(record: Any, what: str) -> None:
-    """Raise ConfigError, with the path of the field, unless every field of a tree is of its type.
+    """Raise ConfigError, with the path of the field, unless every field of a tree has its annotated type.
 
-    `what` is the tree's name in the message. Numbers with a fraction must be of the type Fraction: floats are not exact.
+    `what` is the tree's name in the message. Numbers that may have a fraction must be of the type Fraction: floats are not exact.
     """
     hints = _hints(type(record))
     for field in fields(record):
@@ -89,7 +89,7 @@ def require_types(record: Any, what: str) -> None:
 
 
 def _fits(value: object, hint: Any) -> bool:
-    """Whether a value is of an annotated type, as deep as its tuples and mappings go."""
+    """Whether a value has an annotated type, including the elements of its tuples and mappings."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         fits = any(_fits(value, each) for each in inner)
@@ -108,9 +108,9 @@ def _fits(value: object, hint: Any) -> bool:
 
 
 def leaf_at(record: Any, path: str, also: Mapping[str, str]) -> Leaf:
-    """Return the field of a path, whatever the case of its letters; `also` holds other names of fields, in lower case.
+    """Return the field at a path, whatever the case of its letters. `also` holds other names of fields, in lower case.
 
-    Raises ConfigError, with the names that there are, where the path leads nowhere or to a record.
+    Raises ConfigError, with the existing names, if the path leads nowhere or to a record.
     """
     at, where, names = record, "", path.split(".")
     for depth, name in enumerate(names):
@@ -133,7 +133,7 @@ def leaf_at(record: Any, path: str, also: Mapping[str, str]) -> Leaf:
 
 
 def _names_below(at: Any) -> list[str]:
-    """Return what a path can go on with: the fields of a record, the numbers of a tuple of records, or nothing."""
+    """Return how a path can go on: the fields of a record, the numbers of a tuple of records, or nothing."""
     if is_dataclass(at) and not isinstance(at, type):
         return [each.name for each in fields(at) if each.init]
     if isinstance(at, tuple) and at and all(map(is_dataclass, at)):
@@ -162,7 +162,7 @@ def _listed(known: list[str]) -> str:
 
 
 def parsed(text: str, hint: Any) -> int | Fraction | bool:
-    """Return the value of a field of that type, int, Fraction or bool, as it is written. Raises ConfigError otherwise."""
+    """Return the value that a text gives to a field of type int, Fraction or bool. Raises ConfigError if it gives none."""
     text = text.strip()
     if hint is bool:
         if text.lower() not in YES + NO:
@@ -184,13 +184,13 @@ def _number(text: str) -> Fraction | None:
         return None
     try:
         numerator = Fraction(found["sign"] + found["numerator"].replace(",", ""))
-    except ValueError:  # underscores where no digits are
+    except ValueError:  # underscores without digits around them
         return None
     return numerator * Fraction(10) ** int(found["exponent"] or 0) / int(found["denominator"] or 1)
 
 
 def with_values(record: Record, values: Mapping[str, object]) -> Record:
-    """Return a tree with other values at some paths. Each record is made once, and its own checks see all of its values."""
+    """Return a tree with other values at some paths. Each record is made once, so its own checks see all new values."""
     own = {path: value for path, value in values.items() if "." not in path}
     inner: dict[str, dict[str, object]] = {}
     for path, value in values.items():

@@ -1,8 +1,7 @@
-"""The timeline of a run: flat records of what each core and device did, from one cycle to another.
+"""The timeline of a run: flat records of what each core and device did, and from which cycle to which.
 
-They are handed out while the run goes on (`bfsim.run.simulate(..., on_spans=...)`), so that a long run takes no more
-memory. Cycles are CCLK cycles from the start of the run. What a device does between two edges of the CCLK begins and
-ends at the next one.
+They are handed out during the run (`bfsim.run.simulate(..., on_spans=...)`), so a long run takes no more memory. Cycles
+are CCLK cycles from the start of the run. Whatever a device does between two CCLK edges begins or ends at the next one.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from bfsim.trace import StallReason
 
 
 class SpanKind(StrEnum):
-    """What was going on: CALL, WORK, STALL and IDLE fill the time of a core exactly, and so do its STAGEs."""
+    """What was going on. CALL, WORK, STALL and IDLE fill the time of a core exactly, and so do its STAGEs."""
 
     FRAME = "frame"
     STAGE = "stage"
@@ -37,16 +36,16 @@ TRACKS = {
     SpanKind.IDLE: "work", SpanKind.INTERRUPT: "interrupts", SpanKind.TRANSFER: "transfers", SpanKind.LINE: "lines",
     SpanKind.MESSAGE: "messages", SpanKind.LOCK: "locks",
 }  # fmt: skip
-"""The track of a core or device that a span of each kind lies on. Each LEVEL has one of its own."""
+"""The track of a core or device for each kind of span. Each LEVEL has a track of its own."""
 
 
 NO_STALLS: Mapping[StallReason, int] = MappingProxyType({})
 
 
 class Place(NamedTuple):
-    """A part of a picture: its rows and its columns, counted from 0: those of a range, single ones in order, or all.
+    """A part of a picture: its rows and columns, counted from 0, as a range, as single ones in order, or all.
 
-    Single `rows` are those of single pixels: each goes with the column at the same place.
+    Single `rows` belong to single pixels: each goes with the column at the same position.
     """
 
     rows: range | tuple[int, ...]
@@ -81,5 +80,5 @@ class Span(NamedTuple):
 
     @property
     def track(self) -> tuple[str, str]:
-        """What it lies on: `where`, and which track there."""
+        """The track of the span: `where`, and its name there."""
         return self.where, self.name if self.kind is SpanKind.LEVEL else TRACKS[self.kind]

@@ -1,4 +1,4 @@
-"""Spans as columns of numbers: a frame has tens of thousands, and a record of each takes longer than all that is made of them."""
+"""Spans as columns of numbers: a frame has tens of thousands, and making a record of each takes longer than using them."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from bfsim.trace import StallReason
 
 Ints = NDArray[np.int64]
 REASONS = tuple(StallReason)
-"""Of stalls, by their numbers."""
+"""Reasons of stalls, by number."""
 NUMBER_OF = {reason: number for number, reason in enumerate(REASONS)}
 KINDS = tuple(SpanKind)
 
 
 class What(NamedTuple):
-    """What spans can be: fields of `Span` by these names."""
+    """What a span is: the fields of `Span` with these names."""
 
     kind: SpanKind
     where: str
@@ -30,19 +30,19 @@ class What(NamedTuple):
 
 
 class Whats:
-    """All that the spans of a timeline are, by their numbers."""
+    """Every `What` of a timeline's spans, by number."""
 
     def __init__(self) -> None:
         self.all: list[What] = []
         self.stages: dict[tuple[str, str], int] = {}
-        """Numbers of their own of places and stages."""
-        # the hash of a kind takes longer than its id
+        """Numbers of pairs of `where` and stage."""
+        # hashing a kind takes longer than its id
         self._numbers: dict[tuple[int, str, str, str], int] = {}
         self._known: list[tuple[int, int]] = []  # numbers of kind and stage of each
         self._columns: Ints = np.zeros((2, 0), np.int64)
 
     def number(self, kind: SpanKind, where: str, name: str, stage: str = "") -> int:
-        """Return the number of one, which may be new."""
+        """Return the number of a `What`, which may be new."""
         key = id(kind), where, name, stage
         found = self._numbers.get(key)
         if found is None:
@@ -53,12 +53,12 @@ class Whats:
         return found
 
     def in_stages(self) -> Ints:
-        """Return of each the number of where it is and in which stage."""
+        """Return for each `What` the number of its pair in `stages`."""
         stages: Ints = self._kinds_and_stages()[1]
         return stages
 
     def are(self, *kinds: SpanKind) -> NDArray[np.bool_]:
-        """Return of each whether it is of one of these kinds."""
+        """Return for each `What` whether it is of one of these kinds."""
         return np.isin(self._kinds_and_stages()[0], [KINDS.index(each) for each in kinds])
 
     def _kinds_and_stages(self) -> Ints:
@@ -74,9 +74,9 @@ NO_ROWS: Ints = np.zeros((0, len(PER_STALL)), np.int64)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpanColumns:
-    """A row for each span. `what` and `place` are numbers of `whats` and `places`; the others are fields of `Span`.
+    """A row for each span. `what` and `place` are numbers in `whats` and `places`; the others are fields of `Span`.
 
-    Stalls have rows of their own: the row of the span, the reason by its number in REASONS, and cycles.
+    Stalls have their own rows: the row of the span, the number of the reason in REASONS, and the cycles.
     """
 
     whats: Whats
@@ -96,7 +96,7 @@ class SpanColumns:
     def of(
         cls, whats: Whats, spans: Ints, stalls: Ints = NO_ROWS, places: Sequence[Place | None] = (None,)
     ) -> SpanColumns:
-        """Return columns in the order of PER_SPAN and of PER_STALL as such."""
+        """Return span columns from tables whose columns are in the order of PER_SPAN and PER_STALL."""
         return cls(
             whats=whats,
             places=places,
@@ -113,11 +113,11 @@ class SpanColumns:
         return self.end_cclk - self.begin_cclk
 
     def are(self, *kinds: SpanKind) -> NDArray[np.bool_]:
-        """Return of each row whether its span is of one of these kinds."""
+        """Return for each row whether its span is of one of these kinds."""
         return self.whats.are(*kinds)[self.what]
 
     def rows(self, wanted: NDArray[np.bool_]) -> SpanColumns:
-        """Return some of the rows."""
+        """Return the wanted rows."""
         has_row = wanted[self.stalled]
         kept = {name: getattr(self, name)[wanted] for name in PER_SPAN}
         kept |= {name: getattr(self, name)[has_row] for name in PER_STALL}
@@ -129,7 +129,7 @@ class SpanColumns:
         return replace(self, places=(None,), place=np.zeros_like(self.place))
 
     def spans(self) -> Iterator[Span]:
-        """Yield a record of each."""
+        """Yield a record of each span."""
         stalls: dict[int, dict[StallReason, int]] = {}
         for row, reason, cclk in zip(*(getattr(self, each).tolist() for each in PER_STALL), strict=True):
             stalls.setdefault(row, {})[REASONS[reason]] = cclk
@@ -143,7 +143,7 @@ class SpanColumns:
 
 
 def columns_of(spans: SpanColumns | Iterable[Span], whats: Whats) -> SpanColumns:
-    """Return spans as columns, of `whats` unless they are columns already."""
+    """Return spans as columns, with numbers of `whats` unless they are columns already."""
     if isinstance(spans, SpanColumns):
         return spans
     if isinstance(spans, Spans):
@@ -169,7 +169,7 @@ def columns_of(spans: SpanColumns | Iterable[Span], whats: Whats) -> SpanColumns
 
 
 def joined(parts: Sequence[SpanColumns]) -> SpanColumns:
-    """Return the rows of all parts, of which there is at least one; those that have rows have the same `whats`, that of the last."""
+    """Return the rows of all parts, at least one. All parts with rows have the `whats` of the last part."""
     columns = {
         name: np.concatenate([getattr(each, name) for each in parts]) for name in (*PER_SPAN, *PER_STALL)
     }
@@ -184,7 +184,7 @@ def joined(parts: Sequence[SpanColumns]) -> SpanColumns:
 
 
 class Spans(Sequence[Span]):
-    """What was told at a time: a record of each for who looks at them one by one, and columns for who counts."""
+    """The spans told at one time: records for consumers that read them one by one, columns for those that count."""
 
     def __init__(self, parts: Sequence[SpanColumns | Sequence[Span]], whats: Whats) -> None:
         self._parts = parts
@@ -192,7 +192,7 @@ class Spans(Sequence[Span]):
 
     @cached_property
     def columns(self) -> SpanColumns:
-        """All of them as columns."""
+        """All spans as columns."""
         return joined([columns_of(each, self._whats) for each in (*self._parts, ())])
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What a bus of a board is to all who use it: the fast mode's (`woven_bus`) and the detailed mode's (`machine.detailed.bus`) alike."""
+"""The interface of a board's bus, the same in the fast mode (`woven_bus`) and the detailed mode (`machine.detailed.bus`)."""
 
 from __future__ import annotations
 
@@ -16,33 +16,33 @@ from bfsim.machine.simulation import Followed
 
 
 class Bus(Followed, Protocol):
-    """The SDRAM bus and the port of L2 of one board, with all who use them."""
+    """The SDRAM bus and the port of L2 of one board, with all their users."""
 
     words: Any
-    """Its state, word by word, as in `bus.state`; the counters there are kept on every bus."""
+    """The state of the bus, word by word, laid out as in `bus.state`. Every bus keeps the counters there."""
     owners: MemoryOwners
     planner: Planner
-    """Plans transfers for it."""
+    """Plans transfers for the bus."""
     logs: CoreLogs
-    """The accesses of the cores' calls,"""
+    """The accesses of the cores' calls."""
     cores: CoreCalls
-    """which this plays."""
+    """Plays these accesses."""
     records: BusRecords
 
     def settle(self) -> None:
-        """Let everything happen that is due at the simulated time."""
+        """Let everything happen that is due by the simulated time."""
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
-        """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
+        """Append a transfer to its master's queue. It begins at tick `at` or later."""
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at a transfer's end, which must not be known yet."""
+        """Return the event at the end of a transfer, which must not be known yet."""
 
     def when_row(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        """Return the event at the end of the next row that a transfer writes, or at its own end. Neither may be known yet."""
 
     def moved_by(self, transfer: Transfer) -> int:
-        """Return how many elements a transfer that is not over has moved."""
+        """Return the number of elements that an unfinished transfer has moved."""
 
     def lost_by(self, master: int) -> int:
-        """Return how many elements a peripheral's DMA has lost, since they found its FIFO full or did not come in time."""
+        """Return the number of elements that a peripheral's DMA has lost because its FIFO was full or they came too late."""

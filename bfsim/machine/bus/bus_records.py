@@ -1,4 +1,4 @@
-"""What a bus leaves behind: its traffic, and what it tells a timeline, if there is one."""
+"""The records of a bus: its traffic, and its timeline, if there is one."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ class BusRecords:
         self._words = words
         self._owners = owners
         self.told: ToldBus | None = None
-        """The bus as the timeline sees it, if there is one."""
+        """Reports the bus to the timeline, if there is one."""
         self.timeline: Timeline | None = None
-        """What is told what happens when, if anybody wants to know."""
+        """The timeline that hears what happens when, if anyone wants to know."""
 
     def use(self, timeline: Timeline) -> None:
-        """Tell `timeline` of transfers and of the load from now on."""
+        """Report transfers and the load to `timeline` from now on."""
         self.timeline = timeline
         self.told = ToldBus(timeline, self._board, self._words, self._owners)
 
     def tell(self, until: int) -> None:
-        """Tell the timeline of the transfers that were over before tick `until`."""
+        """Tell the timeline the transfers that ended before tick `until`."""
         if self.told:
             self.told.tell(until)
 
     def flow_of(self, transfer: Transfer | None) -> int:
-        """Return the flow from a transfer, if any, to the wait that it has just ended; 0 if nobody is told."""
+        """Return the flow from a transfer, if any, to the wait that it has just ended, 0 without a timeline."""
         return self.told.flow_of(transfer.number) if self.told and transfer else 0
 
     def traffic(self) -> tuple[TrafficRecord, ...]:
-        """Return what every master has moved so far."""
+        """Return the traffic of every master so far."""
         return traffic_records(self._words, self._owners, self._board.clocks.cclk_ticks)

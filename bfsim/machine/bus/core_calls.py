@@ -1,4 +1,4 @@
-"""The cores on the bus: a call plays its log of accesses, and a core that waits for a lock tries TESTSET again and again."""
+"""The cores on the bus: a call plays its log of accesses, and a core that waits for a lock repeats TESTSET."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from bfsim.machine.bus.ends import Ends
 
 
 def spin_ticks(board: BoardSpec) -> int:
-    """Return what lies between the end of a TESTSET of a core that spins and the moment at which the next one asks for its memory."""
+    """Return the ticks from the end of a spinning core's TESTSET until the next one requests its memory."""
     events = board.chip.events
     return (events.spin_cclk + events.testset_cclk) * board.clocks.cclk_ticks
 
 
 class CoreCalls(Protocol):
-    """What each core has the buses play."""
+    """The accesses that each core has the buses play."""
 
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
-        """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
+        """Play the first `entries` accesses of a core's log, for a call of `cclk` cycles from tick `begin`. Return its end."""
 
     def spin(self, core: int, since: int) -> None:
-        """Let a core that found a lock taken at tick `since` try TESTSET again and again, until `stop_spinning`."""
+        """Let a core that found a lock taken at tick `since` repeat TESTSET until `stop_spinning`."""
 
     def pause_spinning(self, core: int) -> None:
-        """Let a core that spins do something else."""
+        """Let a spinning core do something else."""
 
     def stop_spinning(self, core: int) -> simpy.Event:
-        """Let the next TESTSET of a core that spins be the last one, from now on; return its end."""
+        """Let the next TESTSET of a spinning core, from now on, be the last one. Return its end."""
 
     def stalls_of(self, core: int) -> Sequence[int]:
-        """Return what the accesses of the core's last call stalled, in cycles, in the order of `bus.state`."""
+        """Return the stalls of the core's last call by its accesses, in cycles, in the order of `bus.state`."""
 
 
 class WovenCalls:
-    """`CoreCalls` by the compiled weave. `words`: the state of the bus; `settle`: plays it up to now."""
+    """`CoreCalls` by the compiled weave. `words` is the state of the bus; `settle` plays it up to now."""
 
     def __init__(
         self, board: BoardSpec, words: Any, logs: CoreLogs, ends: Ends, settle: Callable[[], None]
@@ -52,7 +52,7 @@ class WovenCalls:
         self._spin_ticks = spin_ticks(board)
 
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
-        """Play a call."""
+        """Play a call's accesses."""
         self._start(core, begin, cclk, entries)
         return self._ends.of_call(core)
 
@@ -69,7 +69,7 @@ class WovenCalls:
         self._start(core, since + self._spin_ticks, 0, entries, self._spin_ticks)
 
     def pause_spinning(self, core: int) -> None:
-        """Stop for a while."""
+        """Pause the spinning."""
         self._settle()
         self._words[w.JOBS_AT + core * w.JOB_WORDS + w.STATE] = w.IDLE
         self._words[w.MASTERS_AT + w.CORE_A + core + w.READY] = w.NEVER

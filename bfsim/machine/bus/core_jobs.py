@@ -1,4 +1,4 @@
-"""What a core accesses outside of L1 in a kernel call, compiled: one access after the other, and what each stalls."""
+"""The accesses of a core outside L1 in a kernel call, compiled: one after the other, with the stalls of each."""
 
 from __future__ import annotations
 
@@ -12,52 +12,52 @@ from bfsim.machine.bus.state import State
 
 @native
 def bytes_of(state: State, kind: int) -> int:
-    """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
+    """Return the bytes that an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
     if kind == log.FETCH:
         return w.FETCH_BYTES
     is_line = (
         kind in (log.FILL, log.WRITE_BACK) or kind == log.FETCH_LINE
-    )  # three in a tuple are a loop in compiled code
+    )  # a tuple of three becomes a loop in compiled code
     return state[w.LINE_BYTES] if is_line else w.CORE_WORD_BYTES
 
 
 @native
 def site_of(state: State, core: int) -> int:
-    """Return the site of the core's present access."""
+    """Return the site of the core's current access."""
     return state[w.JOBS_AT + core * w.JOB_WORDS + w.SITE]
 
 
 @native
 def charge(state: State, core: int, reason: int, cycles: int) -> None:
-    """Charge what the core's present access stalls."""
+    """Charge a stall of the core's current access."""
     charge_site(state, core, site_of(state, core), reason, cycles)
 
 
 @native
 def charge_site(state: State, core: int, site: int, reason: int, cycles: int) -> None:
-    """Charge what an access of a core's site stalls."""
+    """Charge a stall of an access of one of a core's sites."""
     state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason] += cycles
     state[site_at(core, site) + reason] += cycles
 
 
 @native
 def cycles_until(state: State, issued: int, done: int) -> int:
-    """Return for how many cycles an access that was `issued` at a tick stalls a core if it is `done` at another: all but its own one."""
+    """Return the stall cycles of an access that was `issued` at one tick and `done` at another: all but its own cycle."""
     ticks = done - issued
     return whole_cycles(state, ticks - 1) if ticks > state[w.CCLK] else 0
 
 
 @native
 def whole_cycles(state: State, ticks: int) -> int:
-    """Return how many whole cycles there are in so many ticks."""
+    """Return the number of whole cycles in so many ticks."""
     return (
         ticks if state[w.CCLK] == 1 else ticks // state[w.CCLK]
-    )  # a division takes the host longer than all else here
+    )  # a division takes the host longer than everything else here
 
 
 @native
 def wait(state: State, core: int, done: int) -> int:
-    """Stall the core from its present access until `done`; return the cycles, to be charged."""
+    """Stall the core from its current access until `done`. Return the cycles, for the caller to charge."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     cycles = cycles_until(state, state[job + w.ISSUED_AT], done)
     state[job + w.STALLED] += cycles * state[w.CCLK]
@@ -66,7 +66,7 @@ def wait(state: State, core: int, done: int) -> int:
 
 @native
 def stall(state: State, core: int, done: int, reason: int) -> None:
-    """Stall the core for `reason` from its present access until `done`."""
+    """Stall the core for `reason` from its current access until `done`."""
     cycles = wait(state, core, done)
     if cycles:
         charge(state, core, reason, cycles)
@@ -74,16 +74,16 @@ def stall(state: State, core: int, done: int, reason: int) -> None:
 
 @native
 def count_fetched(state: State, job: int, fetched: int) -> None:
-    """Note that a core has fetched its code so often in its call; all fetches are spread evenly over that."""
+    """Note how often a core has fetched code in its call. The fetches are spread evenly over the call."""
     state[job + w.FETCHED], fetches = fetched, state[job + w.FETCHES]
     state[job + w.NEXT_FETCH] = fetched * state[job + w.TOTAL] // fetches if fetched < fetches else w.NEVER
 
 
 @native
 def find_present(state: State, core: int) -> bool:
-    """Find what the core accesses next, in its log or in code that it fetches; return whether there is anything.
+    """Find the core's next access, in its log or in the code that it fetches. Return whether there is one.
 
-    Of a fetch and accesses of its cycle these come first.
+    In one cycle, logged accesses come before a fetch.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     at = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
@@ -104,7 +104,7 @@ def find_present(state: State, core: int) -> bool:
 
 @native
 def go_past(state: State, core: int) -> None:
-    """Leave the present access behind: of the code, in turn, or of the log."""
+    """Move past the current access, in the code or in the log."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     if not state[job + w.IN_TURN]:
         state[job + w.ENTRY] += 1
@@ -118,7 +118,7 @@ def go_past(state: State, core: int) -> None:
 
 @native
 def next_entry(state: State, core: int, not_before: int) -> int:
-    """Set the core's next access up; after the last one end the job and return its number, NONE - 1 - core."""
+    """Set up the core's next access. After the last one, end the job and return its number, NONE - 1 - core."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     master = w.MASTERS_AT + w.CORE_A + core
     cclk = state[w.CCLK]
@@ -139,14 +139,14 @@ def next_entry(state: State, core: int, not_before: int) -> int:
     state[job + w.ISSUED_AT] = issued
     if waits:
         ask(state, master, entry & log.OFFSET_MASK, issued)
-    else:  # the store buffer asks, when it has it
+    else:  # the store buffer requests it, once it has it
         state[master + w.USES], state[master + w.READY] = w.NOTHING, issued
     return w.NONE
 
 
 @native
 def ask(state: State, master: int, offset: int, at: int) -> None:
-    """Let a core ask from tick `at` on for the SDRAM bus or for the port of L2, whichever `offset` needs."""
+    """Let a core request the SDRAM bus or the port of L2, whichever `offset` needs, from tick `at` on."""
     in_sdram = offset < state[w.SDRAM_END]
     state[master + w.USES] = w.SDRAM if in_sdram else w.L2
     state[master + w.READY] = aligned(at, state[w.SCLK]) if in_sdram else at
@@ -154,7 +154,7 @@ def ask(state: State, master: int, offset: int, at: int) -> None:
 
 @native
 def start_jobs(state: State) -> None:
-    """Let the cores begin with what was handed to them."""
+    """Let the cores begin the jobs that they were given."""
     for core in range(w.CORES):
         job = w.JOBS_AT + core * w.JOB_WORDS
         if state[job + w.STATE] == w.STARTING:
@@ -163,7 +163,7 @@ def start_jobs(state: State) -> None:
 
 @native
 def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: int) -> None:
-    """Let a core begin with the accesses from `first` to before `end` of its log, of a call of `cclk` cycles from tick `begin`."""
+    """Let a core begin with the accesses from `first` to before `end` of its log, for a call of `cclk` cycles from tick `begin`."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     state[job + w.STATE] = w.RUNNING
     state[job + w.BEGIN], state[job + w.TOTAL], state[job + w.STALLED] = begin, cclk, 0

@@ -1,4 +1,4 @@
-"""What the cores hand to the bus and read back from it: the log of each one's accesses, and what stalled at its sites."""
+"""What the cores hand to the bus and read back: the log of each core's accesses, and the stalls at its sites."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from bfsim.machine.bus import state as w
 
 @native
 def site_at(core: int, site: int) -> int:
-    """Return where it is counted what accesses of a core's site stall, and kept what the site is."""
+    """Return where the stalls of a core's site are counted, and its data are kept."""
     return w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
 
 
 @native
 def kind_of(entry: int) -> int:
-    """Return of which kind an entry of a log is."""
+    """Return the kind of an entry of a log."""
     return entry >> log.KIND_BIT & log.KIND_MASK
 
 
@@ -40,14 +40,14 @@ class CoreLogs:
         return room
 
     def log_in_l2(self, core: int, stamp_cclk: int, kind: int) -> int:
-        """Make the log of a core that of one access to a shared variable in L2; return the number of its entries."""
+        """Make one access to a shared variable in L2 the whole log of a core. Return the number of entries."""
         entry = stamp_cclk << log.STAMP_BIT | kind << log.KIND_BIT | self._words[w.L2_FIRST]
         room = self.room_of(core)
         room[log.LOG], room[log.LOG + w.LOG_ENTRIES] = entry, w.NO_SITE
         return 1
 
     def keep_routine(self, core: int, site: int, offset: int, nbytes: int, following: int) -> None:
-        """Keep where the code of a site lies that no cache holds, and the site of the routine that is fetched behind it."""
+        """Keep where the uncached code of a site lies, and the site of the routine fetched after it."""
         row = site_at(core, site)
         self._words[row + w.CODE], self._words[row + w.CODE_WORDS] = offset, -(-nbytes // w.FETCH_BYTES)
         self._words[row + w.NEXT_ROUTINE] = following
@@ -58,7 +58,7 @@ class CoreLogs:
         return room[:count], room[w.LOG_ENTRIES :][:count]
 
     def accesses(self, core: int, cclk: int, count: int) -> list[tuple[int, int]]:
-        """Return the accesses of a call of `cclk` cycles, whose log has `count` entries, in order: an entry for each, and its site."""
+        """Return the accesses of a call of `cclk` cycles whose log has `count` entries: entry and site of each, in order."""
         logged = list(zip(*(each.tolist() for each in self.first(core, count)), strict=True))
         if not logged or kind_of(logged[-1][0]) != log.FETCHES:
             return logged
@@ -72,7 +72,7 @@ class CoreLogs:
         return sorted(logged, key=lambda each: each[0] >> log.STAMP_BIT)
 
     def _code_in_turn(self, core: int, site: int) -> Iterator[tuple[int, int]]:
-        """Yield the words of a routine and those behind it, over and over: where each lies, and the routine's site."""
+        """Yield the words of a routine and of those after it, over and over: the place of each word, and its routine's site."""
         while True:
             row = site_at(core, site)
             first, words = self._words[row + w.CODE], self._words[row + w.CODE_WORDS]
@@ -80,9 +80,9 @@ class CoreLogs:
             site = self._words[row + w.NEXT_ROUTINE]
 
     def stalls_at_sites(self, core: int) -> NDArray[np.int64]:
-        """Return the table of what the sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.
+        """Return the stalls of a core's sites so far, as a table by site and by reason in the order of `bus.state`.
 
-        Behind these columns one counts the lines that were filled.
+        The column after the reasons counts filled lines.
         """
         first = site_at(core, 0)
         found: NDArray[np.int64] = self._state[first : site_at(core, w.MAX_SITES)]

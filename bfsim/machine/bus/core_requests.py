@@ -1,7 +1,7 @@
-"""A core on the bus, compiled: the accesses outside L1 that a kernel call made, one after the other, and what each stalls.
+"""A core on the bus, compiled: the accesses of a kernel call outside L1, one after the other, with the stalls of each.
 
-A load, a line fill and a fetch wait for their data; a store goes into the store buffer and waits only when that is full.
-Loads overtake stores, except that a load from an address in the store buffer waits until that is empty.
+Loads, line fills and fetches wait for their data. A store goes into the store buffer and waits only if that is full.
+Loads overtake stores, but a load from an address in the store buffer waits until the buffer is empty.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from bfsim.machine.bus.traffic import count_access, count_traffic
 
 @native
 def serve_core(state: State, core: int, at: int, until: int) -> int:
-    """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE.
+    """Make the core's current access at tick `at`. Return the number of its job if that is done, otherwise NONE.
 
-    Until tick `until` no DMA can want the port of L2.
+    Until tick `until`, no DMA can need the port of L2.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.PRESENT]
@@ -50,10 +50,10 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
 
 @native
 def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
-    """Read from SDRAM; return when the first data are at the core.
+    """Read from SDRAM. Return when the first data reach the core.
 
-    The wait for an SCLK edge is part of the cycles of synchronisation. Until the bus is free the core waits for
-    arbitration, then perhaps for a refresh, and else for the page.
+    The wait for an SCLK edge is part of the synchronisation cycles. Until the bus is free, the core waits for
+    arbitration, then perhaps for a refresh, and otherwise for the page.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     through = access(state, at, offset, False)
@@ -61,7 +61,7 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     more = max(0, (nbytes >> state[w.WORD_BITS]) - 1)
     if kind == log.LOAD and more:
         through = stream(state, more, False, offset)  # a load needs all of its word
-    elif more:  # the core goes on with the first word
+    elif more:  # the core goes on once it has the first word
         whole = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
         if kind != log.FETCH:
             state[job + w.LINE_DONE] = whole
@@ -78,7 +78,7 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
 
 @native
 def count_read(state: State, core: int, offset: int, more: int, nbytes: int) -> None:
-    """Count what a core's present access has just read from SDRAM: a word and so many more."""
+    """Count what a core's current access has just read from SDRAM: a word and `more` further ones."""
     owner = owner_for(state, core, offset, site_of(state, core))
     count_access(state, w.CORE_A + core, owner, 1 + more)
     count_traffic(state, w.CORE_A + core, owner, False, nbytes)
@@ -87,7 +87,7 @@ def count_read(state: State, core: int, offset: int, more: int, nbytes: int) -> 
 
 @native
 def charge_read(state: State, core: int, through: int, reason: int) -> int:
-    """Charge what a core's present access waits for data of SDRAM that are through at a tick; return when they are at the core."""
+    """Charge the wait of a core's current access for SDRAM data that arrive at tick `through`. Return when the core has them."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     edge = state[w.MASTERS_AT + w.CORE_A + core + w.READY]
     done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])

@@ -1,4 +1,4 @@
-"""The ends on the bus that somebody waits for: of transfers, of calls of the cores and of their stretches, by number."""
+"""The awaited ends on the bus, by number: of transfers, and of the cores' calls and stretches."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.machine.simulation import Simulation
 
 
 class Ends:
-    """The events of whoever waits. A number is what the weave returns with when that is over."""
+    """The awaited events. An event's number is what the weave returns when it happens."""
 
     def __init__(self, env: Simulation) -> None:
         self._env = env
@@ -23,7 +23,7 @@ class Ends:
         return bool(self._awaited)
 
     def of_transfer(self, number: int) -> simpy.Event:
-        """Return the event at the end of a transfer, or of its next row where that is what wakes."""
+        """Return the event at the end of a transfer, or of its next row if rows wake."""
         event = self._awaited.get(number)
         if event is None:
             event = self._awaited[number] = self._env.event()
@@ -38,11 +38,11 @@ class Ends:
         return self.of_transfer(end_of_stretch(core))
 
     def at_moments(self, core: int, what: Callable[[], None]) -> None:
-        """Do `what` at each moment of a core's stretches."""
+        """Call `what` at each moment of a core's stretches."""
         self._moments[moment_of(core)] = what
 
     def wake(self, number: int, tick: int) -> bool:
-        """Let the event of a number, if it has one, happen at a tick; return whether it has. Of a moment, do what is to be done then."""
+        """Trigger the event of a number at a tick. Return whether there is one. For a moment, do what is due then."""
         event = self._awaited.pop(number, None)
         if event is None:
             if number in self._moments:

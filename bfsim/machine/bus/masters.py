@@ -1,4 +1,4 @@
-"""The masters of the buses in one table: their names, ranks and streams. All that others know of them is derived from it."""
+"""The masters of the buses in one table: their names, ranks and streams. Everything else about them is derived from it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from bfsim.machine.bus import state as w
 
 @dataclass(frozen=True, slots=True)
 class DmaMaster:
-    """A DMA: its row in `bus.state`, its name in reports, and its rank, of which the lower is served first.
+    """A DMA: its row in `bus.state`, its name in reports, and its rank. The lowest rank is served first.
 
-    `stream`: the name of its registers, of a memory DMA. `partner`: the other stream of its controller, with which it takes
-    turns where the board says so, or NONE.
+    `stream` names the registers of a memory DMA. `partner` is the other stream of its controller, with which it takes
+    turns if the board says so, or NONE.
     """
 
     number: int
@@ -43,10 +43,10 @@ STREAMS = {each.stream: each.number for each in DMA_MASTERS if each.stream}
 INTERNAL = (w.IMDMA_0, w.IMDMA_1)
 """The streams of the internal DMA."""
 RING_STREAMS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
-"""Of each core: for its input and its output rings."""
+"""The streams of each core: for its input rings and its output rings."""
 
 CORE_ROWS = {"core A": (w.CORE_A, w.STORES_A), "core B": (w.CORE_B, w.STORES_B)}
-"""A core has two rows: for what it waits for, and for its store buffer."""
+"""A core has two rows: one for accesses that it waits for, one for its store buffer."""
 NAMED = {each.name: (each.number,) for each in DMA_MASTERS} | CORE_ROWS
 """The rows of each master, by its name in reports."""
 
@@ -55,7 +55,7 @@ STORES_AFTER = 10  # loads overtake stores (Programming Reference p.294)
 
 
 def ranks_of(*, dma_over_core: bool) -> dict[int, int]:
-    """Return the rank of every row, where the DMAs come before the cores or behind them."""
+    """Return the rank of every row, with the DMAs before or after the cores."""
     cores = CORE_LAST if dma_over_core else CORE_FIRST
     loads = {w.CORE_A + core: cores + core for core in range(w.CORES)}
     stores = {w.STORES_A + core: cores + STORES_AFTER + core for core in range(w.CORES)}

@@ -1,4 +1,4 @@
-"""Who owns memory: the buffers, and the rest of each memory, which is no buffer's. So it is known what moves for whom."""
+"""The owners of memory, for whom data moves: the buffers, and the rest of each memory, which belongs to no buffer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from bfsim.machine.bus.state import State
 
 @dataclass(frozen=True, slots=True)
 class MemoryOwner:
-    """A buffer by the name that is its own among those of all cores, or without one what of `memory` belongs to none."""
+    """A buffer, by a name unique among all cores. Without `buffer`, the part of `memory` that belongs to none."""
 
     memory: str
     buffer: str = ""
@@ -27,14 +27,14 @@ class MemoryOwner:
 
 
 class MemoryOwners:
-    """All owners by their numbers; in the state `words` of a bus stands which piece of the arena belongs to whom."""
+    """All owners by number. The state `words` of a bus say which piece of the arena belongs to which owner."""
 
     def __init__(self, words: Any, sdram_end: int, l2_end: int) -> None:
         self._words = words
         self._owners = [MemoryOwner("SDRAM"), MemoryOwner("L2"), MemoryOwner("elsewhere")]
         self._pieces = [(0, w.NO_BUFFER_IN_SDRAM), (sdram_end, w.NO_BUFFER_IN_L2), (l2_end, w.NO_BUFFER)]
         self.first = [0, sdram_end, l2_end]
-        """Where in the arena the memory of each owner begins, by its number."""
+        """Where in the arena each owner's memory begins, by number."""
         self._write()
 
     def __len__(self) -> int:
@@ -47,7 +47,7 @@ class MemoryOwners:
         return self._owners[number]
 
     def add(self, owner: MemoryOwner, offset: int) -> None:
-        """Let a buffer own its bytes from `offset` in the arena on."""
+        """Let a buffer own its bytes from arena offset `offset` on."""
         if len(self._owners) == w.MAX_OWNERS:
             raise FirmwareError(f"firmware must have at most {w.MAX_OWNERS - 3} buffers")
         end, number = offset + owner.nbytes, len(self._owners)
@@ -80,7 +80,7 @@ class MemoryOwners:
 
 @native
 def owner_for(state: State, core: int, offset: int, site: int) -> int:
-    """Return who owns the memory that an access of a core's site is for: no buffer, if no kernel makes it."""
+    """Return the owner of the memory that a core's site accesses: no buffer if the access comes from no kernel."""
     if site == w.NO_SITE:
         return w.NO_BUFFER_IN_SDRAM if offset < state[w.SDRAM_END] else w.NO_BUFFER_IN_L2
     return state[w.PIECES_AT + w.MAX_PIECES + piece_for(state, site_at(core, site), offset)]
@@ -88,7 +88,7 @@ def owner_for(state: State, core: int, offset: int, site: int) -> int:
 
 @native
 def piece_for(state: State, row: int, offset: int) -> int:
-    """Return the number of the piece of memory that `offset` is in, and keep it for the site at `row`."""
+    """Return the number of the piece of memory around `offset`, and keep it for the site at `row`."""
     piece = state[row + w.PIECE]
     if not state[w.PIECES_AT + piece] <= offset < state[w.PIECES_AT + piece + 1]:
         piece = state[row + w.PIECE] = piece_of(state, offset)
@@ -97,7 +97,7 @@ def piece_for(state: State, row: int, offset: int) -> int:
 
 @native
 def piece_of(state: State, offset: int) -> int:
-    """Return the number of the piece of memory that `offset` is in."""
+    """Return the number of the piece of memory around `offset`."""
     low, high = 0, state[w.PIECES] - 1
     while low < high:
         middle = (low + high + 1) >> 1

@@ -1,4 +1,4 @@
-"""The state of the buses before anything has happened: what the board says, and that nobody asks for anything."""
+"""The initial state of the buses: the board's numbers, and no requests."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def new_state(board: BoardSpec, memories: Memories) -> NDArray[np.int64]:
 
 
 def _shared(board: BoardSpec, memories: Memories) -> dict[int, int]:
-    """Return what all masters share, by its word."""
+    """Return the values that all masters share, by word."""
     chip, clocks, l2 = board.chip, board.clocks, board.chip.l2
     return {
         w.CCLK: clocks.cclk_ticks,
@@ -52,7 +52,7 @@ def _shared(board: BoardSpec, memories: Memories) -> dict[int, int]:
 
 
 def _masters(board: BoardSpec) -> dict[int, int]:
-    """Return what is known of each master, by its word."""
+    """Return the values of each master, by word."""
     chip = board.chip
     gap = chip.dma.read_word_sclk - 1
     words: dict[int, int] = {}

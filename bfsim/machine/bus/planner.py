@@ -1,4 +1,4 @@
-"""Transfers of DMA, planned: which way they go, in what steps, at whose pace, and in what time a word."""
+"""Plans of DMA transfers: their direction, their steps, whose pace they follow, and their time per word."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ONE_TICK = Fraction(1)
 
 
 class Planner:
-    """Plans the transfers of one board's DMAs. `owners`: of its memories."""
+    """Plans the transfers of one board's DMAs. `owners` of its memories."""
 
     def __init__(self, board: BoardSpec, memories: Memories, owners: MemoryOwners) -> None:
         self._chip = board.chip
@@ -27,14 +27,14 @@ class Planner:
     def copy(
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int, name: str = ""
     ) -> TransferPlan:  # fmt: skip
-        """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start. `name`: what is moved, for people."""
+        """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start. `name` says what, for people."""
         mode = self._mode_of_copy(master, source.offset, destination.offset)
         word = self._on_chip_ticks(master) if mode in (w.ON_CHIP, w.THROUGH_L2_PORT) else ONE_TICK
         pace = Pace(0, 1, word, ONE_TICK)
         return self._plan(master, mode, source, destination, count, element_bytes, pace, setup, name)
 
     def fetch(self, master: int, offset: int, elements: int, setup: int) -> TransferPlan:
-        """Plan to fetch a descriptor of 16-bit `elements` into the registers of a channel, which takes `setup` ticks besides."""
+        """Plan to fetch a descriptor of 16-bit `elements` into the registers of a channel, which takes another `setup` ticks."""
         memory, registers = (
             Walk(first, elements, ELEMENT_BYTES, ELEMENT_BYTES)
             for first in (offset, self._memories.registers)
@@ -46,13 +46,13 @@ class Planner:
     def receive(
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace, name: str = ""
     ) -> TransferPlan:  # fmt: skip
-        """Plan to write `count` elements as a device delivers them. `name`: what is moved, for people."""
+        """Plan to write `count` elements as a device delivers them. `name` says what, for people."""
         return self._plan(master, w.PACED_IN, source, destination, count, element_bytes, pace, 0, name)
 
     def send(
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace, name: str = ""
     ) -> TransferPlan:  # fmt: skip
-        """Plan to read `count` elements as a device takes them. `name`: what is moved, for people."""
+        """Plan to read `count` elements as a device takes them. `name` says what, for people."""
         return self._plan(master, w.PACED_OUT, source, destination, count, element_bytes, pace, 0, name)
 
     def _mode_of_copy(self, master: int, source: int, destination: int) -> int:

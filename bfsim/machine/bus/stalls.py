@@ -1,4 +1,4 @@
-"""Why cores wait, in one table: the counters of the compiled code (`bus.state`), and the reasons that reports have for them."""
+"""Why cores wait, in one table: the counters of the compiled code (`bus.state`), and their reasons in reports."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ REASON_OF = {
     w.CACHE_FILL: StallReason.CACHE_FILL,
     w.CODE_FETCH: StallReason.CODE_FETCH,
 }
-"""What a kernel's accesses wait for."""
+"""Reasons for which a kernel's accesses wait."""
 BUS_STALLS = tuple(REASON_OF[counter] for counter in range(w.STALLS))
 """These reasons in the order of the counters."""
 
@@ -26,5 +26,5 @@ REASON_OF_ACCOUNT = {
     w.RING_EMPTY: StallReason.RING_EMPTY,
     w.RING_FULL: StallReason.RING_FULL,
 }
-"""What the rings of a stretch wait for."""
+"""Reasons for which the rings of a stretch wait."""
 COUNTER_OF = {reason: counter for counter, reason in REASON_OF_ACCOUNT.items()}

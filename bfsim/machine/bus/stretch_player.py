@@ -1,4 +1,4 @@
-"""Stretches of recorded work: what a core does by itself is handed to the bus, which plays it, and says what it took."""
+"""Stretches of the cores: what a core does by itself is handed to the bus, which plays it and returns what it took."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from bfsim.machine.simulation import Simulation
 
 BEGUN = Struct(f"@{w.BEGUN_WORDS}q")
 ISSUED, STALLS, ACCOUNTS = (each - w.TOUCHED for each in (w.ISSUED, w.INTERLOCKED, w.ACCOUNTS))
-"""Where these stand behind TOUCHED."""
+"""Positions of these, counted from TOUCHED."""
 
 
 def played_of(words: list[int], clock_cclk: int) -> Played:
-    """Return what a stretch took, by its words from TOUCHED on (`bus.state`), and where its clock is."""
+    """Return what a stretch took, from its words from TOUCHED on (`bus.state`) and its clock."""
     touches, accounts = words[ACCOUNTS + w.TOUCH :: w.ACCOUNT_WORDS] if words[0] else [], {}
     for touch, number in sorted(zip(touches, range(len(touches)), strict=True)):
         if touch:
@@ -42,9 +42,9 @@ class StretchPlayer:
         self._plans = 0
 
     def play(self, core: int, clock_cclk: int, accounts: int, end: int, first: int = 0) -> simpy.Event:
-        """Let a core do what is written by itself from now on, its clock being at a cycle: operations from `first` up to `end`; return the end.
+        """Let a core do its operations from `first` to before `end`, with its clock at `clock_cclk`. Return the event at the end.
 
-        They use so many `accounts` at most. What their calls access is in the core's log.
+        They use at most `accounts` accounts. The accesses of their calls are in the core's log.
         """
         play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
         copies = words[play + w.COPIES]
@@ -53,11 +53,11 @@ class StretchPlayer:
         return self._ends.of_stretch(core)
 
     def at_moments(self, core: int, what: Callable[[], None]) -> None:
-        """Do `what` at each moment of a core's stretches."""
+        """Call `what` at each moment of a core's stretches."""
         self._ends.at_moments(core, what)
 
     def clock_cclk(self, core: int) -> int:
-        """Return where a core's clock is after its last stretch. Raises FirmwareError if DMA had no room for all of its copies."""
+        """Return a core's clock after its last stretch. Raises FirmwareError if DMA had no room for all its copies."""
         play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
         if words[play + w.OPERATION] < words[play + w.OPERATIONS_END]:
             raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
@@ -65,20 +65,20 @@ class StretchPlayer:
         return cclk
 
     def played(self, core: int, accounts: int) -> Played:
-        """Return what the last stretch of a core took, with so many `accounts`. Raises FirmwareError as above."""
+        """Return what a core's last stretch took, on so many `accounts`. Raises FirmwareError as above."""
         play = w.PLAYS_AT + core * w.PLAY_WORDS
         words = self._words[play + w.TOUCHED : play + w.ACCOUNTS + accounts * w.ACCOUNT_WORDS].tolist()
         return played_of(words, self.clock_cclk(core))
 
     def copy_of(self, core: int, number: int) -> tuple[int, int]:
-        """Return number and place of the transfer that the copy `number` of a core was, of those that it has posted."""
+        """Return number and place of the transfer of a core's copy `number`, counted over all copies that it has posted."""
         at = w.COPIES_AT + 2 * (core * w.ENDS + number % w.ENDS)
         return self._words[at], self._words[at + 1]
 
     def keep_plans(self, words: Sequence[Sequence[int]]) -> NDArray[np.int64]:
-        """Keep plans where stretches find them, each the `words` of a `TransferPlan`; return their numbers.
+        """Keep plans where stretches find them, each the `words` of a `TransferPlan`. Return their numbers.
 
-        Their bytes do not move: where somebody looks at them, they have been moved before.
+        These transfers move no bytes: if anyone looks at the bytes, they have been moved before.
         """
         numbers = np.arange(self._plans, self._plans + len(words))
         self._plans += len(words)

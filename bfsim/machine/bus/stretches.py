@@ -1,7 +1,7 @@
 """Stretches, compiled: a core does one operation after the other by its own clock, and meets the bus where it has to.
 
-What it does takes the cycles that the operations say; what it waits comes from the bus. A stretch ends at the tick at which the
-core met the bus last, though its clock may be further.
+The operations say how many cycles the core's work takes; its waits come from the bus. A stretch ends at the tick at which the
+core last met the bus, though its clock may be later.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from bfsim.machine.bus.state import State
 
 @native
 def end_of_stretch(core: int) -> int:
-    """Return what `advance` returns at the end of a core's stretch: behind the numbers of transfers and jobs."""
+    """Return the number with which `advance` returns at the end of a core's stretch: beyond those of transfers and jobs."""
     return w.NONE - 1 - w.CORES - core
 
 
 @native
 def moment_of(core: int) -> int:
-    """Return what `advance` returns at a moment of a core's stretch."""
+    """Return the number with which `advance` returns at a moment of a core's stretch."""
     return w.NONE - 1 - 2 * w.CORES - core
 
 
 @native
 def who_acts(state: State) -> int:
-    """Return the core that goes on first."""
+    """Return the core that acts first."""
     first = 0
     for core in range(1, w.CORES):
         at = w.PLAYS_AT + w.ACTS_AT
@@ -37,7 +37,7 @@ def who_acts(state: State) -> int:
 
 @native
 def resume(state: State, woken: int) -> bool:
-    """Let the core whose stretch waits for what has just ended go on then; return whether there is one."""
+    """Let the core whose stretch waits for `woken`, which has just ended, go on then. Return whether there is one."""
     for core in range(w.CORES):
         play = w.PLAYS_AT + core * w.PLAY_WORDS
         if state[play + w.AWAITED] == woken:
@@ -48,7 +48,7 @@ def resume(state: State, woken: int) -> bool:
 
 @native
 def act(state: State, core: int, now: int) -> int:
-    """Do a core's operations at tick `now`, up to which the bus was played, until it must wait; return the end or a moment of its stretch, or NONE."""
+    """Do a core's operations until it must wait. The bus has been played up to tick `now`. Return the end or a moment of the stretch, or NONE."""
     play = w.PLAYS_AT + core * w.PLAY_WORDS
     if state[play + w.AWAITED] != w.NONE:
         end_wait(state, core, now)
@@ -76,7 +76,7 @@ def act(state: State, core: int, now: int) -> int:
 
 @native
 def needs_bus(state: State, core: int, at: int) -> bool:
-    """Whether the bus must come up to a core before its operation: a wait for a copy needs that only while its end is not known."""
+    """Whether the bus must catch up with a core before its operation. A wait needs that only if the copy's end is unknown."""
     kind = state[at]
     if kind == w.AWAIT:
         return end_of_copy(state, core, state[at + 1]) == w.NONE
@@ -85,13 +85,13 @@ def needs_bus(state: State, core: int, at: int) -> bool:
 
 @native
 def must_wait(state: State, at: int) -> bool:
-    """Whether an operation that needs the bus must wait for it: a call may turn out to access nothing."""
+    """Whether an operation that needs the bus must wait for it. A call may turn out to access nothing."""
     return state[at] == w.AWAIT or (state[at] == w.ACCESS and state[at + 3] != state[at + 4])
 
 
 @native
 def do(state: State, core: int, at: int, now: int) -> bool:
-    """Do an operation that waits for nothing that is not known; return whether it could be done."""
+    """Do an operation that waits for nothing unknown. Return whether it could be done."""
     play, kind = w.PLAYS_AT + core * w.PLAY_WORDS, state[at]
     if kind in (w.RUN, w.ACCESS):
         work(state, play, state[at + 1], state[at + 2])
@@ -106,14 +106,14 @@ def do(state: State, core: int, at: int, now: int) -> bool:
 
 @native
 def operation_of(state: State, core: int) -> int:
-    """Return where a core's present operation stands."""
+    """Return where a core's current operation is."""
     number = core * w.MAX_OPERATIONS + state[w.PLAYS_AT + core * w.PLAY_WORDS + w.OPERATION]
     return w.OPERATIONS_AT + number * w.OPERATION_WORDS
 
 
 @native
 def begin_wait(state: State, core: int, clock: int) -> None:
-    """Let the bus play a call's accesses, or a copy whose end is not known, before the core goes on."""
+    """Let the bus play a call's accesses, or a copy whose end is unknown, before the core goes on."""
     play, at = w.PLAYS_AT + core * w.PLAY_WORDS, operation_of(state, core)
     state[play + w.ACTS_AT] = w.NEVER
     if state[at] == w.ACCESS:
@@ -127,7 +127,7 @@ def begin_wait(state: State, core: int, clock: int) -> None:
 
 @native
 def end_wait(state: State, core: int, now: int) -> None:
-    """Charge what the core has waited for, at tick `now`, and go on to its next operation."""
+    """Charge the wait that ends at tick `now`, and go on to the core's next operation."""
     play, at = w.PLAYS_AT + core * w.PLAY_WORDS, operation_of(state, core)
     if state[at] == w.ACCESS:
         work(state, play, state[at + 1], state[at + 2])
@@ -143,7 +143,7 @@ def end_wait(state: State, core: int, now: int) -> None:
 
 @native
 def go_on(state: State, core: int, at: int) -> None:
-    """Go on to a core's next operation; keep what the one that stands `at` took, if it is told."""
+    """Go on to a core's next operation. If there is a timeline, keep what the operation `at` took."""
     play = w.PLAYS_AT + core * w.PLAY_WORDS
     number, kind = state[play + w.OPERATION], state[at]
     state[play + w.OPERATION] = number + 1
@@ -185,7 +185,7 @@ def spend(state: State, play: int, number: int, reason: int, cclk: int) -> None:
 
 @native
 def wait_until(state: State, core: int, end: int) -> None:
-    """Stall a core until the copy that its operation awaits was over, at tick `end`."""
+    """Stall a core until tick `end`, when the copy that its operation awaits was over."""
     play, at = w.PLAYS_AT + core * w.PLAY_WORDS, operation_of(state, core)
     cclk = (end + state[w.CCLK] - 1) // state[w.CCLK] - state[play + w.CLOCK]
     if cclk > 0:
@@ -194,20 +194,20 @@ def wait_until(state: State, core: int, end: int) -> None:
 
 @native
 def copy_before(state: State, core: int, back: int) -> int:
-    """Return where number and place of the copy stand behind which a core has posted `back` - 1 more."""
+    """Return where number and place of a core's copy are: the latest for `back` 1, the one before for 2, and so on."""
     number = state[w.PLAYS_AT + core * w.PLAY_WORDS + w.COPIES] - back
     return w.COPIES_AT + 2 * (core * w.ENDS + number % w.ENDS)
 
 
 @native
 def end_of_copy(state: State, core: int, back: int) -> int:
-    """Return the tick at which such a copy was over, NONE if that is not known yet."""
+    """Return the tick at which such a copy was over, NONE if unknown yet."""
     return state[w.ENDS_AT + state[copy_before(state, core, back)] % w.ENDS]
 
 
 @native
 def post(state: State, core: int, at: int, now: int) -> bool:
-    """Post the copy of the operation `at` at tick `now`, not before the core's clock; return whether there was room for it."""
+    """Post the copy of the operation `at` at tick `now`, not before the core's clock. Return whether there was room for it."""
     play, plan = w.PLAYS_AT + core * w.PLAY_WORDS, w.PLANS_AT + state[at + 1] * w.PLAN_WORDS
     if state[w.FREE_TRANSFERS] == 0:
         return False

@@ -1,4 +1,4 @@
-"""The tape of a core that runs ahead, compiled: each operation is written where the bus plays it, as soon as the firmware asks for it."""
+"""The tape of a core that runs ahead, compiled: each operation is written where the bus will play it, as soon as firmware asks for it."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from bfsim.machine_code.built_in import built_in
 from bfsim.machine_code.going_on import Noted
 
 MOST_OPERATIONS, MOST_ACCESSES = w.MAX_OPERATIONS // 2, 1 << 16
-"""What a tape has when it is full. Its room is larger, for a core cannot meet the others at every operation."""
+"""The length of a full tape. There is room for more, because a core cannot meet the other devices at every operation."""
 
 
 @native
 def end_of(state: State, core: int) -> int:
-    """Return where the next operation of a core is to be written."""
+    """Return where to write the next operation of a core."""
     number = core * w.MAX_OPERATIONS + state[w.TAPES_AT + core * w.TAPE_WORDS + w.NOTED]
     return w.OPERATIONS_AT + number * w.OPERATION_WORDS
 
@@ -30,7 +30,7 @@ def end_of(state: State, core: int) -> int:
 def write(
     state: State, core: int, kind: int, one: int, two: int, three: int, four: int, call: int = w.NONE
 ) -> int:
-    """Write an operation, of a call that was prepared or of none; return how many there are."""
+    """Write an operation, of a prepared call or of none. Return how many there are."""
     at, tape = end_of(state, core), w.TAPES_AT + core * w.TAPE_WORDS
     state[at], state[at + 1], state[at + 2], state[at + 3], state[at + 4] = kind, one, two, three, four
     state[at + w.OF_CALL] = call
@@ -43,13 +43,16 @@ def write(
 
 @native_entry("int64", "int64*", "int64", "int64", "int64", "int64", "int64", "int64")
 def note(state_at: Any, core: int, kind: int, one: int, two: int, three: int, four: int) -> int:
-    """Note an operation; return how many there are."""
+    """Note an operation. Return how many there are."""
     return write(words_at(state_at), core, kind, one, two, three, four)
 
 
 @native_entry("int64", "int64*", "int64", "int64*", "int64")
 def note_run(state_at: Any, core: int, work_at: Any, call: int) -> int:
-    """Note a call, by the numbers of its `Work` and its own, that has met nobody, as one with those just before it unless each is told; return how many operations were noted before: if none, it is not noted."""
+    """Note a call that stays in L1, by the numbers of its `Work` and its own number. Return how many operations were noted before.
+
+    If there were none, the call is not noted. Unless the tape is told, consecutive calls are noted as one.
+    """
     state: State = words_at(state_at)
     work: State = words_at(work_at)
     tape = w.TAPES_AT + core * w.TAPE_WORDS
@@ -64,7 +67,7 @@ def note_run(state_at: Any, core: int, work_at: Any, call: int) -> int:
 
 @native_entry("int64", "int64*", "int64", "int64*", "int64")
 def note_access(state_at: Any, core: int, work_at: Any, call: int) -> int:
-    """Note a call, by the numbers of its `Work` and its own, and keep its accesses, which it has just logged; return how many operations there are."""
+    """Note a call, by the numbers of its `Work` and its own number, and keep the accesses it just logged. Return how many operations there are."""
     state: State = words_at(state_at)
     work: State = words_at(work_at)
     trace = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS
@@ -75,14 +78,14 @@ def note_access(state_at: Any, core: int, work_at: Any, call: int) -> int:
 
 
 class Tape:
-    """The tape of one core, in the `state` of the bus; `memory`: all of the chip's.
+    """The tape of one core, in the `state` of the bus. `memory` is the whole memory of the chip.
 
-    What notes an operation is a built-in function.
+    Operations are noted by built-in functions.
     """
 
     def __init__(self, core: int, state: NDArray[np.int64], memory: NDArray[Any]) -> None:
         self.at = state.ctypes.data, memory.ctypes.data, core
-        """The addresses of both, and the core."""
+        """The addresses of state and memory, and the core."""
         self.core = core
         self._state = state
         self._words: Any = state.data
@@ -94,20 +97,20 @@ class Tape:
         """How machine code notes calls."""
         self._first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
         self.note = built_in(note.address(), 5, state.ctypes.data, core)
-        """Notes an operation, of a kind and four numbers."""
+        """Notes an operation: its kind and four numbers."""
         self.note_run = built_in(note_run.address(), 2, state.ctypes.data, core)
         self.note_access = built_in(note_access.address(), 2, state.ctypes.data, core)
-        """Of a `Work`, by the address of its numbers, and the number of its call."""
+        """These take the address of a `Work`'s numbers and the number of its call."""
 
     @property
     def noted(self) -> int:
-        """How many operations there are."""
+        """Number of noted operations."""
         count: int = self._words[self._tape + w.NOTED]
         return count
 
     @property
     def is_full(self) -> bool:
-        """Whether the core must meet the others before it notes more."""
+        """Whether the core must meet the other devices before it notes more."""
         return bool(self._words[self._tape + w.IS_FULL])
 
     @is_full.setter
@@ -124,16 +127,16 @@ class Tape:
         self._words[self._tape + w.TAKES_CALLS] = takes_calls
 
     def operations(self, first: int, end: int) -> NDArray[np.int64]:
-        """Return operations, a row each."""
+        """Return operations, one row each."""
         at = self._first + first * w.OPERATION_WORDS
         return self._state[at : self._first + end * w.OPERATION_WORDS].reshape(-1, w.OPERATION_WORDS)
 
     def tell(self) -> None:
-        """Have it kept from now on what each operation took."""
+        """Keep from now on what each operation takes."""
         self._words[self._tape + w.IS_TOLD] = 1
 
     def took(self, first: int, end: int) -> NDArray[np.int64]:
-        """Return what operations took that the bus has played, a row each, if that is kept."""
+        """Return what played operations took, one row each, if that is kept."""
         at, end_at = (
             w.TOOK_AT + (self.core * w.MAX_OPERATIONS + each) * w.TOOK_WORDS for each in (first, end)
         )
@@ -141,12 +144,12 @@ class Tape:
 
     @property
     def played(self) -> int:
-        """How many operations the bus has played of those that it was given last."""
+        """How many operations of the last stretch the bus has played."""
         count: int = self._words[w.PLAYS_AT + self.core * w.PLAY_WORDS + w.OPERATION]
         return count
 
     def mark(self) -> int:
-        """Set a mark: calls before it and behind it are not noted as one. Return how many operations it is behind."""
+        """Set a mark, so that calls before and after it are not noted as one. Return how many operations are before it."""
         marked = self._words[self._tape + w.MARKED] = self.noted
         return marked
 

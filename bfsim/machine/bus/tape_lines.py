@@ -1,7 +1,7 @@
-"""The lines of a ring on the tape of a core that runs ahead, compiled: their copies are done, and noted with all that belongs to them.
+"""The lines of a ring on the tape of a core that runs ahead, compiled: they are copied, and all their operations are noted.
 
-Of its lines there are words, the same whenever it comes again: HEAD of them, and behind these COPY_WORDS of each line. Of itself it has
-DONE, DEPTH and, from LATEST on, copies.
+The lines have words that stay the same each time the ring is made: HEAD of them, then COPY_WORDS for each line. The ring itself
+has DONE, DEPTH and, from LATEST on, copies.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from bfsim.machine_code.answers import answering
 from bfsim.machine_code.built_in import built_in
 
 (COUNT, ACCOUNT, REASON, SET_UP_CCLK, SET_UP_WRITES, SET_UP_READS) = range(6)
-"""How many lines, the account of the ring, why a wait for one is a stall, and how long it takes to program the stream, with how many
-writes and reads of registers."""
+"""The number of lines, the account of the ring, the reason of stalls for a line, and the cycles of programming the stream with so
+many writes and reads of registers."""
 HEAD = 6
 (PLAN, FROM, TO, NUMBER, NBYTES) = range(5)
-"""Of a copy: its plan, NONE if it has none yet, where it begins to read and to write, what is noted behind that, and how long it is."""
+"""Fields of a copy: its plan (NONE if it has none yet), where it begins to read and to write, the number noted after these, and its length."""
 COPY_WORDS = 5
 (DONE, DEPTH, LATEST) = range(3)
-"""Of a ring: how many lines were taken or sent, how many rows it has, and copies: of one of input that of the next line, NONE if that is not
-on its way; of one of output those of the lines that its rows had last."""
+"""Fields of a ring: how many lines were taken or sent, its number of rows, and copies. An input ring has the copy of its next line, NONE if
+that is not on its way. An output ring has the copy of the last line of each row."""
 
 
 @native
 def runs_ahead(state: State, core: int) -> bool:
-    """Whether a core notes what it does."""
+    """Whether a core runs ahead and notes its operations."""
     return state[w.TAPES_AT + core * w.TAPE_WORDS + w.TAKES_CALLS] != 0
 
 
@@ -43,14 +43,14 @@ def has_plan(lines: State, number: int) -> bool:
 
 @native
 def program(state: State, core: int, lines: State) -> int:
-    """Note that the stream is programmed; return how many operations there are."""
+    """Note that the stream is programmed. Return how many operations there are."""
     cclk, writes, reads = lines[SET_UP_CCLK], lines[SET_UP_WRITES], lines[SET_UP_READS]
     return write(state, core, w.SET_UP, cclk, lines[ACCOUNT], writes, reads)
 
 
 @native
 def copy(state: State, memory: State, core: int, lines: State, number: int) -> int:
-    """Do a line's copy, which has a plan; return the how-manieth of the core it is."""
+    """Copy a line that has a plan. Return the copy's number among those of the core."""
     tape, at = w.TAPES_AT + core * w.TAPE_WORDS, HEAD + number * COPY_WORDS
     first, to = lines[at + FROM], lines[at + TO]
     for octet in range(lines[at + NBYTES]):
@@ -62,35 +62,35 @@ def copy(state: State, memory: State, core: int, lines: State, number: int) -> i
 
 @native
 def wait(state: State, core: int, lines: State, copied: int) -> int:
-    """Note that the core waits for the how-manieth of its copies; return how many operations there are."""
+    """Note that the core waits for its copy number `copied`. Return how many operations there are."""
     back = state[w.TAPES_AT + core * w.TAPE_WORDS + w.NOTED_COPIES] - copied
     return write(state, core, w.AWAIT, back, lines[REASON], lines[ACCOUNT], 0)
 
 
 @native_entry("int64", "int64*", "uint8*", "int64", "int64*")
 def note_program(state_at: Any, _memory_at: Any, core: int, lines_at: Any) -> int:
-    """Note that the stream is programmed; return how many operations there are."""
+    """Note that the stream is programmed. Return how many operations there are."""
     return program(words_at(state_at), core, words_at(lines_at))
 
 
 @native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
 def note_copy(state_at: Any, memory_at: Any, core: int, lines_at: Any, number: int) -> int:
-    """Do the copy of a line; return the how-manieth of the core it is, or NONE if it has no plan yet."""
+    """Copy a line. Return the copy's number among those of the core, or NONE if the line has no plan yet."""
     state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
     return copy(state, memory, core, lines, number) if has_plan(lines, number) else w.NONE
 
 
 @native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64")
 def note_wait(state_at: Any, _memory_at: Any, core: int, lines_at: Any, copied: int) -> int:
-    """Note that the core waits for the how-manieth of its copies; return how many operations there are."""
+    """Note that the core waits for its copy number `copied`. Return how many operations there are."""
     return wait(words_at(state_at), core, words_at(lines_at), copied)
 
 
 @native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64*")
 def note_fetch(state_at: Any, memory_at: Any, core: int, lines_at: Any, ring_at: Any) -> int:
-    """Do all that takes the next line: meet the others, program the stream, have the line behind it copied, and wait for this one.
+    """Take the next line: let the bus catch up, program the stream, copy the line after it, and wait for this one.
 
-    Returns its row; NONE if the core does not run ahead, or a line has no plan yet, and nothing is done.
+    Returns its row. Does nothing and returns NONE if the core does not run ahead or a line has no plan yet.
     """
     state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
     ring: State = words_at(ring_at)
@@ -110,7 +110,7 @@ def note_fetch(state_at: Any, memory_at: Any, core: int, lines_at: Any, ring_at:
 
 @native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64*")
 def note_row(state_at: Any, _memory_at: Any, core: int, lines_at: Any, ring_at: Any) -> int:
-    """Wait until the row for the next line is free, and return it; NONE if the core does not run ahead."""
+    """Wait until the row for the next line is free, and return it. Returns NONE if the core does not run ahead."""
     state: State = words_at(state_at)
     ring: State = words_at(ring_at)
     row = ring[DONE] % ring[DEPTH]
@@ -123,7 +123,7 @@ def note_row(state_at: Any, _memory_at: Any, core: int, lines_at: Any, ring_at: 
 
 @native_entry("int64", "int64*", "uint8*", "int64", "int64*", "int64*")
 def note_send(state_at: Any, memory_at: Any, core: int, lines_at: Any, ring_at: Any) -> int:
-    """Program the stream, and have the next line copied; return its row, or NONE as above, and nothing is done."""
+    """Program the stream and copy the next line. Return its row; do nothing and return NONE as above."""
     state, memory, lines = words_at(state_at), words_at(memory_at), words_at(lines_at)
     ring: State = words_at(ring_at)
     number = ring[DONE]
@@ -137,14 +137,14 @@ def note_send(state_at: Any, memory_at: Any, core: int, lines_at: Any, ring_at: 
 
 
 def ring_words(depth: int, copies: int) -> ctypes.Array[ctypes.c_int64]:
-    """Return the words of a ring of `depth` rows, none of whose lines was taken or sent, with room for so many copies."""
+    """Return the words of a new ring of `depth` rows, with room for so many copies."""
     return (ctypes.c_int64 * (LATEST + copies))(0, depth, *(copies * [w.NONE]))
 
 
 class NotedLines:
-    """What notes lines of rings on a tape: each function as above, a built-in one, told where the words of the lines are and what is left then.
+    """Notes lines of rings on a tape: the functions above as built-in ones. They take the address of the lines' words and the rest.
 
-    Firmware is answered by functions of their own (`answering`).
+    Firmware calls functions of its own (`answering`).
     """
 
     def __init__(self, tape: Tape) -> None:
@@ -159,8 +159,8 @@ class NotedLines:
     def answering(
         self, note: NativeEntry, lines: int, ring: int, answers: tuple[object, ...], other: Callable[[], Any]
     ) -> Callable[[], Any]:
-        """Return a function that has `note` do what it does with the words at two addresses, those of lines and of their ring.
+        """Return a function that calls `note` with the addresses of the words of lines and of their ring.
 
-        It returns the answer whose number that returns, or what `other` does where that is NONE.
+        It returns the answer with the number that `note` returns, or what `other` returns if that is NONE.
         """
         return answering(note.address(), (*self._tape, lines, ring), answers, other)

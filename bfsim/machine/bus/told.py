@@ -1,6 +1,6 @@
-"""What the bus tells the timeline: its transfers, when they are over, and how much of the time it is busy.
+"""What the bus tells the timeline: its transfers, once they are over, and the share of time that it is busy.
 
-The compiled code knows of none of it. When a transfer began follows from its end and from those of its master before it.
+The compiled code knows nothing of this. The begin of a transfer follows from its own end and from its master's earlier transfers.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from bfsim.spans.columns import SpanColumns
 
 NAMES = {master: name for name, masters in NAMED.items() for master in masters}
 MOST_PENDING = 1024
-"""Transfers that are noted before those that are over are told: far fewer than the ends that the bus remembers."""
+"""Most noted transfers before finished ones are told: far fewer than the ends that the bus remembers."""
 SAMPLE_CCLK = 60_000
-"""Cycles, at least, that a number for the load of a bus is of: 100 µs at 600 MHz."""
+"""Least cycles over which the load of a bus is averaged: 100 µs at 600 MHz."""
 
 _CORES = [row for rows in CORE_ROWS.values() for row in rows]
 _BUSY = {"DMA": [each.number for each in DMA_MASTERS], "cores": _CORES}
 _TRANSFER = SpanKind.TRANSFER
 _AT_L2_PORT = (*INTERNAL, *_CORES)
-"""Who comes through the port of L2 that is modelled."""
+"""The masters that use the modelled port of L2."""
 
 
 class _Posted(NamedTuple):
-    """A transfer that was posted: its number and name, the tick from which it may begin, and its bytes."""
+    """A posted transfer: its number and name, the tick from which it may begin, and its bytes."""
 
     number: int
     name: str
@@ -44,7 +44,7 @@ class _Posted(NamedTuple):
 
 
 class ToldBus:
-    """A bus as the timeline sees it. `words`: the bus's state."""
+    """Tells the timeline about a bus, whose state is in `words`."""
 
     def __init__(
         self, timeline: Timeline, board: BoardSpec, words: Sequence[int], owners: MemoryOwners
@@ -61,10 +61,10 @@ class ToldBus:
         self._free_at: dict[int, int] = {}
         self._sampled_cclk = 0
         self.next_sample = SAMPLE_CCLK * self._cclk_ticks
-        """The tick at which the load is to be told next, if the bus has come up to it."""
+        """The tick at which the load is told next, once the bus has reached it."""
         self._sums = [0] * (len(_BUSY) + 1)
         self.before: list[Callable[[], None]] = []
-        """What is to be called before transfers are told."""
+        """Functions to call before transfers are told."""
 
     # ---- transfers
 
@@ -75,21 +75,21 @@ class ToldBus:
         self.note(master, number, name, at, nbytes)
 
     def note(self, master: int, number: int, name: str, at: int, nbytes: int) -> None:
-        """Note a transfer that a core has posted while it ran ahead."""
+        """Note a transfer that a core posted while it ran ahead."""
         self._pending[number] = False
         self._posted.setdefault(master, deque()).append(_Posted(number, name, at, nbytes))
 
     def flow_of(self, number: int) -> int:
-        """Return the flow from a transfer to the wait that it has just ended; 0 if it was told already."""
+        """Return the flow from a transfer to the wait that it has just ended, 0 if the transfer was told already."""
         if number not in self._pending:
             return 0
         self._pending[number] = True
         return number + 1
 
     def tell(self, now: int) -> None:
-        """Tell the transfers that were over before tick `now`: nobody begins to wait for them any more.
+        """Tell the transfers that were over before tick `now`: no wait for them can begin any more.
 
-        Before that cores that run ahead tell what the bus has played of theirs, and which transfers they have waited for.
+        Before that, cores that run ahead tell what the bus has played for them, and which transfers they have waited for.
         """
         for each in self.before:
             each()
@@ -111,7 +111,7 @@ class ToldBus:
     # ---- load
 
     def sample(self, now: int) -> None:
-        """Tell how busy the bus was since the last time, if that is long enough ago; it has come up to tick `now`."""
+        """Tell how busy the bus was since the last sample, if that is long enough ago. The bus has reached tick `now`."""
         if now < self.next_sample:
             return
         now_cclk = now // self._cclk_ticks
@@ -128,7 +128,7 @@ class ToldBus:
         self._sampled_cclk = now_cclk
 
     def _summed(self) -> list[int]:
-        """Return how long SDRAM has been busy with each kind of masters so far, and how many bytes came through the port of L2."""
+        """Return how long SDRAM has been busy with each kind of master so far, and the bytes that went through the port of L2."""
         if len(self._owners) != self._known_owners:
             self._known_owners = len(self._owners)
             parts = [self._places("SDRAM", masters, [w.BUSY]) for masters in _BUSY.values()]
@@ -139,7 +139,7 @@ class ToldBus:
         return sums
 
     def _places(self, memory: str, masters: Sequence[int], counters: Sequence[int]) -> NDArray[np.intp]:
-        """Return where some counters of some masters are, of all buffers in a memory."""
+        """Return where the counters of some masters are, for all buffers in a memory."""
         owners = [number for number, each in enumerate(self._owners) if each.memory == memory]
         grid = np.ix_(owners, masters, counters)
         return np.ravel_multi_index(np.broadcast_arrays(*grid), TRAFFIC_SHAPE).ravel()

@@ -1,4 +1,4 @@
-"""Who moved how much to and from which memory: counted in compiled code, read at the end of a run."""
+"""How much each master moved to and from which memory: counted in compiled code, read at the end of a run."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ TRAFFIC_SHAPE = w.MAX_OWNERS, w.MASTERS, w.TRAFFIC_WORDS
 
 
 def traffic_in(words: Any) -> NDArray[np.int64]:
-    """Return the traffic in the state `words` of the bus: by owner of the memory, master, and what."""
+    """Return the traffic in the state `words` of the bus, by owner of the memory, master and counter."""
     counted = np.asarray(words[w.TRAFFIC_AT : w.TRAFFIC_AT + prod(TRAFFIC_SHAPE)], np.int64)
     return counted.reshape(TRAFFIC_SHAPE)
 
 
 def traffic_records(words: Any, owners: MemoryOwners, cclk_ticks: int) -> tuple[TrafficRecord, ...]:
-    """Return what was counted in the state `words` of the bus, by buffer and master; who moved nothing is left out."""
+    """Return the traffic in the state `words` of the bus, by buffer and master. Masters that moved nothing are left out."""
     numbered = sorted(enumerate(owners), key=lambda each: each[1].memory)
     counted = traffic_in(words)[: len(numbered)]
     by_name = {name: counted[:, masters].sum(axis=1).tolist() for name, masters in NAMED.items()}
@@ -52,19 +52,19 @@ def traffic_records(words: Any, owners: MemoryOwners, cclk_ticks: int) -> tuple[
 
 @native
 def traffic_at(owner: int, master: int) -> int:
-    """Return where it is counted what a master moves to or from memory of an owner."""
+    """Return where the counters of a master's traffic with an owner's memory are."""
     return w.TRAFFIC_AT + (owner * w.MASTERS + master) * w.TRAFFIC_WORDS
 
 
 @native
 def count_traffic(state: State, master: int, owner: int, write: bool, nbytes: int) -> None:
-    """Count bytes that a master moved to or from memory of an owner."""
+    """Count bytes that a master moved to or from an owner's memory."""
     state[traffic_at(owner, master) + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
 
 
 @native
 def count_access(state: State, master: int, owner: int, elements: int, paused: int = 0) -> None:
-    """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took but for pauses among them."""
+    """Count `elements` accesses of SDRAM, the first being the controller's last one, and their time without pauses between them."""
     at = traffic_at(owner, master)
     state[at + w.HITS + state[w.PAGE_CLASS]] += 1
     state[at + w.HITS] += elements - 1
@@ -73,7 +73,7 @@ def count_access(state: State, master: int, owner: int, elements: int, paused: i
 
 @native
 def count_in_l1(state: State, transfer: int, count: int) -> None:
-    """Count the next `count` elements of a transfer at those of its sides that are in L1."""
+    """Count the next `count` elements of a transfer on its sides in L1."""
     master, nbytes = state[transfer + w.OF_MASTER], count << state[transfer + w.ELEMENT_BITS]
     if state[transfer + w.FROM] >= state[w.L1_FIRST]:
         count_traffic(state, master, state[transfer + w.FROM_OWNER], False, nbytes)
@@ -85,7 +85,7 @@ def count_in_l1(state: State, transfer: int, count: int) -> None:
 
 @native
 def count_subbanks(state: State, side: int, count: int) -> None:
-    """Count what the next `count` elements of a side in L1 move to or from each of its sub-banks."""
+    """Count the next `count` elements of a side in L1 for each sub-bank."""
     bits, step = state[w.SUBBANK_BITS], state[side + w.X_MODIFY]
     at, left = state[side + w.POSITION] - state[w.L1_FIRST], count
     while (at + (left - 1) * step) >> bits != at >> bits:

@@ -1,4 +1,4 @@
-"""Transfers of a DMA, planned and on their way, and what a stretch of a core's work took."""
+"""DMA transfers, planned and in progress, and what a stretch of a core's work took."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.machine.bus import state as w
 
 @dataclass(frozen=True, slots=True)
 class Walk:
-    """One side of a transfer: `x_count` elements a line, `x_modify` bytes apart, and `y_modify` to the next line."""
+    """One side of a transfer: lines of `x_count` elements, `x_modify` bytes apart, and `y_modify` bytes to the next line."""
 
     offset: int
     x_count: int
@@ -24,7 +24,7 @@ class Walk:
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How a device delivers or takes elements: from tick `start`, so many ticks an element and a line (exact)."""
+    """How a device delivers or takes elements: from tick `start` on, with exact ticks per element and per line."""
 
     start: int
     line_elements: int
@@ -36,8 +36,8 @@ class Pace:
 class TransferPlan:
     """A transfer of one master, ready to be posted as often as needed: `count` elements, which take `setup` ticks to start.
 
-    `mode`: one of `bus.state`. `owners`: of the memory that it begins to read, and to write. `name`: what is moved, for people.
-    Raises FirmwareError where the lines of a side are not whole.
+    `mode` is one of `bus.state`. `owners` of the memory where it begins to read and to write. `name` says what is moved, for people.
+    Raises FirmwareError if the lines of a side are not whole.
     """
 
     master: int
@@ -51,7 +51,7 @@ class TransferPlan:
     owners: tuple[int, int]
     name: str
     words: tuple[int, ...] = field(init=False)
-    """Its own in `bus.state`, from SETUP on."""
+    """The words of the transfer in `bus.state`, from SETUP on."""
 
     def __post_init__(self) -> None:
         for side in (self.source, self.destination):
@@ -63,7 +63,7 @@ class TransferPlan:
 
     @property
     def nbytes(self) -> int:
-        """What is moved."""
+        """Number of bytes moved."""
         return self.count * self.element_bytes
 
     def _in_words(self) -> tuple[int, ...]:
@@ -82,10 +82,10 @@ class TransferPlan:
 
 
 class Played(NamedTuple):
-    """What a stretch of a core took, in cycles. `clock_cclk`: where the core's clock is now.
+    """What a stretch of a core took, in cycles. `clock_cclk` is the core's clock now.
 
-    `stalls_cclk`: of its kernels, interlocks and behind them those on the bus, in the order of `bus.state`. `accounts`: of each that was
-    used, in the order of their first use, the words from TOUCH on (`bus.state`).
+    `stalls_cclk` of its kernels are interlocks, followed by stalls on the bus in the order of `bus.state`. `accounts` has the words
+    from TOUCH on (`bus.state`) of each used account, in order of first use.
     """
 
     clock_cclk: int
@@ -95,12 +95,12 @@ class Played(NamedTuple):
 
 
 class Transfer:
-    """One transfer of a DMA on its way. `end` is the tick at which it is done, or None as long as nobody can know."""
+    """One DMA transfer in progress. `end` is the tick at which it is done, None as long as that is unknown."""
 
     __slots__ = ("_words", "number", "place")
 
     def __init__(self, words: Any, number: int, place: int) -> None:
-        """`words`: the state of the bus that it is on."""
+        """`words` is the state of its bus."""
         self._words = words
         self.number = number
         self.place = place

@@ -1,4 +1,4 @@
-"""How a transfer walks through memory: the next elements of both its sides, and their bytes moved from one to the other."""
+"""How a transfer walks through memory: the next elements of both sides, and the moving of their bytes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
 
 @native
 def go_on(state: State, side: int, count: int) -> None:
-    """Move a side on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
+    """Move a side on by `count` elements of its line. After the last element of a line, Y_MODIFY replaces X_MODIFY."""
     state[side + w.POSITION] += count * state[side + w.X_MODIFY]
     state[side + w.X_LEFT] -= count
     if state[side + w.X_LEFT] == 0:
@@ -32,7 +32,7 @@ def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
 
 @native
 def move(state: State, memory: Memory, transfer: int, count: int) -> None:
-    """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
+    """Move `count` elements, none beyond the end of either side's line, and move both sides on."""
     if not state[transfer + w.IS_MOVED]:
         move_bytes(state, memory, transfer, count)
     go_on(state, transfer + w.FROM, count)

@@ -1,7 +1,7 @@
-"""What moves between the memories: transfers of the DMAs and accesses of the cores, played by the compiled weave.
+"""Movements between the memories: transfers of the DMAs and accesses of the cores, played by the compiled weave.
 
-The bus keeps its own time, which is behind the simulated time until somebody looks. Whoever wants to know whether something is
-done settles it first; while anybody waits, the simulation plays it up to each event, and wakes those whose transfer is over.
+The bus has its own time, which lags behind simulated time until someone looks. Whoever wants to know whether something is done
+settles the bus first. While anyone waits, the simulation plays it up to each event and wakes those whose transfer is over.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
 
 
 class WovenBus:
-    """`Bus` by the weave. `stretches` plays what cores have done ahead, and recorded work."""
+    """`Bus` by the weave. `stretches` plays the work that cores have done ahead, and recorded work."""
 
     def __init__(
         self, env: Simulation, board: BoardSpec, memories: Memories, weave: Weave = compiled_weave
     ) -> None:
         self._env = env
         self._state = new_state(board, memories)
-        self._memory: Any = memories.arena.view("uint32")  # the weave has only its address
+        self._memory: Any = memories.arena.view("uint32")  # keeps it alive: the weave has only its address
         self.words: Any = self._state.data
         self._advance = weave(self._state, self._memory)
         self._ends = Ends(env)
@@ -59,13 +59,13 @@ class WovenBus:
     # ---- time
 
     def settle(self) -> None:
-        """Grant everything that was asked for before the simulated time."""
+        """Grant everything that was requested before the simulated time."""
         self.play_until(self._env.tick)
 
     def play_until(self, tick: int) -> bool:
-        """Grant everything that was asked for before `tick`; stop early, with True, at an end that somebody waits for.
+        """Grant everything that was requested before `tick`. Stop early and return True at an awaited end.
 
-        The event of whoever waits is put on the simulation's queue at its tick. On the way the load of the buses is told.
+        The awaited event is put on the simulation's queue at its tick. On the way, the load of the buses is told.
         """
         told = self.records.told
         while told and told.next_sample < tick and not (tick == END_OF_TIME and self._is_at_rest):
@@ -82,7 +82,7 @@ class WovenBus:
 
     @property
     def _is_at_rest(self) -> bool:
-        """Whether nothing will happen on the bus before somebody asks for more."""
+        """Whether nothing will happen on the bus before the next request."""
         words, plays = self.words, w.PLAYS_AT + w.ACTS_AT
         acts = words[plays : plays + w.CORES * w.PLAY_WORDS : w.PLAY_WORDS]
         return not words[w.POSTED] and all(
@@ -91,27 +91,27 @@ class WovenBus:
 
     @property
     def cclk_ticks(self) -> int:
-        """Ticks of a cycle of the cores."""
+        """Ticks per core cycle."""
         ticks: int = self.words[w.CCLK]
         return ticks
 
     def end_of(self, number: int) -> int | None:
-        """Return the tick at which a transfer was over, by its number, or None as long as nobody can know."""
+        """Return the tick at which a transfer ended, by its number, None as long as that is unknown."""
         return Transfer(self.words, number, w.NONE).end
 
     @property
     def is_awaited(self) -> bool:
-        """Whether anybody waits for an end."""
+        """Whether anyone waits for an end."""
         return bool(self._ends)
 
     # ---- transfers
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
-        """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
+        """Append a transfer to its master's queue. It begins at tick `at` or later."""
         words, now = self.words, self._env.tick
         top = words[w.FREE_TRANSFERS] - 1
         if top < 0:
-            self.settle()  # those that are over make room
+            self.settle()  # finished transfers make room
             top = words[w.FREE_TRANSFERS] - 1
         if top < 0:
             raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
@@ -120,7 +120,7 @@ class WovenBus:
         number = words[w.ALL_POSTED]
         words[w.ALL_POSTED] = number + 1
         words[w.ENDS_AT + number % w.ENDS] = w.NONE
-        # the bus may still be behind the simulated time; the transfer is not
+        # the bus may lag behind simulated time, but the transfer does not
         TRANSFER_LAYOUT.pack_into(
             words, 8 * (w.TRANSFERS_AT + place * w.TRANSFER_WORDS), number, w.NONE, max(at, now), *plan.words
         )
@@ -132,19 +132,19 @@ class WovenBus:
         return Transfer(self.words, number, place)
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at a transfer's end, which must not be known yet."""
+        """Return the event at the end of a transfer, which must not be known yet."""
         self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_END
         return self._ends.of_transfer(transfer.number)
 
     def when_row(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        """Return the event at the end of the next row that a transfer writes, or at its own end. Neither may be known yet."""
         self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_ROWS
         return self._ends.of_transfer(transfer.number)
 
     def moved_by(self, transfer: Transfer) -> int:
-        """Return how many elements a transfer that is not over has moved."""
+        """Return the number of elements that an unfinished transfer has moved."""
         return int(self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.MOVED])
 
     def lost_by(self, master: int) -> int:
-        """Return how many elements a peripheral's DMA has lost, since they found its FIFO full or did not come in time."""
+        """Return the number of elements that a peripheral's DMA has lost because its FIFO was full or they came too late."""
         return int(self.words[w.MASTERS_AT + master + w.ALL_LOST])

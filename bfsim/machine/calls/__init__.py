@@ -1,1 +1,1 @@
-"""What a kernel call costs beside its instructions: conflicts in L1, instruction fetch, caches; and its records."""
+"""The cost of a kernel call besides its instructions: conflicts in L1, instruction fetch, caches; and its records."""

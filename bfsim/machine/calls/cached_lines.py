@@ -1,6 +1,6 @@
-"""Lines of a picture that lies in cached memory: kernels get the picture's own rows, and no DMA brings or takes any.
+"""Lines of a picture in cached memory: kernels get the picture's own rows, without any DMA.
 
-They answer firmware as line rings do, so that the LDF alone decides between rings and caches.
+To firmware they behave like line rings, so the LDF alone decides between rings and caches.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ class CachedInput:
     """The lines of a picture, first to last."""
 
     def __init__(self, image: Sequence[Row], on_line: Callable[[int, int], None]) -> None:
-        """`on_line`: called with the number of each line that is taken, and how many there are."""
+        """`on_line` is called with the number of each line that is taken, and with the number of lines."""
         self._on_line = on_line
         self._image = image
         self._taken = 0
@@ -31,7 +31,7 @@ class CachedInput:
         self._taken = number + 1
         self._on_line(number, len(self._image))
         return self._image[number]
-        yield  # a generator, as the line of a ring is
+        yield  # makes this a generator, like the line of a ring
 
     def __getitem__(self, number: int) -> Row:
         """Return the row of line `number`, which must have been taken."""
@@ -56,13 +56,13 @@ class CachedOutput:
                 f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was asked for"
             )
         return self._image[self._sent]
-        yield  # a generator, as the row of a ring is
+        yield  # makes this a generator, like the row of a ring
 
     def send(self) -> None:
-        """Go on to the next line; the cache writes this one when it has to."""
+        """Go on to the next line. The cache writes this one when it has to."""
         self._sent += 1
 
     def flush(self) -> Generator[Any, Any, None]:
-        """Do nothing: the lines are where they belong."""
+        """Do nothing: the lines are already in place."""
         return
         yield

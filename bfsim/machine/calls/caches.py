@@ -1,8 +1,8 @@
 """The caches that an LDF switches on: what they hold, and what they take from L1.
 
-VisualDSP++ asks for them through symbols of the LDF; the start-up code does the rest. The data caches hold SDRAM, written
-back as its default protection table has it, or written through where the firmware's own table says so; the code cache holds
-whatever code lies outside L1. There is no coherence.
+VisualDSP++ enables them through symbols of the LDF; its start-up code does the rest. The data caches hold SDRAM, written back
+as in its default protection table, or written through where the firmware's own table says so. The code cache holds all code
+outside L1. There is no coherence.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ CODE_SYMBOL = "___l1_code_cache"
 
 @dataclass(frozen=True, slots=True)
 class Caches:
-    """The caches of one core: `data` memories of L1 whose upper part is cache, and whether code is cached."""
+    """The caches of one core: the memories of L1 whose upper part is `data` cache, and whether code is cached."""
 
     data: tuple[str, ...]
     code: bool
@@ -36,12 +36,12 @@ class Caches:
         return CacheSize(spec.data_bytes_per_bank * len(self.data), spec.line_bytes, spec.data_ways)
 
     def regions(self, memories: Memories, write_through: Sequence[CachedRegion]) -> tuple[CachedRegion, ...]:
-        """Return what the data cache holds lines of: SDRAM, some of it written through."""
+        """Return the regions that the data cache holds lines of: SDRAM, some of it written through."""
         return (*write_through, CachedRegion(0, memories.sdram_end, Policy.WRITE_BACK)) if self.data else ()
 
 
 def caches_of(link_map: LinkMap, processor: str | None) -> Caches:
-    """Return the caches that the LDF asks for on a processor."""
+    """Return the caches that the LDF enables on a processor."""
 
     def is_on(symbol: str) -> bool:
         values = link_map.values
@@ -52,9 +52,9 @@ def caches_of(link_map: LinkMap, processor: str | None) -> Caches:
 
 
 def written_through(names: Sequence[str], link_map: LinkMap, memories: Memories) -> tuple[CachedRegion, ...]:
-    """Return the memory segments `names` of the LDF as regions that are written through.
+    """Return the memory segments `names` of the LDF as write-through regions.
 
-    Raises FirmwareError for a segment that is not in SDRAM, or for more than the protection table of a core can hold.
+    Raises FirmwareError for a segment outside SDRAM, or for more segments than a core's protection table can hold.
     """
     segments = {each.name: each for each in link_map.segments if each.start < memories.sdram_end}
     if len(names) >= MAX_REGIONS:
@@ -69,7 +69,7 @@ def written_through(names: Sequence[str], link_map: LinkMap, memories: Memories)
 
 
 def cached_parts(core: str, caches: Caches, regions: Sequence[Region]) -> Iterator[Region]:
-    """Yield the parts of a core's L1 that are cache: no DMA reaches them, and nothing can be placed there."""
+    """Yield the parts of a core's L1 that are cache. No DMA reaches them, and nothing can be placed there."""
     for each in regions:
         is_cache = each.memory in caches.data or (caches.code and each.memory == "L1_CODE_CACHE")
         if each.owner == core and is_cache:

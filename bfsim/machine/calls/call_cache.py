@@ -30,16 +30,16 @@ from bfsim.trace.owner_costs import Owner
 
 
 def _nobody(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
-    """Care for no call."""
+    """Ignore the call."""
 
 
 @dataclass(frozen=True, slots=True)
 class KnownCall:
-    """The kernel `name` bound to its rows, ready to run. `number`: the how-manieth of its core.
+    """The kernel `name` bound to its rows, ready to run, with its `number` among the calls of its core.
 
-    `words`: the address by which machine code runs it, 0 if Python must.
-    `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_alone`: whether its accesses reach nothing there but buffers
-    that belong to its core alone, and those that are `handed_over`, at the time. Code is read only.
+    `words` is the address by which machine code runs it, 0 if only Python can.
+    `stays_in_l1` says whether all its accesses and its code stay in L1; `is_alone`, whether outside L1 it accesses only buffers that
+    belong to its core alone, permanently or `handed_over` at the time. Code is read-only, so it does not matter for that.
     """
 
     name: str
@@ -52,9 +52,9 @@ class KnownCall:
 
 
 class _CallOnRows(NamedTuple):
-    """A call as it is counted: the group that it belongs to, its rows, which of them lie outside of L1, and the stack if that does.
+    """A call as it is counted: its group, its rows, those of them outside L1, and the stack if it is outside.
 
-    `is_traced`: whether its code reports accesses.
+    `is_traced` says whether its code reports accesses.
     """
 
     group: CallGroup
@@ -65,16 +65,16 @@ class _CallOnRows(NamedTuple):
 
     @property
     def stays_in_l1(self) -> bool:
-        """Whether neither its accesses nor its code can leave L1."""
+        """Whether all its accesses and its code stay in L1."""
         return not (self.outside or self.stack is not None or self.group.fetched)
 
 
 KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, KnownCall]]
-"""What picks the rows out of the arguments of a kernel, and its calls by them."""
+"""A function that picks the rows out of a kernel's arguments, and the kernel's calls by these rows."""
 
 
 class DeferredWork(Work):
-    """A call that is still to be made, with `run`."""
+    """A call that has yet to be made, with `run`."""
 
     __slots__ = ("_arguments", "_call")
 
@@ -84,7 +84,7 @@ class DeferredWork(Work):
         self._arguments = arguments
 
     def run(self) -> Work:
-        """Run the kernel now and say what it cost."""
+        """Run the kernel now and return its cost."""
         return self._call.run(*self._arguments)
 
 
@@ -108,9 +108,9 @@ class CallCache:
         before_call: tuple[BeforeCall, ...],
         in_first_frame: tuple[BeforeCall, ...],
     ) -> None:
-        """`memory`: where all rows lie. `stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on.
+        """All rows lie in `memory`. `stack` is the memory of the core's stack if that is outside L1. Only this core works on its `own` buffers.
 
-        `handed_over`: those of which that holds at a time. `before_call` is told of each call, `in_first_frame` of those of the first frame.
+        Only one core at a time works on `handed_over` ones. `before_call` is called before each call, `in_first_frame` only in the first frame.
         """
         self._core = core
         self._build = build
@@ -130,11 +130,11 @@ class CallCache:
         self._in_stage: dict[str, StageGroups] = {}
         self._calls: dict[str, dict[Kernel, KernelCalls]] = {}
         self.ready = ReadyCalls()
-        """Those that machine code finds."""
+        """The calls that machine code finds."""
         self.made: list[KnownCall] = []
-        """Those that were prepared, by their numbers."""
+        """The prepared calls, by number."""
         self.on_prepared: BeforeCall = _nobody
-        """Is told of each call that is prepared."""
+        """Called with each call that is prepared."""
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
@@ -146,7 +146,7 @@ class CallCache:
         self.ready.enter(stage)
 
     def accessed(self) -> Accesses:
-        """Return what the calls of the present stage have accessed in L1 since this was asked last."""
+        """Return what the calls of the current stage have accessed in L1 since the last call of this."""
         return self._in_stage[self.stage].accessed(self._ledger.events_at)
 
     def groups_in(self, stage: str) -> StageGroups:
@@ -162,15 +162,15 @@ class CallCache:
 
     @property
     def conflicts_at(self) -> int:
-        """The address of what conflicts in L1 have cost at each site, to be added to."""
+        """The address of the costs of conflicts in L1 by site, to be added to."""
         return self._ledger.conflicts_at
 
     def conflicts_cclk(self, accessed: Accesses, elapsed_cclk: int) -> int:
-        """Return what conflicts in L1 cost calls that have `accessed` it in `elapsed_cclk`, all since this was asked last."""
+        """Return the cost of conflicts in L1 for calls that `accessed` it in `elapsed_cclk`, all since the last call of this."""
         return self._subbanks.charge(accessed, elapsed_cclk, self._ledger.conflicts_at)
 
     def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
-        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced."""
+        """Prepare a new call, and keep it. Rows outside L1 are traced."""
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
@@ -182,24 +182,24 @@ class CallCache:
         return call
 
     def expect(self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool) -> bool:
-        """Count a call from now on that is played, not made; return whether it stays in L1.
+        """Count a call from now on that is played, not made. Return whether it stays in L1.
 
-        `was_traced`: some of its rows lay outside when it was recorded, so that its sites are numbered as those of traced code.
+        With `was_traced`, some of its rows lay outside L1 when it was recorded, so its sites are numbered as in traced code.
         """
         return self._on_rows(kernel, arguments, was_traced=was_traced).stays_in_l1
 
     @property
     def events(self) -> NDArray[np.int64]:
-        """The events that the kernels have counted, counter by counter."""
+        """The events that the kernels have counted, by counter."""
         return self._ledger.events
 
     @property
     def counters_at(self) -> tuple[int, int]:
-        """The address of these, to be added to, and how many there are."""
+        """The address of these counts, to be added to, and their number."""
         return self._ledger.events_at, self._ledger.event_count
 
     def end_first_frame(self) -> None:
-        """Tell nobody any more but who is told of each call."""
+        """Stop calling the functions that are called in the first frame only."""
         if not self._in_first_frame:
             return
         self._in_first_frame = ()
@@ -210,22 +210,22 @@ class CallCache:
                 calls[rows] = self.made[call.number] = replace(call, run=run, words=words_at(run))
 
     def close(self) -> tuple[tuple[Owner, ...], NDArray[np.int64], FrameCounts]:
-        """Return all kernels, in each stage, what they cost in the frame that ends now, and what they have counted in it."""
+        """Return all kernels in each stage, their costs in the frame that ends now, and their counts in it."""
         return self._ledger.close()
 
     def report(self, counts: FrameCounts) -> None:
-        """Let the counts of the next frame be reported, too."""
+        """Report the counts of the next frame, too."""
         self._ledger.report(counts)
 
     def records(self) -> CoreRecords:
-        """Return the records of what was reported."""
+        """Return the records of the reported counts."""
         buffers = tuple(each.buffer for each in self._owners)
         return CoreRecords(self._core, tuple(self._groups.values()), self._ledger.reported, buffers)
 
     def _on_rows(
         self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool = False
     ) -> _CallOnRows:
-        """Return a call as it is counted under the present stage. Raises KernelError or FirmwareError for wrong arguments."""
+        """Return a call as it is counted under the current stage. Raises KernelError or FirmwareError for wrong arguments."""
         for each in arguments:
             if isinstance(each, Generator):
                 wait = f"{getattr(each, '__name__', 'wait')}(...)"
@@ -280,12 +280,12 @@ class CallCache:
         )
 
     def _watched(self, kernel: Kernel, run: Callable[..., Work]) -> Callable[..., Work]:
-        """Return a call with those before it who are told of it, if anybody is: then machine code cannot make it."""
+        """Return a call wrapped to tell its watchers first, if there are any. Machine code cannot make such a call."""
         before = *self._in_first_frame, *self._before_call
         return WatchedCall(run, kernel, before) if before else run
 
     def _is_traced(self, row: Row) -> bool:
-        """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""
+        """Whether accesses to `row` take longer than one cycle. Another core's L1 is out of reach."""
         if not row.is_in_l1:
             return True
         if (

@@ -1,6 +1,6 @@
-"""What a call whose code lies outside L1 adds to the access trace, compiled: called by machine code when a kernel has run (`machine_code.followed`).
+"""What a call with code outside L1 adds to the access trace, compiled: machine code calls it after the kernel (`machine_code.followed`).
 
-Each gets the state of the access trace, and two arrays of its own.
+Each function gets the state of the access trace, and two arrays of its own.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from bfsim.machine.bus.state import FETCH_BYTES, State
 SUBBANK_BYTES = 4096
 
 LINE_BYTES, WAYS, SETS, TAGS = range(4)
-"""Of a code cache: its size, and from TAGS on the lines of each set, the one used last first; NO_LINE where there is none."""
+"""Words of a code cache: its dimensions, and from TAGS on the lines of each set, the latest used first; NO_LINE if empty."""
 NO_LINE = -1
 
 COUNT, LINES_AT = range(2)
-"""Of a group's lines: how many, then each with its site, and behind them room for those that were missed."""
+"""Words of a group's lines: their number, each line with its site, and room for the missed ones."""
 
 COUNTERS, EXECUTED, SITE, NBYTES_AT = range(4)
-"""Of a group's single fetches: how many counters there are, how many bytes were executed so far, the site of the first routine, and the
-bytes of each counter's code."""
+"""Words of a group's single fetches: the number of counters, the bytes executed so far, the site of the first routine, and the bytes
+of each counter's code."""
 
 
 @native
 def set_of(cache: State, line: int) -> int:
-    """Return the set of a line: addr[9:5] in the sub-bank of 4 KB that addr[13:12] names (Programming Reference p.243)."""
+    """Return the set of a line: addr[9:5] in the sub-bank of 4 KB named by addr[13:12] (Programming Reference p.243)."""
     at = line * cache[LINE_BYTES]
     per_bank = SUBBANK_BYTES // (cache[LINE_BYTES] * cache[WAYS])
     return at // SUBBANK_BYTES * per_bank % cache[SETS] + line % per_bank
@@ -35,7 +35,7 @@ def set_of(cache: State, line: int) -> int:
 
 @native
 def use_line(cache: State, line: int) -> bool:
-    """Make a line the one used last of its set; return whether it was there."""
+    """Make a line the latest used of its set. Return whether it was in the cache."""
     first, way = TAGS + set_of(cache, line) * cache[WAYS], 0
     while way < cache[WAYS] - 1 and cache[first + way] != line:
         way += 1
@@ -49,7 +49,7 @@ def use_line(cache: State, line: int) -> bool:
 
 @native_entry("void", "int64*", "int64*", "int64*")
 def fetch_lines(trace_at: Any, cache_at: Any, lines_at: Any) -> None:
-    """Use the lines of a call; log a fill of each that was not there, behind the accesses of its first cycle."""
+    """Use the lines of a call. Log a fill for each missing line, after the accesses in the call's first cycle."""
     trace, cache, lines = words_at(trace_at), words_at(cache_at), words_at(lines_at)
     missed_at = LINES_AT + 2 * lines[COUNT]
     missed = 0
@@ -74,7 +74,7 @@ def fetch_lines(trace_at: Any, cache_at: Any, lines_at: Any) -> None:
 
 @native_entry("void", "int64*", "int64*", "int64*")
 def fetch_singly(trace_at: Any, totals_at: Any, code_at: Any) -> None:
-    """Log how many fetches the code needs that was executed since the last time, as one entry."""
+    """Log the number of fetches of the code executed since the last time, as one entry."""
     trace, totals, code = words_at(trace_at), words_at(totals_at), words_at(code_at)
     executed = 0
     for number in range(code[COUNTERS]):

@@ -1,8 +1,8 @@
-"""Conflicts in L1: a sub-bank takes one access a cycle, and a DMA word that moves there makes the core wait.
+"""Conflicts in L1: a sub-bank takes one access per cycle, and a DMA word that moves there makes the core wait.
 
-Which cycles a DMA word meets is not followed; what is charged is the expected number: the words of DMA that moved in or out
-of a sub-bank while a stage ran, times the share of the stage's cycles in which the core accessed that sub-bank. Lines of kernels
-have them by their part in those accesses.
+The exact cycles of DMA words are not followed. The expected number is charged: the DMA words that moved into or out of a sub-bank
+while a stage ran, times the share of the stage's cycles in which the core accessed that sub-bank. Lines of kernels are charged
+by their share of those accesses.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from bfsim.machine.memories import Memories, Row
 from bfsim.machine_code.built_in import built_in
 
 COUNTER, BANK, EACH, AMONG, SITE = range(5)
-"""What an event accesses: its counter among the core's, a sub-bank, accesses, sub-banks to share them, and the core's site that makes them."""
+"""The accesses of an event: its counter in the core, a sub-bank, the accesses, the sub-banks that share them, and the core's site."""
 
 Numbers = MutableSequence[int]
 
 
 class Accesses(NamedTuple):
-    """Accesses of L1 by calls: what each event of theirs accesses, columns as above one after the other, and how many there were of it.
+    """Accesses of L1 by calls: what each of their events accesses, as the columns above one after the other, and the counts of events.
 
-    `spread_at`: the address of the first, for numpy takes longer to find one than compiled code needs for both.
+    `spread_at` is the address of `spread`: numpy takes longer to find it than compiled code needs for everything.
     """
 
     spread: NDArray[np.int64]
@@ -40,13 +40,13 @@ class Accesses(NamedTuple):
 
 @native
 def made(spread: Numbers, events: Numbers, count: int, number: int) -> float:
-    """Return how many accesses of a sub-bank were made."""
+    """Return the number of accesses to a sub-bank."""
     return events[number] * spread[EACH * count + number] / spread[AMONG * count + number]
 
 
 @native
 def count_since(spread: Numbers, count: int, counters: Numbers, before: Numbers, events: Numbers) -> int:
-    """Count what the `counters` of a core have counted since `before`, for each of `count` columns; return how many these are."""
+    """Write how much the `counters` of a core have grown since `before` to `events`, for each of `count` columns. Return `count`."""
     for number in range(count):
         now = counters[spread[COUNTER * count + number]]
         events[number] = now - before[number]
@@ -81,10 +81,10 @@ def charged(
     state: Numbers, banks: tuple[Numbers, Numbers, MutableSequence[float]], spread: Numbers, events: Numbers, count: int,
     elapsed: int, conflict: int, at_sites: Numbers,
 ) -> int:  # fmt: skip
-    """Return what conflicts cost in `elapsed` cycles, each of them `conflict`, and add it to what they cost at each site.
+    """Return the cost of conflicts in `elapsed` cycles, each costing `conflict`, and add it to the costs by site.
 
-    It is shared out by the parts of the accesses: each gets its part, rounded so that none is lost. `banks`: the words that DMA had
-    moved before, by sub-bank; room for those since, and for accesses.
+    The sites share it in proportion to their accesses, rounded so that nothing is lost. `banks`, by sub-bank: the words that DMA
+    had moved before, room for those moved since, and room for accesses.
     """
     before, words_moved, accesses = banks
     for bank in range(w.MAX_SUBBANKS):
@@ -111,30 +111,30 @@ def charged(
 
 
 class StageGroups:
-    """The groups of calls of one stage, and what each of their events accesses: the `spread` of all of them, and its counts before."""
+    """The groups of calls of one stage, with the `spread` of all their events' accesses, and the earlier counts."""
 
     def __init__(self) -> None:
         self._new: list[CallGroup] = []
         self._spread = np.zeros((5, 0), np.int64)
         self._before = np.zeros(0, np.int64)
-        self._addresses = 0, 0  # of these
+        self._addresses = 0, 0  # of the spread and the earlier counts
         self._events: type[ctypes.Array[ctypes.c_int64]] = ctypes.c_int64 * 0
         self._count = built_in(count_events.address(), 5)
 
     def add(self, group: CallGroup) -> None:
-        """Add a group. Where its rows lie is looked up when it has run."""
+        """Add a group. Its rows are looked up once it has run."""
         self._new.append(group)
 
     @property
     def has_new(self) -> bool:
-        """Whether there are groups that have not been looked at yet."""
+        """Whether some groups have not been looked at yet."""
         return bool(self._new)
 
     def look(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Look where the rows of new groups lie; return the spread of all of them, and its counts before."""
+        """Look up where the rows of new groups lie. Return the spread of all groups, and the earlier counts."""
         if self._new:
             joined = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
-            self._spread = np.ascontiguousarray(joined)  # behind a single column numpy lays others by rows
+            self._spread = np.ascontiguousarray(joined)  # after a single column, numpy lays out others by rows
             self._before = np.pad(self._before, (0, self._spread.shape[1] - len(self._before)))
             self._addresses = self._spread.ctypes.data, self._before.ctypes.data
             self._events = ctypes.c_int64 * len(self._before)
@@ -142,7 +142,7 @@ class StageGroups:
         return self._spread, self._before
 
     def accessed(self, counters_at: int) -> Accesses:
-        """Return what the calls have accessed since the last time, by what the core's counters, at an address, have counted."""
+        """Return what the calls have accessed since the last time, from the core's counters at an address."""
         self.look()
         events = self._events()
         spread_at, before_at = self._addresses
@@ -151,10 +151,10 @@ class StageGroups:
 
 
 class SubBanks:
-    """The sub-banks of L1 as one core meets them."""
+    """The sub-banks of L1 as seen by one core."""
 
     def __init__(self, chip: ChipSpec, memories: Memories, words: Any) -> None:
-        """`words`: the state of the bus."""
+        """`words` is the state of the bus."""
         state: NDArray[np.int64] = np.asarray(words)
         self._bytes = chip.l1.subbank_bytes
         self._first = memories.l1
@@ -165,21 +165,21 @@ class SubBanks:
             np.zeros(w.MAX_SUBBANKS, np.float64),
         )
         self.at = [each.ctypes.data for each in self._arrays]
-        """The addresses of these."""
+        """The addresses of these arrays."""
         self.conflict_cclk = chip.l1.conflict_cclk
         self._charge = built_in(charge_conflicts.address(), 6, *self.at)
 
     def of(self, row: Row) -> range:
-        """Return the sub-banks that a row lies in, none outside L1."""
+        """Return the sub-banks that a row lies in: none if it is outside L1."""
         if row.offset < self._first:
             return range(0)
         first, last = row.offset - self._first, row.offset + row.nbytes - 1 - self._first
         return range(first // self._bytes, last // self._bytes + 1)
 
     def charge(self, accessed: Accesses, elapsed_cclk: int, at_sites_at: int) -> int:
-        """Return the cycles that conflicts cost since the last time, `elapsed_cclk` ago: all was `accessed` in these.
+        """Return the cycles of conflicts since the last time, `elapsed_cclk` ago. All of `accessed` was in that time.
 
-        They are added to what conflicts cost at each site, at an address.
+        The cycles are added to the costs of conflicts by site at an address.
         """
         _, events, spread_at = accessed
         return self._charge(
@@ -188,7 +188,7 @@ class SubBanks:
 
 
 def _spread(group: CallGroup) -> NDArray[np.int64]:
-    """Return what an event of each counter accesses, columns as above, spread evenly over the sub-banks that the rows lie in."""
+    """Return what an event of each counter accesses, in the columns above, spread evenly over the sub-banks of the rows."""
     banks = group.by_array(group.subbanks)
     rows = [
         (

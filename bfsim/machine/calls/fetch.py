@@ -1,8 +1,8 @@
-"""Instruction fetch from outside L1: what the code of a kernel call asks of the memories, beside its data.
+"""Instruction fetch from outside L1: the accesses of a kernel call for its code, besides its data.
 
-Cached code is fetched a line at a time, when the call first comes to it; a line is in the cache until others of its set were
-used later. Code that is not cached is fetched 64 bits at a time, as often as it is executed, spread evenly over the call
-(an approximation: nothing is fetched ahead, and where in the call is not known).
+Cached code is fetched line by line, at the beginning of the call. A line stays in the cache until enough other lines of its set
+have been used later. Uncached code is fetched 64 bits at a time, as often as it is executed, spread evenly over the call
+(an approximation: nothing is fetched ahead, and the exact moments in the call are unknown).
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from bfsim.machine.calls.groups import CallGroup, Fetches
 from bfsim.machine_code.calling import followed_call
 
 KeepRoutine = Callable[[int, int, int, int], None]
-"""Is told of a routine: its site, where it lies, its bytes, and the site of the one that is fetched behind it."""
+"""Called with a routine: its site, its offset, its bytes, and the site of the routine fetched after it."""
 
 
 class CodeCache:
-    """The tags of a core's code cache: its `words`, as compiled code knows them."""
+    """The tags of a core's code cache, in `words` as compiled code expects them."""
 
     def __init__(self, spec: CacheSpec) -> None:
         self.line_bytes = spec.line_bytes
@@ -39,22 +39,22 @@ class CodeCache:
 
 
 class CodeOutside:
-    """The kernels of one core whose code lies outside L1, and the cache that holds it, if the LDF has one."""
+    """The routines of one core outside L1, and the cache that holds them, if the LDF enables it."""
 
     def __init__(
         self, places: Mapping[str, tuple[int, int]], cache: CodeCache | None, keep_routine: KeepRoutine
     ) -> None:
-        """`places`: (offset in the arena, bytes) of each routine outside L1. `keep_routine` tells the bus of one that no cache holds."""
+        """`places` has (offset in the arena, bytes) of each routine outside L1. `keep_routine` tells the bus about an uncached one."""
         self.places = places
         self._cache = cache
         self._keep_routine = keep_routine
 
     def of(self, routines: Iterable[str]) -> Iterable[str]:
-        """Return those of the routines of a kernel and its callees that lie outside L1."""
+        """Return those of a kernel's and its callees' routines that lie outside L1."""
         return [each for each in routines if each in self.places]
 
     def fetches_of(self, group: CallGroup, access_trace: AccessTrace) -> Fetches:
-        """Return what calls of a group that have fetched routines tell an access trace of."""
+        """Return the fetches that calls of a group add to an access trace."""
         places = [self.places[each] for each in group.fetched]
         sites = range(
             group.first_site + len(group.code.tables.site_routines), group.first_site + group.site_count
@@ -67,9 +67,9 @@ class CodeOutside:
 
 
 class LineFills:
-    """Fetches of code that a cache holds: a fill of each line that is not there, at the beginning of a call.
+    """Fetches of cached code: a fill of each missing line, at the beginning of a call.
 
-    `places`: offset in the arena and bytes of each routine, by its site.
+    `places` has the offset in the arena and the bytes of each routine, by its site.
     """
 
     def __init__(
@@ -85,14 +85,14 @@ class LineFills:
         self._words = np.array([len(lines), *chain(*lines), *repeat(0, len(lines))], np.int64)
 
     def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
-        """Return a call that adds them."""
+        """Return a call that adds the fetches."""
         return _followed(run, c.fetch_lines, self._access_trace, self._cache.words, self._words)
 
 
 class SingleFetches:
-    """Fetches of code that no cache holds: one for every 64 bits that were executed, from the routines' code in turn.
+    """Fetches of uncached code: one for every 64 bits executed, from the code of the routines in turn.
 
-    The bus makes them (`bus.core_jobs.find_present`); the trace has their number only.
+    The bus makes them (`bus.core_jobs.find_present`); the trace has only their number.
     """
 
     def __init__(self, group: CallGroup, first_site: int, access_trace: AccessTrace) -> None:
@@ -107,14 +107,14 @@ class SingleFetches:
         return np.array([len(outside), 0, self._first_site, *outside], np.int64)
 
     def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
-        """Return a call that adds as many as code has been executed since the last time."""
+        """Return a call that adds the fetches of the code executed since the last time."""
         return _followed(run, c.fetch_singly, self._access_trace, self._group.totals, self._words)
 
 
 def _followed(
     run: Callable[..., Work], then: NativeEntry, access_trace: AccessTrace, *own: NDArray[np.int64]
 ) -> Callable[..., Work]:
-    """Return a call with compiled code behind it that adds fetches to the access trace."""
+    """Return a call followed by compiled code that adds fetches to the access trace."""
     one, two = (each.ctypes.data for each in own)
     given = access_trace.address_of(FUNCTION), one, two
     return followed_call(run, then.address(), given, log_of(access_trace), (access_trace, own))

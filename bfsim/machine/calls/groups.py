@@ -24,11 +24,11 @@ class Fetches(Protocol):
     """The fetches of code by calls that are counted together."""
 
     def behind(self, run: Callable[..., Work]) -> Callable[..., Work]:
-        """Return a call that adds them to its accesses, in the access trace."""
+        """Return a call that adds these fetches to its accesses, in the access trace."""
 
 
 class GroupSite(NamedTuple):
-    """Where the calls of a group access memory: the path of calls to it, its line, and the owner of the memory."""
+    """A site where the calls of a group access memory: the path of calls to it, its line, and the owner of the memory."""
 
     path: tuple[str, ...]
     line: SourceLine
@@ -39,9 +39,9 @@ class GroupSite(NamedTuple):
 class CallGroup:
     """Calls of one kernel in one stage with its arrays in the same buffers.
 
-    `owners`: of the memory of each array. `fetched`: routines whose code is outside L1, by `fetches`. `totals`: events of each counter, which
-    are among those of its core from `first_event` on, as its sites are from `first_site` on.
-    `subbanks`: the sub-banks of L1 that the rows of each array have lain in.
+    `owners` of each array's memory. `fetched` are routines with code outside L1, and `fetches` fetches it. `totals` are the events of
+    each counter. In the core, they are numbered from `first_event` on, and the sites from `first_site` on.
+    `subbanks` are the sub-banks of L1 in which the rows of each array have been.
     """
 
     stage: str
@@ -61,7 +61,7 @@ class CallGroup:
         return len(self.code.tables.site_routines) + len(self.fetched)
 
     def sites(self) -> Iterator[GroupSite]:
-        """Yield the sites in order: those of its accesses, and one for the code of each routine that is fetched."""
+        """Yield the sites in order: those of its accesses, and one for the code of each fetched routine."""
         program, owner_of = self.code.program, self.by_array(self.owners)
         for path in program.paths:
             for site in program.own_sites[path.routines[-1]]:

@@ -1,6 +1,6 @@
-"""What the kernels of one core have counted: events and, site by site, stalls. So each cycle of a call has an owner.
+"""The counts of one core's kernels: events and, by site, stalls. They give each cycle of a call its owner.
 
-Nothing is added up call by call. At a frame's end all counts are compared with those at the end of the frame before, and kept for the
+Nothing is added up call by call. At a frame's end, all counts are compared with those at the previous frame's end, and kept for the
 next one.
 """
 
@@ -24,7 +24,7 @@ from bfsim.trace import StallReason
 from bfsim.trace.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
 
 SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
-"""What is counted of a site, in the order of `Counted`; the lines that its accesses filled are behind them."""
+"""The stalls that are counted for a site, in the order of `Counted`. The number of lines that its accesses filled comes after them."""
 FILLS = len(SITE_STALLS)
 CONFLICTS = SITE_STALLS.index(StallReason.L1_CONFLICT)
 SITE_COLUMNS = np.array([COLUMN_OF[each] for each in SITE_STALLS])
@@ -38,14 +38,14 @@ Rows = NDArray[np.int64]
 
 
 class Counted(NamedTuple):
-    """The counts of a whole run: events of each counter, and of each site its stalls and line fills."""
+    """The counts of a whole run: the events of each counter, and the stalls and line fills of each site."""
 
     events: Rows
     sites: Rows
 
 
 class FrameCounts(NamedTuple):
-    """The counts of a frame alone: events of each counter; of what was counted at sites, place in the table of these, and how much."""
+    """The counts of a single frame: the events of each counter, and for the sites, places in their table and amounts."""
 
     events: Rows
     places: Rows
@@ -58,9 +58,9 @@ EVENT, OWNER, OF_CALLS, OF_ISSUE, OF_INTERLOCKS = range(5)
 
 @native_entry("int64", "int64*", "int64*", "int64*", "int64", "int64*")
 def charge_events(now_at: Any, before_at: Any, charges_at: Any, count: int, costs_at: Any) -> int:
-    """Add to a table of costs, a row of COLUMNS for each owner, what `count` charges make of the events between two moments; return `count`.
+    """Add `count` charges for the events between two moments to a table of costs, a row of COLUMNS for each owner. Return `count`.
 
-    The arrays: the counts at both moments, columns of charges one after the other, and the table.
+    The arrays: the counts at both moments, the columns of charges one after the other, and the table.
     """
     charges, now, before, costs = (
         words_at(charges_at),
@@ -79,7 +79,7 @@ def charge_events(now_at: Any, before_at: Any, charges_at: Any, count: int, cost
 
 @native
 def has_counted(on_bus: Any, row: int, conflicts: int, before: Any, first: int) -> bool:
-    """Whether a site has stalled, or filled lines, since the last time: its row of the bus and its conflicts beside the counts of `before`."""
+    """Whether a site has stalled or filled lines since the last time, from its row of the bus, its conflicts and the counts of `before`."""
     differs = conflicts ^ before[first + CONFLICTS]
     for reason in range(w.FILLS):
         differs |= on_bus[row + reason] ^ before[first + reason]
@@ -94,15 +94,15 @@ def charge_sites(
     columns_at: Any, on_bus_at: Any, conflicts_at: Any, before_at: Any, places_at: Any, amounts_at: Any,
     owners_at: Any, count: int, costs_at: Any,
 ) -> int:  # fmt: skip
-    """Add to such a table what `count` sites have stalled since the last time: by the owner of each and the column of each reason.
+    """Add the stalls of `count` sites since the last time to such a table, by the owner of each and the column of each reason.
 
-    Rows of the bus, and cycles of conflicts, are compared with the counts of `before`, which are brought up to them. Where these differ
-    is written to `places`, by how much to `amounts`; returns how many do.
+    Rows of the bus, and cycles of conflicts, are compared with the counts of `before`, which are brought up to date. The differing
+    places are written to `places`, the differences to `amounts`. Returns their number.
     """
     owners, columns, costs = words_at(owners_at), words_at(columns_at), words_at(costs_at)
     on_bus, conflicts, before = words_at(on_bus_at), words_at(conflicts_at), words_at(before_at)
     places, amounts, found = words_at(places_at), words_at(amounts_at), 0
-    for site in range(w.NO_SITE + 1, count):  # semaphores and locks are no kernel's
+    for site in range(w.NO_SITE + 1, count):  # semaphores and locks belong to no kernel
         row, first = site * w.SITE_WORDS, site * (FILLS + 1)
         if not has_counted(on_bus, row, conflicts[site], before, first):
             continue  # most sites stall nothing in a frame
@@ -119,20 +119,20 @@ def charge_sites(
 
 
 class Ledger:
-    """The counts of one core. `bus_stalls`: those of its sites, as the bus has them."""
+    """The counts of one core. `bus_stalls` are the stalls of its sites, as the bus keeps them."""
 
     def __init__(self, bus_stalls: Rows) -> None:
         self._events = zeros(MAX_EVENTS)
         self._conflicts = zeros(w.MAX_SITES)
         self.events_at, self.conflicts_at = self._events.ctypes.data, self._conflicts.ctypes.data
-        """Addresses of what each counter has counted, and of what conflicts in L1 have cost at each site, which is added to there."""
+        """Addresses of each counter's events, and of the costs of conflicts in L1 by site. Both are added to there."""
         self.event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
         self._new_charges: list[Rows] = []
         self._site_owners: list[int] = [0] * self._site_count
         self._know(np.zeros((5, 0), np.int64))
         self._events_before, self._sites_before = zeros(MAX_EVENTS), zeros(SITE_COUNTS)
-        self._places, self._amounts = zeros(SITE_COUNTS), zeros(SITE_COUNTS)  # room for what differs
+        self._places, self._amounts = zeros(SITE_COUNTS), zeros(SITE_COUNTS)  # room for differences
         self._charge_events = _charging(charge_events, self._events, self._events_before)
         self._charge_sites = _charging(
             charge_sites, SITE_COLUMNS, bus_stalls, self._conflicts, self._sites_before, self._places, self._amounts
@@ -141,7 +141,7 @@ class Ledger:
         self._reported_count = 0
 
     def room(self, events: int, sites: int) -> tuple[Rows, int, int]:
-        """Make room for another group: return where it counts its events, the number of the first, and of the first site."""
+        """Make room for another group. Return where it counts its events, and the numbers of its first event and first site."""
         first_event, first_site = self.event_count, self._site_count
         self.event_count += events
         self._site_count += sites
@@ -150,7 +150,7 @@ class Ledger:
         return self._events[first_event : self.event_count], first_event, first_site
 
     def add(self, group: CallGroup) -> None:
-        """Note who owns what a new group counts."""
+        """Note the owners of a new group's counts."""
         names = {each.symbol: each.name for each in group.code.functions}
 
         @cache
@@ -165,11 +165,11 @@ class Ledger:
 
     @property
     def events(self) -> Rows:
-        """The events that each counter has counted."""
+        """The events of each counter."""
         return self._events[: self.event_count]
 
     def close(self) -> tuple[tuple[Owner, ...], Rows, FrameCounts]:
-        """Return the kernels in each stage, what they cost since the last time, rows of an `OwnerCosts` table, and all counts of that."""
+        """Return the kernels in each stage, their costs since the last time as rows of an `OwnerCosts` table, and the counts since then."""
         if self._new_charges:
             self._know(np.concatenate([self._charges, *self._new_charges], axis=1))
             self._new_charges = []
@@ -183,34 +183,34 @@ class Ledger:
         return self._kernels, costs, counts
 
     def _know(self, charges: Rows) -> None:
-        """Keep who is charged for what, and where that is for compiled code, as all sites are known by now."""
-        self._charges = np.ascontiguousarray(charges)  # behind a single column numpy lays others by rows
+        """Keep the charges and their addresses for compiled code: all sites are known by now."""
+        self._charges = np.ascontiguousarray(charges)  # after a single column, numpy lays out others by rows
         self._kernels = tuple(self._owners)
         self._owners_of_sites = np.array(self._site_owners, np.int64)
         self._charges_at = self._charges.ctypes.data, self._charges.shape[1]
         self._owners_at = self._owners_of_sites.ctypes.data, len(self._owners_of_sites)
 
     def report(self, counts: FrameCounts) -> None:
-        """Add the counts of the next frame to those that are reported."""
+        """Add the counts of the next frame to the reported ones."""
         self._reported_count = len(counts.events)
         self._reported_events[: self._reported_count] += counts.events
         self._reported_sites[counts.places] += counts.amounts
 
     @property
     def reported(self) -> Counted:
-        """The counts of all frames that are on record."""
+        """The counts of all frames on record."""
         return Counted(
             self._reported_events[: self._reported_count], self._reported_sites.reshape(-1, FILLS + 1)
         )
 
 
 def _charging(entry: NativeEntry, *arrays: Rows) -> Callable[[int, int, int], int]:
-    """Return compiled code that has these arrays, which live as long as it is called; an address, a count and that of the costs are left."""
+    """Return compiled code bound to these arrays, which must outlive it. An address, a count and the address of the costs remain."""
     return built_in(entry.address(), 3, *(each.ctypes.data for each in arrays))
 
 
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:
-    """Return stalls by reason: interlocks, and those in the order of SITE_STALLS; what is 0 is left out."""
+    """Return stalls by reason: interlocks, and those in the order of SITE_STALLS. Zeros are left out."""
     if not interlocks_cclk and not any(at_sites):
         return {}  # most lines wait for nothing
     pairs = zip((StallReason.INTERLOCK, *SITE_STALLS), (interlocks_cclk, *at_sites), strict=True)

@@ -1,7 +1,7 @@
-"""The calls of a core that machine code finds, compiled: by the addresses of the kernel and the rows that firmware hands over.
+"""The calls of a core that machine code finds, compiled: by the addresses of the kernel and of the rows that firmware passes.
 
-Nobody can meet these calls: they are made as soon as the firmware asks for them (`machine_code.asking`). What is not found here Python
-looks for, and lays it here.
+No other device can notice these calls, so they are made as soon as the firmware asks for them (`machine_code.asking`). Calls that
+are not found here are looked up by Python, which adds them.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from bfsim.kernel.native.entries import native, native_entry, words_at
 from bfsim.machine.bus.state import State
 
 ALWAYS = -1
-"""In place of a turn: the call can be made in each."""
+"""Instead of a turn: the call can be made in any."""
 
 STAGE, FREE, COUNT = range(3)
-"""Of the table: the stage whose calls are found, where the next call has room, and how many there are."""
-KERNELS_AT, MOST_KERNELS = 3, 1 << 9  # each kernel, and which of its arguments are rows: a bit each
+"""Fields of the table: the stage whose calls are found, where the next call has room, and the number of calls."""
+KERNELS_AT, MOST_KERNELS = 3, 1 << 9  # each kernel, and a bit for each argument that is a row
 PLACES_AT, PLACES = (
     KERNELS_AT + 2 * MOST_KERNELS,
     1 << 13,
-)  # where each call stands: the first free place behind its own
+)  # where each call is: a hash table with linear probing
 CALLS_AT, ROOM = PLACES_AT + PLACES, 1 << 16
 OF_STAGE, TURN, NOTE, BLOCK, NUMBER, GIVEN, ARGUMENTS = range(7)
-"""Of a call: its stage, the turn in which it can be made, three words of what is asked for, how many arguments, and the kernel and its
-rows among these, 0 for numbers."""
+"""Fields of a call: its stage, the turn in which it can be made, three words that are the answer, the number of arguments, and the
+kernel and its rows among the arguments, with 0 for numbers."""
 MOST_ARGUMENTS = 32
 SAME_BITS = 4
-"""Of an address, that are the same for all objects."""
+"""Low bits of an address that are the same for all objects."""
 
 
 @native
 def kernel_at(table: State, kernel: int) -> int:
-    """Return where a kernel stands, or the place for it."""
+    """Return where a kernel is, or the place for it."""
     place = kernel >> SAME_BITS & MOST_KERNELS - 1
     while table[KERNELS_AT + 2 * place] not in (0, kernel):
         place = place + 1 & MOST_KERNELS - 1
@@ -45,7 +45,7 @@ def kernel_at(table: State, kernel: int) -> int:
 
 @native
 def place_of(table: State, arguments: State, count: int) -> int:
-    """Return where it says where a call stands, or the first free place for it."""
+    """Return the place that says where a call is, or the first free place for it."""
     rows = table[kernel_at(table, arguments[0]) + 1]
     place = (arguments[0] >> SAME_BITS) + table[STAGE]
     for number in range(1, count):
@@ -59,7 +59,7 @@ def place_of(table: State, arguments: State, count: int) -> int:
 
 @native
 def is_at(table: State, call: int, arguments: State, count: int) -> bool:
-    """Whether a call is that with these arguments."""
+    """Whether a call is the one with these arguments."""
     if table[call + OF_STAGE] != table[STAGE] or table[call + GIVEN] != count:
         return False
     for number in range(count):  # noqa: SIM110  # numba knows no generator
@@ -70,7 +70,7 @@ def is_at(table: State, call: int, arguments: State, count: int) -> bool:
 
 @native_entry("int64", "int64*", "int64*", "int64", "int64")
 def find_call(table_at: Any, arguments_at: Any, count: int, turn: int) -> int:
-    """Return where what was asked for stands, of a call that can be made in this turn; else 0."""
+    """Return where the answer for a call is if it can be made in this turn, otherwise 0."""
     table, arguments = words_at(table_at), words_at(arguments_at)
     if not 0 < count <= MOST_ARGUMENTS:
         return 0
@@ -88,17 +88,17 @@ class ReadyCalls:
         self._words: Any = self._table.data
         self._words[FREE] = CALLS_AT
         self._stages: dict[str, int] = {}
-        self._places: dict[int, int] = {}  # of each call that was laid, by its number
+        self._places: dict[int, int] = {}  # where each call is, by its number
         self._kernels = 0
         self.at: int = self._table.ctypes.data
-        """Its address."""
+        """Address of the table."""
 
     def enter(self, stage: str) -> None:
-        """Have the calls of a stage found from now on."""
+        """Find the calls of a stage from now on."""
         self._words[STAGE] = self._stages.setdefault(stage, len(self._stages))
 
     def lay(self, kernel: Kernel, arguments: Sequence[Any], turn: int, asked: Sequence[int]) -> None:
-        """Have a call found, with three words of what is `asked` for then. What it is told by must live as long as this."""
+        """Add a call with the three words of its answer, `asked`. Kernel and rows must live as long as this table."""
         words, count = self._words, 1 + len(arguments)
         if call := self._places.get(asked[-1]):
             words[call + TURN] = turn
@@ -122,7 +122,7 @@ class ReadyCalls:
         self._table[call : words[FREE]] = words[STAGE], turn, *asked, count, id(kernel), *by_address[1:]
 
     def _clear(self) -> None:
-        """Begin anew: what is asked for comes again."""
+        """Begin anew: calls that are still needed are added again."""
         self._table[PLACES_AT:CALLS_AT] = 0
         self._words[FREE], self._words[COUNT] = CALLS_AT, 0
         self._places.clear()

@@ -1,4 +1,4 @@
-"""What the kernels of one core have counted → records: per kernel and source line, per buffer, and per path of calls."""
+"""The counts of one core's kernels → records: per kernel and source line, per buffer, and per path of calls."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _no_stalls() -> Stalls:
 
 @dataclass(slots=True)
 class _Cost:
-    """Cycles that add up. `stalls`: those at sites."""
+    """Sums of cycles. `stalls` are those at sites."""
 
     issue_cclk: int = 0
     interlocks_cclk: int = 0
@@ -36,7 +36,7 @@ class _Cost:
 
 @dataclass(slots=True)
 class _Accesses:
-    """What adds up of the accesses of one line to one buffer."""
+    """Sums of the accesses of one line to one buffer."""
 
     reads: int = 0
     writes: int = 0
@@ -67,9 +67,9 @@ class _Path:
 
 
 class CoreRecords:
-    """The records of one core, made of its groups of calls and of what had been counted at one moment, once they are asked for.
+    """The records of one core, made on demand from its groups of calls and the counts at one moment.
 
-    `buffers`: names of the owners of memory, by their numbers.
+    `buffers` are the names of the owners of memory, by number.
     """
 
     def __init__(
@@ -140,7 +140,7 @@ class CoreRecords:
             )
 
     def issue_cclk(self, *, of_objects: bool = False) -> int:
-        """Return the issue cycles of all calls, or of those that ran as object code: sooner than the records would."""
+        """Return the issue cycles of all calls, or of those that ran as object code, faster than through the records."""
         total = 0
         for group, events in _counted(self._groups, self._counted):
             if not of_objects or _is_object(group):
@@ -155,7 +155,7 @@ class CoreRecords:
 
 
 def object_share(cores: Sequence[CoreRecords]) -> float:
-    """Return the part of the kernels' issue cycles that instructions of object code took."""
+    """Return the share of object code in the kernels' issue cycles."""
     of_objects = sum(each.issue_cclk(of_objects=True) for each in cores)
     return of_objects / sum(each.issue_cclk() for each in cores) if of_objects else 0.0
 
@@ -165,14 +165,14 @@ def _is_object(group: CallGroup) -> bool:
 
 
 def _counted(groups: Iterable[CallGroup], counted: Counted) -> Iterator[tuple[CallGroup, NDArray[np.int64]]]:
-    """Yield the groups with the events of their counters. Those that came behind the counted moment are left out."""
+    """Yield the groups with the events of their counters. Groups added after the counted moment are left out."""
     for group in groups:
         if group.first_event < len(counted.events):
             yield group, counted.events[group.first_event :][: group.code.tables.counters]
 
 
 class _Sums:
-    """What adds up over the groups: `kernels` by stage and symbol, `paths` by stage and symbols."""
+    """Sums over the groups: `kernels` by stage and symbol, `paths` by stage and symbols."""
 
     def __init__(self, groups: Iterable[CallGroup], counted: Counted) -> None:
         self.kernels: dict[tuple[str, str], _Kernel] = {}

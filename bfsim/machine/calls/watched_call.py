@@ -1,4 +1,4 @@
-"""Calls of kernels that others are told of before they run."""
+"""Calls of kernels with watchers that are told before each call."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from bfsim.kernel import Kernel, Work
 from bfsim.machine.memories import Row
 
 BeforeCall = Callable[[Kernel, tuple[Row | int, ...]], None]
-"""Is told of a kernel and its arguments before each call, and changes neither."""
+"""Called with a kernel and its arguments before each call. Changes neither."""
 
 
 class Sanitizer:
-    """Runs each kernel as it is written before it is called, and undoes what that stored. Raises KernelError for a wrong index or divisor.
+    """Runs each kernel as written before its call, and undoes its stores. Raises KernelError for a wrong index or divisor.
 
     A kernel is prepared once for the same rows.
     """
@@ -33,14 +33,14 @@ class Sanitizer:
 
 @dataclass(frozen=True, slots=True)
 class WatchedCall:
-    """A call that others are told of before it runs."""
+    """A call with functions that are called `before` it runs."""
 
     run: Callable[..., Work]
     kernel: Kernel
     before: tuple[BeforeCall, ...]
 
     def __call__(self, *arguments: Row | int) -> Work:
-        """Tell of the call, run the kernel, and say what it cost."""
+        """Tell the watchers, run the kernel, and return its cost."""
         for tell in self.before:
             tell(self.kernel, arguments)
         return self.run(*arguments)

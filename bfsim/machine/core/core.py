@@ -1,4 +1,4 @@
-"""A core as its firmware knows it: everything that a main loop and its handlers may ask for. Its parts do it."""
+"""A core as its firmware sees it: everything that a main loop and its handlers may ask for. Its parts do the work."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from bfsim.machine.memories import Row
 from bfsim.machine_code.built_in import idle
 
 SPI = "SPI"
-"""The peripheral that is meant where firmware names none."""
+"""The peripheral that firmware means if it names none."""
 
 
 class Core:
@@ -38,15 +38,15 @@ class Core:
 
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
-        # without a call between, for firmware asks for this most; and no cached_property: behind one Python 3.11 looks up all
-        # attributes of an object by their names, which takes it four times as long
+        # firmware asks for this most, so no call stands between; and no cached_property, because with one, Python 3.11 looks
+        # up all attributes of the object by name, which takes four times as long
         self.run = parts.tasks.run
         self._waits = parts.progress.waits
         # firmware asks for these most
         self._tasks, self._pictures, self._layouts = parts.tasks, parts.pictures, parts.layouts
         self._arrays = parts.layouts.arrays
         if not parts.clock.timeline:
-            self.at = idle()  # type: ignore[method-assign]  # nobody looks, and firmware says it all the time
+            self.at = idle()  # type: ignore[method-assign]  # firmware calls it all the time, and nobody looks
         self.name = parts.name
         """Name of the core: A or B."""
 
@@ -128,7 +128,7 @@ class Core:
 
     @awaited
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
-        """Finish the current frame and wait for the next picture; None when the recording is over."""
+        """Finish the current frame and wait for the next picture. Return None when the recording is over."""
         frame: Frame | None = yield from self._pictures.next_frame()
         return frame
 
@@ -146,7 +146,7 @@ class Core:
         self._pictures.at(rows, columns, *taken)
 
     def publish(self, **results: int) -> None:
-        """Add numbers to the record of the current frame. Raises FirmwareError for one that is no integer of 64 bits."""
+        """Add numbers to the record of the current frame. Raises FirmwareError if one is not a 64-bit integer."""
         self._pictures.publish(**{name: self._integer(name, value) for name, value in results.items()})
 
     def _integer(self, name: str, value: int) -> int:
@@ -181,7 +181,7 @@ class Core:
         self._parts.progress.when_there(change)
 
     def set_picture_size(self, size: FrameSize) -> None:
-        """Have this core's camera send pictures of `size`: the recorded one, half or a quarter of it.
+        """Have this core's camera send pictures of `size`: the recorded size, half or a quarter of it.
 
         The camera does so from its next picture on, once every camera has been given the same size.
         """
@@ -216,7 +216,7 @@ class Core:
 
     @awaited
     def wait(self, name: str) -> Generator[Any, Any, None]:
-        """Take one from the semaphore `name`, trying until another core has posted it."""
+        """Subtract one from the semaphore `name`, trying until another core has posted it."""
         yield from self._parts.synchronisation.wait(name)
 
     @awaited
@@ -231,13 +231,13 @@ class Core:
 
     @awaited
     def interrupt_core(self, other: str) -> Generator[Any, Any, None]:
-        """Raise the supplemental interrupt SUPPLEMENTAL_0 at another core."""
+        """Raise the supplemental interrupt SUPPLEMENTAL_0 of another core."""
         yield from self._parts.synchronisation.interrupt_core(other)
 
     # ---- interrupts
 
     def on_interrupt(self, source: str, handler: CoreHandler) -> None:
-        """Have `handler(core)` called at every interrupt of `source`, such as MDMA1_0, SPI_DMA or SUPPLEMENTAL_0.
+        """Call `handler(core)` at every interrupt of `source`, such as MDMA1_0, SPI_DMA or SUPPLEMENTAL_0.
 
         A handler may be a generator function that yields kernels. Raises FirmwareError unless it is a function, and for `async` ones.
         """
@@ -249,7 +249,7 @@ class Core:
         self._parts.progress.on_interrupt(source, partial(handler, self))
 
     def request_interrupt(self, source: str) -> None:
-        """Ask this core for an interrupt, as a device does."""
+        """Request an interrupt of this core, as a device does."""
         self._parts.progress.request_interrupt(source)
 
     @awaited

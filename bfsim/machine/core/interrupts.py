@@ -1,7 +1,7 @@
 """Interrupts of one core: SIC and CEC, from a device's request to the handler that the firmware attached.
 
-A core takes an interrupt where it meets the rest of the machine, or while it waits for that: a call is never cut. Of several
-that wait, the one of the lowest IVG level comes first, then the lowest number; handlers are not interrupted themselves.
+A core takes an interrupt where it meets the rest of the machine, or while it waits there: calls are never interrupted. Of several
+pending interrupts, the lowest IVG level goes first, then the lowest number. Handlers are not interrupted themselves.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Handler = Callable[[], Any]
 
 
 class Interrupts:
-    """What is attached, and what waits, at one core."""
+    """The attached handlers and the pending interrupts of one core."""
 
     def __init__(self, env: Simulation, core: str, sources: type[SicInterrupt]) -> None:
         self._env = env
@@ -35,9 +35,9 @@ class Interrupts:
         self.are_handled = False
         """Whether any interrupt has a handler."""
         self.is_held = False
-        """Whether none is taken now, since a handler runs, or the core's clock is not where its firmware is."""
+        """Whether none is taken now, because a handler runs or the core's clock is not where its firmware is."""
         self.counts: dict[str, int] = {}
-        """Interrupts that were taken, by source."""
+        """Numbers of interrupts taken, by source."""
 
     def source(self, name: str) -> SicInterrupt:
         """Return the interrupt called `name`, or raise FirmwareError."""
@@ -47,12 +47,12 @@ class Interrupts:
         return known[name]
 
     def attach(self, name: str, handler: Handler) -> None:
-        """Unmask an interrupt and have `handler` called for it."""
+        """Unmask an interrupt and attach `handler` to it."""
         self._handlers[self.source(name)] = handler
         self.are_handled = True
 
     def request(self, name: str) -> None:
-        """Ask for an interrupt now. A source that waits already is not counted twice; one without a handler is masked."""
+        """Request an interrupt now. A pending source is not counted twice, and one without a handler is masked."""
         source = self.source(name)
         if source in self._handlers:
             self._waiting.add(source)
@@ -61,7 +61,7 @@ class Interrupts:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Have no interrupt taken inside."""
+        """Take no interrupt inside this context."""
         before, self.is_held = self.is_held, True
         yield
         self.is_held = before
@@ -73,21 +73,21 @@ class Interrupts:
 
     @property
     def can_be_taken(self) -> bool:
-        """Whether an interrupt waits whose handler can be called now."""
+        """Whether an interrupt is pending whose handler can be called now."""
         return self.can_come and self.is_waiting
 
     @property
     def is_waiting(self) -> bool:
-        """Whether any interrupt waits."""
+        """Whether any interrupt is pending."""
         return bool(self._waiting)
 
     def take(self) -> tuple[str, Handler]:
-        """Take the interrupt that comes first; return its source and what is attached to it."""
+        """Take the first interrupt in order. Return its source and its handler."""
         source = min(self._waiting, key=lambda each: (each.ivg, each.value))
         self._waiting.remove(source)
         self.counts[source.name] = self.counts.get(source.name, 0) + 1
         return source.name, self._handlers[source]
 
     def next_request(self) -> simpy.Event:
-        """Return the event at which the next interrupt is asked for."""
+        """Return the event at which the next interrupt is requested."""
         return self._raised

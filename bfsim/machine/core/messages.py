@@ -1,4 +1,4 @@
-"""What a core sends and receives over the peripherals."""
+"""The messages that a core sends and receives over peripherals."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from bfsim.trace import StallReason
 
 
 class Messages:
-    """Those of one core. `peripherals`: by their names."""
+    """The messages of one core over `peripherals`, by name."""
 
     def __init__(self, progress: Progress, peripherals: Mapping[str, Peripheral]) -> None:
         self._progress = progress
         self._peripherals = peripherals
 
     def send(self, row: Row, nbytes: int, over: str) -> Wait:
-        """Send the first `nbytes` of `row`, once the message before is out."""
+        """Send the first `nbytes` of `row`, once the previous message is out."""
         peripheral, progress = self._peripheral(over), self._progress
         yield from progress.sync()
         if peripheral.sending is not None:
@@ -31,7 +31,7 @@ class Messages:
         peripheral.send(row, nbytes)
 
     def receive(self, row: Row, over: str) -> Wait:
-        """Take the next message into `row`, if there is one; return its bytes, 0 without one."""
+        """Receive the next message into `row`. Return its bytes, 0 if there is none."""
         peripheral, progress = self._peripheral(over), self._progress
         yield from progress.sync()
         if not peripheral.has_message:

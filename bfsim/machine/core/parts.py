@@ -1,4 +1,4 @@
-"""What a core consists of. Firmware knows none of it: it gets a `Core`, which asks these."""
+"""The parts of a core. Firmware sees none of them: it gets a `Core`, which delegates to them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from bfsim.machine.dma.memory_dma import Dma
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parts:
-    """The parts of the core `name`, the `number` of a board's `bus`; what it shares with the other one: `shared`, `capture` and `dma`."""
+    """The parts of core `name`, which has that `number` on the bus. The cores share `shared`, `capture` and `dma`."""
 
     name: str
     number: int

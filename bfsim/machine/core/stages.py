@@ -1,4 +1,4 @@
-"""The stage that a core is in: its row of the budget, which its cycles go to, and what conflicts in L1 cost it."""
+"""The stage that a core is in: the row of the budget that its cycles go to, and the cost of its conflicts in L1."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.trace import StallReason
 
 
 class Stages:
-    """The stages of a core's firmware, by `names`."""
+    """The stages of a core's firmware, called `names`."""
 
     def __init__(self, names: tuple[str, ...], progress: Progress, calls: CallCache, bus: Bus) -> None:
         self._names = names
@@ -26,7 +26,7 @@ class Stages:
 
     @property
     def present(self) -> str:
-        """The one that the firmware is in."""
+        """The firmware's current stage."""
         return self._calls.stage
 
     def check(self, name: str) -> None:
@@ -40,13 +40,13 @@ class Stages:
             raise FirmwareError(f"stage must be {known}, not {shown(name)}")
 
     def enter(self, stage: str) -> None:
-        """Go over to another stage, and charge the one that ends what conflicts in L1 cost it."""
+        """Enter another stage, and charge the previous one for its conflicts in L1."""
         accessed = self._calls.accessed()
         self._calls.enter(stage)
         self._progress.when_there(partial(self._change_account, stage, accessed))
 
     def _change_account(self, stage: str, accessed: Accesses) -> None:
-        """Let cycles go to `stage` from now on; what was `accessed` in L1 before is charged to the one that ends."""
+        """Let cycles go to `stage` from now on. Conflicts among what was `accessed` in L1 are charged to the previous stage."""
         self._bus.settle()
         clock = self._clock
         conflicts_cclk = self._calls.conflicts_cclk(accessed, clock.cclk - self._entered_at_cclk)

@@ -1,6 +1,6 @@
-"""Waits that firmware has made: without `yield from` before it a wait is never begun, and nothing happens.
+"""Waits that firmware has made: without `yield from`, a wait is never begun and does nothing.
 
-So it is with a stage without `with`. Stages, lines and rows, of which there are many, are looked at in a run's first picture.
+The same holds for a stage without `with`. Stages, lines and rows are many, so they are checked only in a run's first picture.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.firmware_lines import running_line
 
 Wait = Generator[Any, Any, Any]
-"""Gives the events that are waited for, one after the other."""
+"""Yields the events to wait for, one after the other."""
 
 
 def name_of(wait: Wait) -> str:
-    """Return the name of what made a wait."""
+    """Return the name of the generator function that made a wait."""
     return str(getattr(wait, "__name__", "a wait"))
 
 
 class Waits:
-    """What one core's firmware has asked to wait for, since this was looked at last."""
+    """The waits that one core's firmware has made since the last check."""
 
     def __init__(self, core: str) -> None:
         self._core = core
         self._made: list[tuple[Wait, str]] = []
-        self._pictures = 0  # asked for
+        self._pictures = 0  # requested
         self.present: str | None = None
-        """What the core waits for, in words, while only another device can let it go on."""
+        """What the core waits for, in words, while only another device can end the wait."""
 
     def note(self, wait: Wait) -> None:
-        """Note a wait that the firmware has just made. Who asks for the next frame must have begun all before."""
+        """Note a wait that the firmware has just made. Before the next frame, all earlier waits must have begun."""
         if name_of(wait) == "next_frame":
             self.check()
             self._pictures += 1
@@ -42,11 +42,11 @@ class Waits:
 
     @property
     def are_all_noted(self) -> bool:
-        """Whether those that are many are noted, too: until the second picture is asked for."""
+        """Whether stages, lines and rows are noted, too: until the second picture is requested."""
         return self._pictures < 2
 
     def noting(self, method: Callable[[], Wait]) -> Callable[[], Wait]:
-        """Return what has each wait noted that `method` makes."""
+        """Return `method`, wrapped so that each wait it makes is noted."""
 
         def made() -> Wait:
             wait = method()
@@ -71,10 +71,10 @@ class Waits:
 
 
 class HasWaits(Protocol):
-    """What makes waits for the firmware of one core."""
+    """An object that makes waits for the firmware of one core."""
 
     _waits: Waits
-    """Those of the core."""
+    """The waits of the core."""
 
 
 Owner = TypeVar("Owner", bound=HasWaits)
@@ -84,7 +84,7 @@ Method = Callable[Concatenate[Owner, Arguments], Generator[Any, Any, Result]]
 
 
 def awaited(method: Method[Owner, Arguments, Result]) -> Method[Owner, Arguments, Result]:
-    """Note every wait that this method makes."""
+    """Decorate a method so that every wait it makes is noted."""
 
     @wraps(method)
     def made(
@@ -97,12 +97,12 @@ def awaited(method: Method[Owner, Arguments, Result]) -> Method[Owner, Arguments
     return made
 
 
-Stage = contextlib._GeneratorContextManager[None]  # noqa: SLF001  # what `contextmanager` makes, with its generator
+Stage = contextlib._GeneratorContextManager[None]  # noqa: SLF001  # what `contextmanager` makes; it has the generator
 Named = Callable[[Owner, str], Stage]
 
 
 def entered(method: Named[Owner]) -> Named[Owner]:
-    """Note each stage that this method gives, in the first picture."""
+    """Decorate a method so that each stage it returns is noted in the first picture."""
 
     @wraps(method)
     def made(self: Owner, name: str) -> Stage:

@@ -1,4 +1,4 @@
-"""How a core is put together from its parts."""
+"""How a core is assembled from its parts."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from bfsim.seen import Seen
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AroundCores:
-    """What a board has for its cores. `stages`: of its firmware. `ahead`: the progress of those that may run ahead.
+    """What a board has for its cores. `stages` of its firmware; `ahead` is the progress of cores that may run ahead.
 
-    `on_finished`: called when one of them ends a frame. `view`: reads out what was seen, if anyone wants to know.
+    `on_finished` is called when a core ends a frame. `view` reads out what was seen, if anyone wants to know.
     """
 
     env: Simulation
@@ -58,7 +58,7 @@ class AroundCores:
 def parts_of(
     around: AroundCores, number: int, layouts: Layouts, access_trace: AccessTrace, calls: CallCache
 ) -> Parts:
-    """Put the core of that `number` together, which has a memory, a trace of its accesses and calls of its own."""
+    """Assemble the core with this `number` from its own memory, access trace and calls."""
     env, bus, chip, shared = around.env, around.bus, around.board.chip, around.shared
     name = layouts.core
     clock = CoreClock(env, name, around.board, bus, around.stages)

@@ -1,4 +1,4 @@
-"""A DMA channel without time: registers in, work units out. Who moves the words tells it when they are done."""
+"""A DMA channel without time: registers in, work units out. The caller moves the words and tells it when they are done."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Fetch:
 
 @dataclass(frozen=True, slots=True)
 class ChannelStep:
-    """What a channel does next: its work unit, or None when it has stopped, and the descriptor it came from, if any.
+    """What a channel does next: its work unit, or None if it has stopped, and the descriptor that it came from, if any.
 
-    `interrupt`: the channel asks for its interrupt, for the work unit that has ended.
+    With `interrupt`, the channel requests its interrupt for the work unit that has ended.
     """
 
     unit: WorkUnit | None
@@ -53,11 +53,11 @@ class ChannelStep:
 class DmaChannel:
     """One channel: stopped after reset, running from `start` until the end of its work, `stop` or an error.
 
-    The registers are attributes in the manual's spelling, to be read; firmware sets them with `write`. What the chip
+    The registers are read-only attributes in the manual's spelling; firmware sets them with `write`. Whatever the chip
     would flag raises MmrError with the register's name, sets DMA_ERR and stops the channel.
 
-    XXX: PERIPHERAL_MAP keeps its reset value; channels cannot change places. CURR_X_COUNT and CURR_ADDR move row by
-    row, not word by word.
+    XXX: PERIPHERAL_MAP keeps its reset value, so channels cannot be remapped. CURR_X_COUNT and CURR_ADDR advance row
+    by row, not word by word.
     """
 
     def __init__(self, spec: ChannelSpec, space: DmaSpace, read16: Read16) -> None:
@@ -66,14 +66,14 @@ class DmaChannel:
         self._space = space
         self._read16 = read16
         self.direction = spec.direction
-        """Which way the peripheral moves words; a PPI and the SPI set it when they are enabled."""
+        """Direction in which the peripheral moves words. A PPI and the SPI set it when they are enabled."""
         self.CONFIG = 0
         self.config = DmaConfig.decode(0)
-        """CONFIG, taken apart."""
+        """CONFIG, decoded."""
         self.unit: WorkUnit | None = None
         """The work unit under way."""
         self.where = ""
-        """Where the work unit comes from, for messages: the line that started the channel, or a descriptor."""
+        """Origin of the work unit, for messages: the line that started the channel, or a descriptor."""
         self._started = ""
         self._row = 0
         self.NEXT_DESC_PTR = self.START_ADDR = 0
@@ -121,7 +121,7 @@ class DmaChannel:
         self.IRQ_STATUS &= ~IrqStatus.DFETCH
 
     def row_done(self) -> bool:
-        """Note the end of a row that is not the last; return whether the channel asks for its interrupt."""
+        """Note the end of a row other than the last. Return whether the channel requests its interrupt."""
         assert self.unit is not None, "a stopped channel has no rows"
         self._row += 1
         self.CURR_Y_COUNT = self.unit.y_count - self._row & 0xFFFF
@@ -129,11 +129,11 @@ class DmaChannel:
         return self._interrupt(self.unit.row_interrupt)
 
     def unit_done(self) -> ChannelStep:
-        """Note the end of the work unit, and its FIFO empty; return the next step."""
+        """Note the end of the work unit, with its FIFO empty. Return the next step."""
         done = self.unit
         assert done is not None, "a stopped channel has no work unit"
         interrupt = self._interrupt(done.row_interrupt or done.block_interrupt)
-        # [assumed] what the counters read at the end: the HRM as recalled
+        # [assumed] what the counters read at the end: from memory of the HRM
         self.CURR_ADDR, self.CURR_X_COUNT, self.CURR_Y_COUNT = done.end_address, 0, 1
         if self.config.FLOW is Flow.STOP:
             self.stop()
@@ -142,12 +142,12 @@ class DmaChannel:
             return self._next(interrupt)
 
     def stop(self) -> None:
-        """End the work at once, as a write of CONFIG with DMAEN=0 does; the registers keep what they are."""
+        """End the work at once, as a write of CONFIG with DMAEN=0 does. The registers keep their values."""
         self.IRQ_STATUS &= ~(IrqStatus.DMA_RUN | IrqStatus.DFETCH)
         self.unit = None
 
     def acknowledge(self, bits: IrqStatus) -> None:
-        """Write `bits` to IRQ_STATUS: DMA_DONE and DMA_ERR clear where they are 1."""
+        """Write `bits` to IRQ_STATUS: a 1 clears DMA_DONE or DMA_ERR."""
         self.IRQ_STATUS &= ~(bits & IRQ_WRITE_1_TO_CLEAR)
 
     def _interrupt(self, wanted: bool) -> bool:
@@ -156,7 +156,7 @@ class DmaChannel:
         return wanted
 
     def _next(self, interrupt: bool) -> ChannelStep:
-        """Fetch a descriptor where FLOW asks for one, and begin the work unit that the registers say."""
+        """Fetch a descriptor if FLOW asks for one, and begin the work unit that the registers describe."""
         fetch = self._fetch() if self.config.FLOW in DESCRIPTOR_ELEMENTS else None
         if not self.config.DMAEN:  # only a descriptor can have cleared it
             self.stop()
@@ -170,7 +170,7 @@ class DmaChannel:
         return ChannelStep(unit, fetch, interrupt)
 
     def _fetch(self) -> Fetch:
-        """Load registers from the next descriptor. Lists go on at NEXT_DESC_PTR, arrays where the last one ended."""
+        """Load registers from the next descriptor: at NEXT_DESC_PTR in lists, after the previous one in arrays."""
         flow, ndsize = self.config.FLOW, self.config.NDSIZE
         register = "CURR_DESC_PTR" if flow is Flow.ARRAY else "NEXT_DESC_PTR"
         pointer: int = getattr(self, register)
@@ -199,7 +199,7 @@ class DmaChannel:
 
     @contextmanager
     def _flagging(self) -> Iterator[None]:
-        """Let an error stop the channel and set DMA_ERR on its way out."""
+        """Stop the channel and set DMA_ERR if an error passes through."""
         try:
             yield
         except MmrError:
@@ -209,9 +209,9 @@ class DmaChannel:
 
 
 def check_pair(source: DmaChannel, destination: DmaChannel) -> None:
-    """Raise MmrError unless the two halves of a memory stream are about to move as many words, of one size."""
+    """Raise MmrError unless both halves of a memory stream are about to move the same number of words of the same size."""
     for each in (source, destination):
-        if not each.unit:  # the other one would wait for ever
+        if not each.unit:  # the other half would wait for ever
             refuse(f"{each.spec.name}_CONFIG: DMAEN must be 1 where the stream begins, not 0", each.where)
     assert source.unit
     assert destination.unit

@@ -1,10 +1,10 @@
-"""What the chip flags in the programming of a DMA channel before a word has moved; each raises MmrError.
+"""What the chip flags in the programming of a DMA channel before a word has moved. Each check raises MmrError.
 
-A work unit must stay in one memory, also where two lie side by side. One that jumps from memory to memory
-without touching what is between them is refused here, though the chip might let it pass.
+A work unit must stay in one memory, even if the next memory is adjacent. One that jumps from memory to memory
+without touching anything in between is refused here, though the chip might let it pass.
 
-NOTE: silicon anomaly 05000301 is not checked: a memory stream whose source and destination descriptors lie in
-different memory spaces can hang on early revisions; keep both chains in the same one.
+NOTE: silicon anomaly 05000301 is not checked: on early revisions, a memory stream can hang if its source and
+destination descriptors lie in different memory spaces. Keep both chains in the same one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from bfsim.machine.dma.unit import WorkUnit
 
 @dataclass(frozen=True, slots=True)
 class DmaSpace:
-    """The memories of a board, and the parts of L1 that are cache at the moment, which no DMA may touch."""
+    """The memories of a board, and the parts of L1 currently used as cache, which no DMA may touch."""
 
     regions: tuple[Region, ...]
     cached: tuple[Region, ...] = ()
@@ -31,7 +31,7 @@ class DmaSpace:
     ) -> None:
         """Raise MmrError unless `channel` reaches all bytes of `span`, in the memory that holds address `start`.
 
-        `register`: the one that holds `start`.
+        `register` is the one that holds `start`.
         """
         subject = f"{channel.name}_{register}"
         lowest, highest = span
@@ -60,7 +60,7 @@ class DmaSpace:
 
 
 def check_config(channel: ChannelSpec, config: DmaConfig, direction: Direction, where: str) -> None:
-    """Raise MmrError unless `channel` can work as `config` says, with a peripheral that moves words in `direction`."""
+    """Raise MmrError unless `channel` can work with `config` and a peripheral that moves words in `direction`."""
     register = f"{channel.name}_CONFIG"
     config.check_ndsize(register, where)
     if config.WDSIZE.word_bytes > channel.widest_bytes:

@@ -1,4 +1,4 @@
-"""CONFIG of a DMA channel, taken apart and put together."""
+"""CONFIG of a DMA channel, decoded and encoded."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Code = TypeVar("Code", Flow, WdSize)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DmaConfig:
-    """CONFIG by its fields, in the manual's spelling. `WNR`: the channel writes memory; `DI_SEL`: interrupt every row.
+    """CONFIG by its fields, in the manual's spelling. `WNR`: the channel writes memory; `DI_SEL`: interrupt after every row.
 
     `RESTART` is called SYNC in later manuals.
     """
@@ -55,7 +55,7 @@ class DmaConfig:
 
     @classmethod
     def decode(cls, value: int, register: str = "CONFIG", where: str = "") -> DmaConfig:
-        """Take the 16 bits of `register` apart; raise MmrError for reserved codes and bits."""
+        """Decode the 16 bits of `register`. Raises MmrError for reserved codes and bits."""
         check_value(register, value, 0, 0xFFFF, where)
         if value >> 15:
             refuse(f"{register}: bit 15 must be 0, not 1 in 0x{value:04X}", where)
@@ -67,7 +67,7 @@ class DmaConfig:
         )
 
     def check_ndsize(self, register: str, where: str) -> None:
-        """Raise MmrError unless NDSIZE is one that FLOW can use."""
+        """Raise MmrError unless NDSIZE is valid for FLOW."""
         least, most = NDSIZE_LIMITS[self.FLOW]
         if not least <= self.NDSIZE <= most:
             sizes = f"{least}..{most}" if most else "0"

@@ -19,7 +19,7 @@ def read_descriptor(read16: Read16, pointer: int, flow: Flow, ndsize: int) -> di
 
 
 def load(registers: Mapping[str, int], elements: Mapping[str, int]) -> dict[str, int]:
-    """Return `registers` with `elements` of a descriptor in their places; what no element fills keeps its value."""
+    """Return `registers` with `elements` of a descriptor in their places. Everything else keeps its value."""
     loaded = dict(registers)
     for name, element in elements.items():
         register, position = ELEMENTS[name]
@@ -31,11 +31,11 @@ def load(registers: Mapping[str, int], elements: Mapping[str, int]) -> dict[str,
 
 
 def write_descriptor(flow: Flow, **registers: int) -> list[int]:
-    """Return the 16-bit words of a descriptor that fills `registers`; their number is its NDSIZE.
+    """Return the 16-bit words of a descriptor that fills `registers`. The number of words is its NDSIZE.
 
     For a ring of buffers in a large list: `write_descriptor(Flow.LARGE, NEXT_DESC_PTR=..., START_ADDR=...)`.
-    A descriptor fills the first registers of NEXT_DESC_PTR (lists only), START_ADDR, CONFIG, X_COUNT, X_MODIFY,
-    Y_COUNT, Y_MODIFY and leaves none out in between; of NEXT_DESC_PTR a small list has the lower half only.
+    A descriptor fills NEXT_DESC_PTR (lists only), START_ADDR, CONFIG, X_COUNT, X_MODIFY, Y_COUNT, Y_MODIFY up to any
+    of them, without gaps. A small list has only the lower half of NEXT_DESC_PTR.
     """
     if flow not in DESCRIPTOR_ELEMENTS:
         raise MmrError(f"a descriptor is for FLOW ARRAY, SMALL or LARGE, not {flow.name}")

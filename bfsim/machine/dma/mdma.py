@@ -1,4 +1,4 @@
-"""MDMA: a memory DMA stream copies rows between memories while the cores compute, one after the other."""
+"""MDMA: a memory DMA stream copies rows between memories, one after the other, while the cores compute."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bfsim.machine.memories import Row
 
 
 def element_bytes(widest: int, *numbers: int) -> int:
-    """Return the widest element of a DMA, `widest` bytes or half or a quarter, that divides all these sizes and addresses."""
+    """Return the widest DMA element, `widest` bytes, half or a quarter, that divides all these sizes and addresses."""
     size = widest
     while any(number % size for number in numbers):
         size //= 2
@@ -22,15 +22,15 @@ class MdmaStream:
     def __init__(self, bus: Bus, board: BoardSpec, master: int) -> None:
         self._bus = bus
         self.master = master
-        """Its row in `bus.state`."""
+        """Row of the stream in `bus.state`."""
         self._startup_ticks = board.chip.dma.startup_sclk * board.clocks.sclk_ticks
         self._word_bytes = board.chip.dma.word_bytes
         self._plans: dict[tuple[Row, Row], TransferPlan] = {}
 
     def copy(self, source: Row, destination: Row, at: int) -> Transfer:
-        """Copy `source` to `destination`, not before tick `at`, after all copies asked for before.
+        """Copy `source` to `destination` after all earlier copies, not before tick `at`.
 
-        The bytes move when the bus moves them: the source must stay as it is until then.
+        The bytes move when the bus moves them, so the source must not change until then.
         """
         plan = self._plans.get((source, destination))
         if plan is None:
@@ -38,7 +38,7 @@ class MdmaStream:
         return self._bus.post(plan, at)
 
     def kind_of(self, source: Row, destination: Row) -> tuple[object, ...]:
-        """Return what copies have in common whose plans differ only in where they begin: buffers, sizes, and alignment."""
+        """Return the buffers, memories, size and alignment of a copy: plans of one kind differ only in where they begin."""
         within_word = (source.offset | destination.offset) % self._word_bytes
         return (
             source.buffer,
@@ -50,7 +50,7 @@ class MdmaStream:
         )
 
     def plan(self, source: Row, destination: Row) -> TransferPlan:
-        """Plan to copy `source` to `destination`."""
+        """Return the plan of a copy of `source` to `destination`."""
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))

@@ -1,4 +1,4 @@
-"""Memory DMA as firmware programs it: the registers of a stream's two channels, descriptors, and what they start."""
+"""Memory DMA as firmware programs it: the registers of a stream's two channels, descriptors, and the resulting transfers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from bfsim.machine.simulation import Simulation
 
 
 class Dma:
-    """The memory DMA streams of a chip. Both cores can program every one of them."""
+    """The memory DMA streams of a chip. Both cores can program each of them."""
 
     def __init__(
         self, env: Simulation, board: BoardSpec, bus: Bus, memories: Memories, space: DmaSpace
@@ -39,7 +39,7 @@ class Dma:
         self._streams: dict[str, MemoryDma] = {}
 
     def stream(self, name: str, progress: Progress) -> MemoryDma:
-        """Return the stream `name`, whose registers the core with this progress programs from now on."""
+        """Return the stream `name`. From now on, the core with this progress programs its registers."""
         known = [each for each in STREAMS if each in self._board.chip.interrupts.__members__]
         if name not in known:
             raise FirmwareError(f"a memory DMA stream must be one of {', '.join(known)}, not {name!r}")
@@ -54,7 +54,7 @@ class Dma:
 class MemoryDma:
     """One stream: a source channel, which reads memory, and a destination channel, which writes it.
 
-    Firmware sets the registers by `program` and starts both with `start`; the words move while the core goes on.
+    Firmware sets the registers with `program` and starts both channels with `start`. The words move while the core goes on.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class MemoryDma:
         self.source = DmaChannel(BF561_CHANNELS[f"{controller}_S{number}"], space, self._read16)
         self.destination = DmaChannel(BF561_CHANNELS[f"{controller}_D{number}"], space, self._read16)
         self.done: simpy.Event | None = None
-        """The event at which the present work ends, None when nothing was started."""
+        """The event at which the current work ends, None if nothing was started."""
         self._stopping = False
         self._last: Transfer | None = None
 
@@ -87,7 +87,7 @@ class MemoryDma:
         self._progress.program_device(self.name, writes=len(source) + len(destination))
 
     def is_of(self, progress: Progress) -> None:
-        """Have the core with this progress program it from now on."""
+        """Let the core with this progress program the stream from now on."""
         self._progress = progress
         self._waits = progress.waits
 
@@ -103,7 +103,7 @@ class MemoryDma:
         self.done = self._env.process(self._run(*steps))
 
     def stop(self) -> None:
-        """Write both CONFIG registers with DMAEN=0. The work unit under way is still moved; the chip would cut it."""
+        """Write both CONFIG registers with DMAEN=0. The work unit under way is completed; the chip would cut it short."""
         self._progress.program_device(self.name, writes=2)
         self._stopping = True
 
@@ -113,7 +113,7 @@ class MemoryDma:
         yield from self._progress.wait_event(self.done, f"{self.name}", lambda: self._last)
 
     def _run(self, source: ChannelStep, destination: ChannelStep) -> Generator[Any, Any, None]:
-        """Move one work unit after the other, until one of the channels stops."""
+        """Move one work unit after the other until one of the channels stops."""
         while source.unit and destination.unit:
             transfer, rows = self._post(source, destination), destination.unit.y_count
             self._last = transfer
@@ -124,7 +124,7 @@ class MemoryDma:
                     if destination.unit.row_interrupt
                     else self._bus.when_done(transfer)
                 )
-                # several rows may be over; the last one ends with the unit
+                # several rows may have ended; the last one ends with the unit
                 moved = (
                     self._bus.moved_by(transfer) // destination.unit.x_count
                     if transfer.end is None
@@ -146,7 +146,7 @@ class MemoryDma:
         self.destination.stop()
 
     def _post(self, source: ChannelStep, destination: ChannelStep) -> Transfer:
-        """Have the descriptors fetched and then the words moved, one transfer behind the other; return the last one."""
+        """Post the transfers that fetch the descriptors, and then the one that moves the words. Return the last one."""
         assert source.unit is not None
         assert destination.unit is not None
         master = STREAMS[self.name]

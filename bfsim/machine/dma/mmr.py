@@ -1,4 +1,4 @@
-"""What a memory-mapped register refuses, and how that reads: the problem first, then where the firmware caused it."""
+"""What a memory-mapped register refuses, and the message: first the problem, then where the firmware caused it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bfsim.errors import MmrError, shown
 
 
 def refuse(problem: str, where: str) -> NoReturn:
-    """Raise the MmrError that says `problem`, and `where` it comes from unless that is empty."""
+    """Raise an MmrError that says `problem` and, unless it is empty, `where` it comes from."""
     raise MmrError(f"{problem} ({where})" if where else problem)
 
 

@@ -1,4 +1,4 @@
-"""Line rings in L1: an MDMA stream fetches lines from a picture ahead of the core, or takes finished ones back.
+"""Line rings in L1: an MDMA stream fetches lines of a picture ahead of the core, or takes finished ones back.
 
 A ring of n rows holds n - 1 lines that the core may use and one that the DMA is working on.
 """
@@ -41,7 +41,7 @@ def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
 
 
 class _TakenLines:
-    """The lines of an input ring, taken by Python: one that is not planned yet, or step by step."""
+    """The lines of an input ring, taken by Python: lines not planned yet, or step by step."""
 
     def __init__(
         self, progress: Progress, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
@@ -57,7 +57,7 @@ class _TakenLines:
         self._lines = progress.copies(Lines(stream, tuple(image), used, self._owner, EMPTY))
         self._words = ring_words(self._depth, 1)
         self._at = addressof(self._words)
-        self._coming: Copy = NO_COPY  # the next line, where that is not among the words
+        self._coming: Copy = NO_COPY  # the next line, if it is not among the words
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row."""
@@ -71,7 +71,7 @@ class _TakenLines:
         return (yield from self._waited_for(number))
 
     def _waited_for(self, number: int) -> Generator[Any, Any, Row]:
-        """Do that step by step."""
+        """Take the next line step by step."""
         progress, lines, words = self._progress, self._lines, self._words
         if late := progress.catch_up():
             yield late
@@ -86,7 +86,7 @@ class _TakenLines:
         lines.program()
         coming = self._coming if words[LATEST] == NO_COPY else words[LATEST]
         copy = lines.copy(number) if coming == NO_COPY else coming
-        # one line ahead: its row is the one that the core gave up with this call
+        # one line ahead: it goes to the row that the core gave up with this call
         self._coming, words[LATEST] = (
             lines.copy(number + 1) if number + 1 < self._height else NO_COPY,
             NO_COPY,
@@ -100,8 +100,8 @@ class _TakenLines:
         return self._rows[number % self._depth]
 
     def at_once(self) -> Callable[[], Generator[Any, Any, Row]]:
-        """Return what takes a line by machine code, as long as that can."""
-        if self._lines.ahead is None or self._progress.clock.timeline:  # which is told of each line
+        """Return a function that takes a line by machine code whenever possible."""
+        if self._lines.ahead is None or self._progress.clock.timeline:  # a timeline is told about each line
             return self.line
         rows = tuple(map(over, self._rows))
         return self._lines.ahead.answering(note_fetch, self._lines.at, self._at, rows, self.line)
@@ -121,18 +121,18 @@ class InputRing:
     """Lines of a picture, first to last, one line ahead of the core."""
 
     line: Callable[[], Generator[Any, Any, Row]]
-    """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
+    """Wait for the next line and return its row. With a ring of n rows, it stays valid for n - 1 calls."""
 
     def __init__(
         self, progress: Progress, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
         on_line: Callable[[int, int], None],
     ) -> None:  # fmt: skip
-        """`on_line`: called with the number of each line that is taken, and with how many there are."""
+        """`on_line` is called with the number of each line that is taken, and with the number of lines."""
         self._taken = _TakenLines(progress, stream, image, rows, on_line)
         self.line = self._taken.line
 
     def hurry(self) -> None:
-        """Take lines by machine code from now on: nobody looks any more whether each wait is begun."""
+        """Take lines by machine code from now on, without checking that each wait is begun."""
         self.line = self._taken.at_once()
 
     def __getitem__(self, number: int) -> Row:
@@ -156,11 +156,11 @@ class _SentLines:
         self._lines = progress.copies(Lines(stream, used, tuple(image), self._owner, FULL))
         self._words = ring_words(self._depth, self._depth)
         self._at = addressof(self._words)
-        self._copies: dict[int, Copy] = {}  # of lines that rows had last, where that is not among the words
-        self._given = -1  # the last line whose row was given, by Python
+        self._copies: dict[int, Copy] = {}  # of the last line of each row, if it is not among the words
+        self._given = -1  # the last line whose row Python has given
 
     def at_once(self) -> tuple[Callable[[], Generator[Any, Any, Row]], Callable[[], None]]:
-        """Return what waits for a free row, and what sends it, by machine code, as long as that can."""
+        """Return two functions that wait for a free row and send it, by machine code whenever possible."""
         if self._lines.ahead is None:
             return self.row, self.send
         answering, where = self._lines.ahead.answering, (self._lines.at, self._at)
@@ -179,14 +179,14 @@ class _SentLines:
         return self._rows[number % self._depth]
 
     def _check_sent(self, number: int) -> None:
-        """Raise FirmwareError if the row of line `number`, which is to be sent next, was given already: nothing of it would arrive."""
+        """Raise FirmwareError if the row of line `number` was given but never sent: nothing of it would arrive."""
         if self._given == number:
             raise FirmwareError(
                 f"the row of {self._rows[0].buffer} for line {number} of {self._image[0].buffer} must be sent when it is written: `ring.send()`"
             )
 
     def _copy(self, number: int) -> Copy:
-        """Return the copy of the line that the row of line `number` had last."""
+        """Return the copy of the previous line in the row of line `number`."""
         row = number % self._depth
         return self._copies.get(row, self._words[LATEST + row])
 
@@ -208,7 +208,7 @@ class _SentLines:
             self._tell_fill()
 
     def _tell_fill(self) -> None:
-        """Tell how many rows wait for their DMA."""
+        """Tell the timeline how many rows wait for their DMA."""
         on_their_way = [each for each in self._copies.values() if not self._progress.has(each)]
         self._progress.clock.tell_level(self._owner, len(on_their_way))
 
@@ -220,7 +220,7 @@ class _SentLines:
             yield from self._progress.wait_transfer(last, FULL, self._owner)
 
     def _must_wait(self, copy: Copy) -> bool:
-        """Whether a core that needs a copy done must wait for it, or may be interrupted there."""
+        """Whether a core that needs a finished copy must wait, or may be interrupted there."""
         return self._progress.interrupts.can_come or not self._lines.goes_on(copy)
 
 
@@ -240,7 +240,7 @@ class OutputRing:
         self.row, self.send = self._sent.row, self._sent.send
 
     def hurry(self) -> None:
-        """Have lines sent by machine code from now on: nobody looks any more whether each wait is begun."""
+        """Send lines by machine code from now on, without checking that each wait is begun."""
         self.row, self.send = self._sent.at_once()
 
     @awaited

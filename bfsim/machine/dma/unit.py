@@ -1,4 +1,4 @@
-"""A work unit: the words that one programming of a DMA channel moves, one after the other, in closed form."""
+"""A work unit: the sequence of words that one programming of a DMA channel moves, in closed form."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from bfsim.machine.dma.config import DmaConfig
 class WorkUnit:
     """`y_count` rows of `x_count` words of `word_bytes` each, from byte address `start_address` on.
 
-    `x_modify` bytes lie between the words of a row, `y_modify` bytes between its last word and the next row's
-    first one; both may be negative. `write`: the channel writes memory (WNR). Interrupts: after each row, or
-    after the whole block, or neither.
+    `x_modify` bytes lie between the words of a row, and `y_modify` bytes between its last word and the next row's
+    first one. Both may be negative. With `write`, the channel writes memory (WNR). It interrupts after each row, after
+    the whole block, or never.
     """
 
     start_address: int
@@ -34,9 +34,9 @@ class WorkUnit:
     def programmed(
         cls, config: DmaConfig, start_address: int, x_count: int, x_modify: int, y_count: int, y_modify: int
     ) -> WorkUnit:
-        """Return what CONFIG, START_ADDR, X_COUNT and so on say; a count of 0 is 65536.
+        """Return the work unit of CONFIG, START_ADDR, X_COUNT and so on. A count of 0 means 65536.
 
-        Without DMA2D there is one row, whatever Y_COUNT, Y_MODIFY and DI_SEL are.
+        Without DMA2D there is one row, whatever Y_COUNT, Y_MODIFY and DI_SEL say.
         """
         rows = config.DMA2D and config.DI_SEL
         return cls(
@@ -58,7 +58,7 @@ class WorkUnit:
 
     @property
     def nbytes(self) -> int:
-        """Bytes that the words are, one touched twice counted twice."""
+        """Total bytes of the words. A byte touched twice counts twice."""
         return self.words * self.word_bytes
 
     @property
@@ -68,7 +68,7 @@ class WorkUnit:
 
     @property
     def span(self) -> tuple[int, int]:
-        """Addresses of the lowest and the highest byte that it touches."""
+        """Addresses of the lowest and the highest byte touched."""
         across = (self.x_count - 1) * self.x_modify
         down = (self.y_count - 1) * self.row_step_bytes
         lowest = self.start_address + min(0, across) + min(0, down)

@@ -1,4 +1,4 @@
-"""The dictionaries of a frame, compiled: checked once, and laid where each operation and access finds its entry."""
+"""The dictionaries of a frame, compiled: checked once, and unpacked where each operation and access finds its entry."""
 
 from __future__ import annotations
 
@@ -21,28 +21,28 @@ from bfsim.machine.retiming.work import OPERATION_COLUMNS
 from bfsim.machine.retiming.work_check import is_access_entry, is_operation
 
 IN_L1 = -1
-"""Where an owner begins whose memory is in L1: what accesses it is not in the log."""
+"""Stands for the begin of an owner's memory in L1: accesses to it are not logged."""
 LOGGED, SITE = range(2)
-"""Words of an entry of accesses: what the log has of one to the first byte of its owner, IN_L1 if that is there; and the site."""
+"""Words of an entry of accesses: the log's entry for the first byte of the owner, or IN_L1; and the site."""
 ACCESS_ENTRY_WORDS = 2
 
 
 @native
 def operation_entry_at(frame: Words, entry: int) -> int:
-    """Return where the numbers of an entry of operations stand."""
+    """Return where the numbers of an entry of operations are."""
     return DICTIONARIES_AT + frame[ACCESS_DICTIONARY_ROWS] * ACCESS_ENTRY_WORDS + entry * OPERATION_COLUMNS
 
 
 @native
 def lay_operation_dictionary(frame: Words, views: Views) -> bool:
-    """Lay the dictionary of operations; return whether its entries are such as can be played."""
+    """Unpack the dictionary of operations. Return whether all its entries can be played."""
     for column in range(OPERATION_COLUMNS):
         begin, width = at_column(frame, OPERATION_DICTIONARY + column)
         for number in range(frame[OPERATION_DICTIONARY_ROWS]):
             frame[operation_entry_at(frame, number) + column] = number_at(views, begin, width, number)
     for number in range(frame[OPERATION_DICTIONARY_ROWS]):
         at = operation_entry_at(frame, number)
-        one = 0 if frame[at] == w.COPY else frame[at + 1]  # from one copy to the next
+        one = 0 if frame[at] == w.COPY else frame[at + 1]  # a difference between copies
         if not is_operation(frame[at], one, frame[at + 2], frame[at + 3], frame[at + 4]):
             return False
     return True
@@ -50,7 +50,7 @@ def lay_operation_dictionary(frame: Words, views: Views) -> bool:
 
 @native
 def lay_access_dictionary(frame: Words, views: Views, firsts: Words) -> bool:
-    """Lay that of accesses; return whether its entries are such as can be played."""
+    """Unpack the dictionary of accesses. Return whether all its entries can be played."""
     (kinds, kind_width), (owners, owner_width) = (
         at_column(frame, ACCESS_DICTIONARY), at_column(frame, ACCESS_DICTIONARY + 1),
     )  # fmt: skip
@@ -72,9 +72,9 @@ def lay_access_dictionary(frame: Words, views: Views, firsts: Words) -> bool:
 def lay_dictionaries(
     frame_at: Any, octets_at: Any, halves_at: Any, words_in_at: Any, longs_at: Any, firsts_at: Any
 ) -> int:
-    """Lay the dictionaries of a frame where `write_stretch` finds them; return 0, or ODD.
+    """Unpack the dictionaries of a frame where `write_stretch` finds them. Return 0, or ODD.
 
-    The arrays: those of `write_stretch`; and where the memory of each owner begins, or IN_L1.
+    The arrays are those of `write_stretch`, and where the memory of each owner begins, or IN_L1.
     """
     frame = words_at(frame_at)
     views = words_at(octets_at), words_at(halves_at), words_at(words_in_at), words_at(longs_at)

@@ -1,4 +1,4 @@
-"""`FrameWork` as a file has it, in columns of narrow numbers, and read from there, compiled: tables of it would take longer to make than to play."""
+"""`FrameWork` as in a file, in columns of narrow numbers, and its compiled reading: making tables of it would take longer than playing it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from bfsim.machine.retiming.work import EVENT_COLUMNS, OPERATION_COLUMNS, Table
 
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 ALIGNED_BYTES = 8
-"""A column begins at a multiple of so many bytes."""
+"""Columns begin at multiples of this number of bytes."""
 
 BEGIN, WIDTH = range(2)
 """Words of a column: its first byte, and the number of its width."""
@@ -23,23 +23,23 @@ COLUMN_WORDS = 2
 PACKED = {
     "operations": 1, "operation_dictionary": OPERATION_COLUMNS, "accesses": 3, "access_dictionary": 3, "events": EVENT_COLUMNS,
 }  # fmt: skip
-"""The tables, and how many columns each has."""
+"""The tables, and the number of columns of each."""
 OPERATIONS, OPERATION_DICTIONARY, ACCESSES, ACCESS_DICTIONARY, EVENTS, PACKED_COLUMNS = accumulate(
     PACKED.values(), initial=0
 )
-"""The first column of each, and the one behind all."""
+"""The first column of each table, and the number of all columns."""
 STEP, ENTRY, BYTE_STEP = range(3)
-"""Columns of an access, whose kind, owner and site are those of its entry in the dictionary."""
+"""Columns of an access. Its entry in the dictionary has kind, owner and site."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PackedWork:
     """What one core did, as `FrameWork`, with the numbers of the tables above in `octets`, as they were written.
 
-    `columns`: words as above of each of their columns; `rows` says how many there are of each table. Of accesses
-    each stamp is the difference to the one before it in its call, and each byte that to the one before it; so is each counter of events.
-    What many have in common is an entry of a *dictionary*, as column stores have it: the numbers of an operation, with the number of a
-    copy as the difference to that of the copy before; and kind, owner and site of an access.
+    `columns` has the words above for each column; `rows` is the number of rows of each table. Each access has the difference of its
+    stamp to the previous one in its call, and of its byte to the previous one; events have the difference of their counter.
+    Repeated values are entries of a *dictionary*, as in column stores: the numbers of an operation, with the number of a copy as the
+    difference to the previous copy; and the kind, owner and site of an access.
     """
 
     core: str
@@ -53,13 +53,13 @@ class PackedWork:
     results: Mapping[str, int]
 
     def column(self, number: int, rows: int) -> NDArray[Any]:
-        """Return the numbers of a column as they are written. Raises ValueError where they are not all there."""
+        """Return the numbers of a column as they were written. Raises ValueError if some are missing."""
         begin, width = self.columns[number].tolist()
         return np.frombuffer(self.octets, WIDTHS[width], rows, begin)
 
 
 Views = tuple[Sequence[int], Sequence[int], Sequence[int], Sequence[int]]
-"""The octets of a work, as numbers of each of the widths."""
+"""The octets of a work as numbers of each width."""
 
 
 @native

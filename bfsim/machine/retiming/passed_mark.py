@@ -1,4 +1,4 @@
-"""What the kernels have counted up to a mark, compiled: read of a frame's work, and added to the core's counters."""
+"""What the kernels counted up to a mark, compiled: read from a frame's work and added to the core's counters."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def pass_mark(
     counters_at: Any,
     count: int,
 ) -> int:
-    """Count the events up to the next mark that is passed; return 0, or NOT_THERE for a counter not among `count`.
+    """Count the events up to the next mark. Return 0, or NOT_THERE for a counter beyond `count`.
 
-    The arrays: those of `write_stretch`.
+    The arrays are those of `write_stretch`.
     """
     frame, counters = words_at(frame_at), words_at(counters_at)
     views = words_at(octets_at), words_at(halves_at), words_at(words_in_at), words_at(longs_at)

@@ -1,4 +1,4 @@
-"""The progress of a core that runs ahead and has it noted, stretch by stretch, as operations of `FrameWork`."""
+"""The progress of a core that runs ahead and records it, stretch by stretch, as operations of `FrameWork`."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from bfsim.machine.retiming.work import CALL, OPERATION_COLUMNS, Table
 from bfsim.machine.retiming.work_notes import WorkNotes
 
 LATEST = 1 << 14
-"""Copies of a core that can be waited for: the latest so many, of which the bus remembers the ends."""
+"""How many of a core's latest copies can be waited for: the bus remembers their ends."""
 
 
 class RecordedAhead(Ahead):
-    """`Ahead`, with `notes` of what it is asked for, unless that `is_paused`: inside a call of firmware that is noted as a whole."""
+    """`Ahead` that takes `notes`, unless it `is_paused`: inside a call of firmware that is noted as a whole."""
 
     def __init__(self, *parts: Any) -> None:
         super().__init__(*parts)
         self.notes = WorkNotes(self._name, self._bus.owners)
         self.is_paused = False
         self.is_too_late = False
-        """Whether a copy was waited for that is not among the latest."""
+        """Whether the core waited for a copy that is not among the latest."""
 
     def _begin(self) -> None:
         super()._begin()
         self._marks: list[
             tuple[int, int, int]
-        ] = []  # behind how many operations each is, its kind and number
+        ] = []  # after how many operations each is, its kind and number
 
     def mark(self, kind: int = CALL, number: int = 0) -> None:
         """Note the place of a call of firmware, or of the beginning of a stage."""
@@ -47,13 +47,13 @@ class RecordedAhead(Ahead):
             self.notes.add(kind, number)
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
-        """Note it though nothing is noted before it."""
+        """Note the call even if the tape is empty."""
         if not (self.tape.noted or self.is_paused):
             self.notes.add(w.RUN, work.issue_cclk, work.stall_cclk)
         super().charge_call(work, call)
 
     def play_call(self, work: Work, call: KnownCall) -> Wait:
-        """Note what was played."""
+        """Play the call and note it."""
         yield from super().play_call(work, call)
         if not self.is_paused:
             trace, count = self._access_trace, work.accesses
@@ -61,7 +61,7 @@ class RecordedAhead(Ahead):
             self.notes.add(w.ACCESS, work.issue_cclk, work.stall_cclk, count, call.number)
 
     def planned(self, stream: MdmaStream, copies: Iterable[tuple[Row, Row]]) -> list[int]:
-        """Return them with their numbers in the notes."""
+        """Return the planned copies with their numbers in the notes."""
         copies = list(copies)
         words, number = super().planned(stream, copies), RING_STREAMS[self._number].index(stream.master)
         words[NUMBER::COPY_WORDS] = [self.notes.copy(number, *each) for each in copies]
@@ -73,7 +73,7 @@ class RecordedAhead(Ahead):
         return super()._play(noted)
 
     def _note_stretch(self, on_tape: Table) -> None:
-        """Note operations, as they are on the tape, in the words of `FrameWork`."""
+        """Note operations from the tape in the form of `FrameWork`."""
         operations, notes = on_tape[:, :OPERATION_COLUMNS].copy(), self.notes
         kinds = operations[:, 0]
         accounts = np.array([notes.account(each) for each in self._owners], np.int64)

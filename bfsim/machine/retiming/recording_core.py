@@ -1,4 +1,4 @@
-"""A core that notes what its firmware has it do, as `FrameWork`, while it does it as every core does."""
+"""A core that works as every core does, and notes what its firmware has it do as `FrameWork`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Wait = Generator[Any, Any, Any]
 
 
 class RecordingCore(Core):
-    """A core whose work is handed to `on_work`, frame by frame; what cannot be played again is told `on_obstacle`, in words."""
+    """A core that hands its work to `on_work`, frame by frame, and anything that cannot be replayed to `on_obstacle`, in words."""
 
     def __init__(
         self, parts: Parts, on_work: Callable[[FrameWork], None], on_obstacle: Callable[[str], None]
@@ -34,12 +34,12 @@ class RecordingCore(Core):
         self._notes = parts.progress.notes
         self._on_work = on_work
         self._on_obstacle = on_obstacle
-        self._result: Any = None  # of the last call that has waited
-        self._set: dict[str, tuple[Any, ...]] = {}  # in the camera, by the call
+        self._result: Any = None  # of the last call that waited
+        self._set: dict[str, tuple[Any, ...]] = {}  # the camera's settings, by call
         parts.calls.on_prepared = self._note_prepared
 
     def end(self) -> None:
-        """Hand over what was done since the last picture: the run is over."""
+        """Hand over the work since the last picture: the run is over."""
         self._note("end_frame")
         self._hand_over()
 
@@ -153,7 +153,7 @@ class RecordingCore(Core):
     # ---- notes
 
     def _whole(self, wait: Wait) -> Wait:
-        """Wait, and note nothing of what that is made of."""
+        """Wait without noting the parts of the wait."""
         yield from self._progress.play_stretches()
         self._progress.is_paused = True
         result = yield from wait
@@ -161,19 +161,19 @@ class RecordingCore(Core):
         return result
 
     def _called(self, wait: Wait, name: str, *arguments: Any) -> Wait:
-        """Note a call that has waited; those of its `arguments` that are functions give what is known then."""
+        """Note a call after its wait. Those of its `arguments` that are functions return values known only then."""
         self._result = yield from self._whole(wait)
         self._note(name, *(each() if callable(each) else each for each in arguments))
         return self._result
 
     def _note(self, name: str, *arguments: Any) -> None:
-        """Note a call, with what the kernels have counted until then."""
+        """Note a call, with the kernels' counts up to it."""
         self._notes.add_mark(self._parts.calls.events)
         self._notes.add_call(name, arguments)
         self._progress.mark()
 
     def _note_change(self, name: str, *arguments: Any) -> None:
-        """Note a call that changes nothing if it is made again."""
+        """Note a call that changes nothing if it is repeated."""
         if self._set.get(name) != arguments:
             self._set[name] = arguments
             self._note(name, *arguments)

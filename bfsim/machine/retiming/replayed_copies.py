@@ -25,26 +25,26 @@ from bfsim.machine.retiming.work import (
 
 
 class ReplayedCopies:
-    """Those of one core, by its `streams`. `rows`: of each copy the number of its plan, and where it goes from and to, as behind COPY (`bus.state`)."""
+    """The copies of one core on its `streams`. `rows` has the plan's number, source and destination of each copy, as after COPY (`bus.state`)."""
 
     def __init__(
         self, stretches: StretchPlayer, places: ReplayedPlaces, streams: Sequence[MdmaStream], word_bytes: int
     ) -> None:
-        """`word_bytes`: of the words that DMA moves."""
+        """`word_bytes` is the size of the words that DMA moves."""
         self.rows = np.zeros((0, 3), np.int64)
-        self._plans: dict[int, int] = {}  # their numbers, by the kinds of copies
+        self._plans: dict[int, int] = {}  # numbers by kind of copy
         self._stretches = stretches
         self._places = places
         self._streams = streams
         self._word_bytes = word_bytes
 
     def know(self, copies: Table) -> None:
-        """Know more copies, which follow in number. Those of a kind differ only in where they go."""
+        """Add copies, numbered after the known ones. Copies of one kind differ only in their places."""
         if not len(copies):
             return  # most frames have no new ones
         owners, word_bytes = copies[:, [SOURCE, DESTINATION]].T, self._word_bytes
         sources, destinations = self._places.firsts[owners] + copies[:, [SOURCE_BYTE, DESTINATION_BYTE]].T
-        kinds = copies[:, STREAM]  # and all else that they have in common, in one number
+        kinds = copies[:, STREAM]  # with everything else that they have in common, as one number
         for more, room in (
             (owners[0], w.MAX_OWNERS),
             (owners[1], w.MAX_OWNERS),

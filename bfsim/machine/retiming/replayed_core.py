@@ -1,4 +1,4 @@
-"""A core that does again what a recorded one did, on the hardware that it is part of. It runs no kernel, and moves no pixel that counts."""
+"""A core that repeats on its own hardware what a recorded core did. It runs no kernel, and moves no pixel that matters."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ Wait = Generator[Any, Any, Any]
 
 
 class ReplayedCore(Core):
-    """A core that plays `works`. `kernels`: those of its firmware, by symbol."""
+    """A core that plays `works`. `kernels` are its firmware's, by symbol."""
 
     def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[PackedWork]) -> None:
         super().__init__(parts)
@@ -73,7 +73,7 @@ class ReplayedCore(Core):
     # The main loop
 
     def replay(self) -> Generator[Any, Any, None]:
-        """Do what was recorded."""
+        """Play the recorded work."""
         for work in self._works:
             try:
                 yield from self._play_work(work)
@@ -109,7 +109,7 @@ class ReplayedCore(Core):
             raise ValueError("more calls of its firmware")
 
     def _play_stretches(self) -> Wait:
-        """Play what is done before the next call of firmware; most often that is one stretch, or nothing."""
+        """Play the work before the next call of firmware: mostly one stretch, or nothing."""
         number, stages, frame = self._parts.number, self._stages, self._writer
         is_written = False
         while not is_written:
@@ -125,11 +125,11 @@ class ReplayedCore(Core):
                 stages.look()
 
     def _know(self, kinds: NDArray[np.int64]) -> None:
-        """Keep of each call that is prepared what running it is to the bus; numpy takes longer to find its address than most stretches do."""
+        """Keep the kind of operation of each prepared call, and the array's address: numpy takes longer to find that than most stretches take."""
         self._kinds, self._kinds_at = kinds, (kinds.ctypes.data, len(kinds))
         self._writer.counters_at = self._parts.calls.counters_at
 
-    # Calls of firmware, by the name that they are noted by
+    # Calls of firmware, by their names in the notes
 
     def _publish(self) -> None:
         if not all(type(each) is int for each in self._results.values()):
@@ -210,6 +210,6 @@ class ReplayedCore(Core):
 
 
 def played_again(core: Core) -> Generator[Any, Any, None]:
-    """Play what was recorded: the main loop of every replayed core."""
+    """Play the recorded work: the main loop of every replayed core."""
     assert isinstance(core, ReplayedCore), "only a replayed core has something to play again"
     yield from core.replay()

@@ -1,4 +1,4 @@
-"""Places of recorded work, which names memory by its owner, in the memory of the board that plays it."""
+"""Places of recorded work, which names memory by owner, in the memory of the board that plays it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bfsim.machine.retiming.work import Place
 
 
 class ReplayedPlaces:
-    """Where each is. `firsts`: where the memory of each owner begins."""
+    """Finds places in memory. `firsts` is where the memory of each owner begins."""
 
     def __init__(self, owners: MemoryOwners, memories: Memories) -> None:
         self.firsts = np.array(owners.first, np.int64)
@@ -23,7 +23,7 @@ class ReplayedPlaces:
         return int(self.firsts[place.owner]) + place.first
 
     def row(self, place: Place, element: Number = u8) -> Row:
-        """Return the row at a place, of elements of a kind."""
+        """Return the row at a place, with elements of a kind."""
         owner = self._owners[place.owner]
         array = self._memories.bytes_from(self.offset(place), place.nbytes).view(element.dtype)
         return Row(owner.buffer, owner.memory, 0, self.offset(place), array)

@@ -1,4 +1,4 @@
-"""The stages of a core that is played: machine code goes from one to the next within a stretch (`left_stage`), and keeps what each cost apart."""
+"""The stages of a replayed core: within a stretch, machine code goes from one to the next (`left_stage`) and separates their costs."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from bfsim.trace import REST, StallReason
 
 @dataclass(slots=True)
 class ReplayedStage:
-    """The stage `name`. `leave` and `end`: machine code that keeps its `costs`, at its end and at that of a stretch in it.
+    """The stage `name`. Machine code keeps its `costs`: `leave` at its end, `end` at the end of a stretch in it.
 
-    `kept`: arrays whose addresses machine code has.
+    `kept` are arrays whose addresses machine code has.
     """
 
     name: str
@@ -40,7 +40,7 @@ class ReplayedStage:
 
 
 class ReplayedStages:
-    """Those of one core. `pass_mark`: lets its counters count the events up to the next mark."""
+    """The stages of one core. `pass_mark` lets its counters count the events up to the next mark."""
 
     def __init__(self, parts: Parts, bus: WovenBus, pass_mark: Callable[[], None]) -> None:
         self._pass_mark = pass_mark
@@ -50,13 +50,13 @@ class ReplayedStages:
         self._entered = np.zeros(1, np.int64)
         self._stages: list[ReplayedStage] = []
         self._present = 0
-        self._passed: dict[int, None] = {0: None}  # since cycles were charged last
+        self._passed: dict[int, None] = {0: None}  # since the last charge
         self._owners: Sequence[str] = ()
         self.know([REST])
         bus.stretches.at_moments(parts.number, self._leave)
 
     def know(self, names: Iterable[str]) -> None:
-        """Know more stages, which follow in number."""
+        """Add stages, numbered after the known ones."""
         for name in names:
             costs = np.zeros(COST_WORDS, np.int64)
             end = built_in(end_stretch.address(), 1, self._state_at, self._core, costs.ctypes.data)
@@ -64,21 +64,21 @@ class ReplayedStages:
             self._look_at(self._stages[-1])
 
     def use(self, owners: Sequence[str]) -> None:
-        """Have these owners of accounts, by their numbers, from now on."""
+        """Use these owners of accounts, by number, from now on."""
         self._owners = owners
 
     @property
     def count(self) -> int:
-        """How many stages are known."""
+        """Number of known stages."""
         return len(self._stages)
 
     @property
     def must_look(self) -> bool:
-        """Whether there are new calls in the present stage, which must be looked at before it ends."""
+        """Whether the current stage has new calls that must be looked at before it ends."""
         return self._calls.groups_in(self._stages[self._present].name).has_new
 
     def look(self) -> None:
-        """Look at what the calls of the present stage access."""
+        """Look at what the calls of the current stage access."""
         self._look_at(self._stages[self._present])
 
     def _look_at(self, stage: ReplayedStage) -> None:
@@ -93,7 +93,7 @@ class ReplayedStages:
         )  # fmt: skip
 
     def _leave(self) -> None:
-        """Go over to the next stage: at a moment of a stretch."""
+        """Go on to the next stage, at a moment of a stretch."""
         try:
             self._pass_mark()
         except ValueError as error:
@@ -102,7 +102,7 @@ class ReplayedStages:
         self._passed[self._present] = None
 
     def charge(self) -> None:
-        """Charge each stage with what it cost since the last time: a stretch has ended."""
+        """Charge each stage for its cost since the last charge: a stretch has ended."""
         clock, cclk, accounts = self._clock, self._stretches.clock_cclk(self._core), len(self._owners)
         self._stages[self._present].end(accounts)
         for number in self._passed:

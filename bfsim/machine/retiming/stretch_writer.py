@@ -1,4 +1,4 @@
-"""What was recorded of a frame, written for a board: each stretch by one call of machine code (`written_stretch`)."""
+"""The recorded work of a frame, written for a board: each stretch by one call of machine code (`written_stretch`)."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ PROBLEMS = {
 
 
 class StretchWriter:
-    """Writes stretches into the `state` of a bus, its words, for a core: those of one frame's work, and then of the next one's.
+    """Writes a core's stretches into the `state` of a bus, frame by frame.
 
-    `firsts`: where in the arena the memory of each owner begins, IN_L1 for what lies there; `events`: what the core takes for registers.
+    `firsts` is where in the arena the memory of each owner begins, or IN_L1. `events` has the core's cycles for registers.
     """
 
     def __init__(self, state: Any, core: int, firsts: NDArray[np.int64], events: EventSpec) -> None:
@@ -57,7 +57,7 @@ class StretchWriter:
         self._work: PackedWork
         self._views_at: tuple[int, ...] = ()
         self.counters_at = 0, 0
-        """The address of the core's counters, and how many there are by now."""
+        """The address of the core's counters, and their current number."""
 
     def _room(self, count: int) -> NDArray[np.int64]:
         """Make room for so many words."""
@@ -69,9 +69,9 @@ class StretchWriter:
         return words
 
     def begin(self, work: PackedWork, copies: Table, accounts: int, stages: int) -> None:
-        """Go on with the work of another frame. `copies`: rows of what is behind COPY for each; `accounts`, `stages`: how many there are.
+        """Go on with the work of another frame. `copies` has the numbers after COPY, a row for each; `accounts` and `stages` are counts.
 
-        Raises ValueError for what is not there.
+        Raises ValueError if the work refers to something missing.
         """
         rows = work.rows
         operations, accesses = rows["operation_dictionary"], rows["access_dictionary"]
@@ -96,8 +96,8 @@ class StretchWriter:
     def write(self, kinds_at: int, calls: int, *, must_look: bool) -> int:
         """Write the next stretch and return how many operations it has.
 
-        `must_look`: whether it ends before the stage does. The address of an array, and how many it has: of each call that is prepared by
-        now, what running it is to the bus. Raises ValueError for what is not there.
+        With `must_look`, it ends before the stage does. `kinds_at` is the address of the kinds of operation of the `calls` prepared by
+        now. Raises ValueError if the work refers to something missing.
         """
         written = self._write(*self._views_at, self._copies_at, kinds_at, calls, must_look)
         if written < 0:
@@ -105,16 +105,16 @@ class StretchWriter:
         return written
 
     def pass_mark(self) -> None:
-        """Let the core's counters count what its kernels have up to the next mark. Raises ValueError as above."""
+        """Add the kernels' counts up to the next mark to the core's counters. Raises ValueError as above."""
         if problem := self._pass(*self._views_at, *self.counters_at):
             raise ValueError(PROBLEMS[problem])
 
     @property
     def is_at_call(self) -> bool:
-        """Whether a call of firmware comes behind what was written last."""
+        """Whether a call of firmware follows what was written last."""
         return bool(self._numbers[IS_AT_CALL])
 
     @property
     def is_over(self) -> bool:
-        """Whether all was written."""
+        """Whether everything was written."""
         return bool(self._numbers[NEXT] == self._numbers[ROWS])

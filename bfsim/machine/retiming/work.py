@@ -1,6 +1,6 @@
-"""What a core did between two pictures that it took, without when: kernels' cycles and accesses, copies, waits, calls of its firmware.
+"""What a core did between taking two pictures, but not when: cycles and accesses of kernels, copies, waits, calls of its firmware.
 
-Memory is named by its owner (`bus.memory_owners`) and the byte there, never by an address: another LDF may place it elsewhere.
+Memory is named by its owner (`bus.memory_owners`) and the byte there, never by address: another LDF may place it elsewhere.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 from bfsim.machine.bus import state as w
 
 CALL, STAGE = w.MOMENT + 1, w.MOMENT
-"""Operations besides those of a stretch (`bus.state`): the next call of its firmware, which is played in Python; and another stage from
-now on, by its number. Both are *marks*, up to which is known what the kernels have counted."""
+"""Operations besides those of a stretch (`bus.state`): the next call of firmware, which Python plays; and the beginning of another
+stage, by its number. Both are *marks*: the kernels' counts up to each of them are known."""
 
 STAMP, KIND, OWNER, BYTE, SITE = range(5)
 """Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site.
 
-FETCHES have their number in place of the cycle, and no memory: the board that plays them knows where its code lies.
+FETCHES have their number instead of the cycle, and no memory: the board that plays them knows where its code lies.
 """
 
 STREAM, SOURCE, SOURCE_BYTE, DESTINATION, DESTINATION_BYTE, NBYTES = range(6)
-"""Columns of a copy: the stream of the core, owner of the memory and byte there of each side, and how many bytes."""
+"""Columns of a copy: the stream of the core, owner and byte of each side's memory, and the number of bytes."""
 
 OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = 5, 5, 3, 6
 
@@ -35,7 +35,7 @@ Accesses = NDArray[np.uint32]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Some bytes of the memory of an owner."""
+    """Some bytes of an owner's memory."""
 
     owner: int
     first: int
@@ -44,13 +44,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameWork:
-    """What one core did, from its call of `next_frame` to before the next one, or to its end.
+    """What one core did, from its call of `next_frame` to just before the next one, or to its end.
 
-    `operations`: rows of a kind and four numbers as in `bus.state`, with differences: of ACCESS the last two are how many accesses it
-    has, and the number of its call among those prepared; SET_UP has register writes and reads before its account.
-    `accesses`: rows as above, of all calls one after the other; each column in one piece. `events`: rows of a mark's number here, a counter of the
-    core and what that has counted since it was written down last, up to that mark. `copies`: rows as above, and `accounts` and `stages`,
-    of those used for the first time. `calls`: name and arguments. `results`: what was published of the frame.
+    `operations` has rows of a kind and four numbers as in `bus.state`, with two differences: the last two of ACCESS are the number of
+    its accesses and the number of its prepared call; SET_UP has register writes and reads before its account. `accesses` has rows as
+    above, of all calls one after the other; each column is contiguous. `events` has rows of a mark's number here, a counter of the
+    core, and its increase up to that mark. `copies` (rows as above), `accounts` and `stages` have those used for the first time.
+    `calls` has names and arguments. `results` are the numbers published for the frame.
     """
 
     core: str

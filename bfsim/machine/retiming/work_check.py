@@ -1,4 +1,4 @@
-"""Whether numbers of `PackedWork` are such as the bus can play: a file may hold anything. What is compiled is asked as each is written."""
+"""Whether the bus can play the numbers of `PackedWork`: a file may hold anything. The compiled checks run as each number is written."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from bfsim.machine.retiming.work import (
 )
 
 LARGEST = 1 << 40
-"""Of numbers of operations and events: cycles of more than twenty minutes."""
+"""Limit of numbers of operations and events: as cycles, more than twenty minutes."""
 STAMPS = 1 << 32
-"""Cycles that a call may take: what is above them would not be in its log."""
+"""Limit of the cycles of a call: a later access would not fit into its log."""
 
 
 @native
 def is_number(number: int) -> bool:
-    """Whether this is a number of an operation, or of events."""
+    """Whether this is a valid number of an operation or of events."""
     return 0 <= number <= LARGEST
 
 
 @native
 def is_operation(kind: int, one: int, two: int, three: int, four: int) -> bool:
-    """Whether these are numbers of an operation."""
+    """Whether these are valid numbers of an operation."""
     if not (is_number(one) and is_number(two) and is_number(three) and is_number(four)):
         return False
     if kind == w.SET_UP:
@@ -43,25 +43,25 @@ def is_operation(kind: int, one: int, two: int, three: int, four: int) -> bool:
 
 @native
 def is_access(stamp: int, byte: int) -> bool:
-    """Whether these are numbers of an access."""
+    """Whether these are valid numbers of an access."""
     return 0 <= stamp < STAMPS and 0 <= byte <= log.OFFSET_MASK
 
 
 @native
 def is_access_entry(kind: int, site: int) -> bool:
-    """Whether these are numbers of an entry of accesses."""
+    """Whether these are valid numbers of an entry of accesses."""
     return 0 <= kind <= log.FETCHES and 0 <= site < w.MAX_SITES
 
 
 def not_there(core: str, error: Exception) -> WorkError:
-    """Return what a file has of a core that cannot be played, in words."""
+    """Return the error for work of a core in a file that cannot be played."""
     return WorkError(
         f"the work of core {core} must be as it was recorded, but names what is not there: {shown(error)}"
     )
 
 
 def check(work: PackedWork, owners: int) -> None:
-    """Raise ValueError unless copies are such as can be made. `owners`: how many there are."""
+    """Raise ValueError unless all copies can be made. `owners` is the number of owners."""
     copies = work.copies
     if not len(copies):
         return  # most frames have no new ones

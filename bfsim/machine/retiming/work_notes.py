@@ -1,4 +1,4 @@
-"""What one core has done since its last picture, as it is noted: `FrameWork` in the making."""
+"""Notes of what one core has done since its last picture: `FrameWork` in the making."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Entries = NDArray[np.int64]
 
 
 class WorkNotes:
-    """Operations, accesses and calls of firmware, in order; copies and accounts keep their numbers from frame to frame."""
+    """Operations, accesses and calls of firmware, in order. Copies and accounts keep their numbers from frame to frame."""
 
     def __init__(self, core: str, owners: MemoryOwners) -> None:
         self._core = core
@@ -39,7 +39,7 @@ class WorkNotes:
 
     def _begin(self) -> None:
         self._operations: list[Table] = []
-        self._single: list[tuple[int, ...]] = []  # operations behind these
+        self._single: list[tuple[int, ...]] = []  # operations after these
         self._accesses: list[tuple[Entries, Entries]] = []
         self._counted: list[Table] = []
         self._calls: list[tuple[str, tuple[Any, ...]]] = []
@@ -63,11 +63,11 @@ class WorkNotes:
             self._single = []
 
     def add_accesses(self, entries: Entries, sites: Entries) -> None:
-        """Note accesses of the operations to come, which the core's log may forget."""
+        """Note accesses of the operations to come, since the core's log may forget them."""
         self._accesses.append((entries.copy(), sites.copy()))
 
     def add_mark(self, events: NDArray[np.int64]) -> None:
-        """Note what the kernels have counted until the next mark; its operation is noted apart."""
+        """Note the kernels' counts up to the next mark, whose operation is noted separately."""
         since = events.copy()
         since[: len(self._events)] -= self._events
         counters = np.flatnonzero(since)
@@ -81,7 +81,7 @@ class WorkNotes:
         self._calls.append((name, arguments))
 
     def publish(self, results: Mapping[str, int]) -> None:
-        """Note what is published of the frame."""
+        """Note results that are published for the frame."""
         self._results.update({name: int(each) for name, each in results.items()})
 
     def account(self, owner: str) -> int:
@@ -94,7 +94,7 @@ class WorkNotes:
 
     @property
     def accounts(self) -> int:
-        """How many there are."""
+        """Number of accounts."""
         return len(self._accounts)
 
     def copy(self, stream: int, source: Row, destination: Row) -> int:
@@ -106,7 +106,7 @@ class WorkNotes:
         return self._copies[copy]
 
     def place(self, row: Row) -> Place:
-        """Return where a row is."""
+        """Return the place of a row."""
         return Place(*self._byte(row), row.nbytes)
 
     def _byte(self, row: Row) -> tuple[int, int]:
@@ -147,7 +147,7 @@ class WorkNotes:
 
 
 def _number(name: str, numbers: dict[str, int], new: list[str]) -> int:
-    """Return the number of a name, which is a new one if it has none yet."""
+    """Return the number of a name, a new one if it has none yet."""
     if name not in numbers:
         numbers[name] = len(numbers)
         new.append(name)
@@ -159,7 +159,7 @@ def _together(tables: Sequence[Any], columns: int) -> Table:
 
 
 def _joined(operations: Table) -> Table:
-    """Return the operations with calls in L1 that follow each other as one."""
+    """Return the operations with consecutive calls in L1 merged into one."""
     runs = operations[:, 0] == w.RUN
     firsts = np.flatnonzero(~np.append(False, runs[1:] & runs[:-1])[: len(runs)])
     joined = operations[firsts]

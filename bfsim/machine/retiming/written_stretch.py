@@ -1,4 +1,4 @@
-"""What was recorded of a frame, written for a board, compiled: operations as a stretch, and the log of their accesses, where the bus has them."""
+"""The recorded work of a frame, written for a board, compiled: operations as a stretch, and their accesses in the log, where the bus finds them."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ FROM_KIND = log.KIND_MASK << log.KIND_BIT
 
 @native
 def is_there(frame: Words, kind: int, one: int, three: int, four: int, calls: int) -> bool:
-    """Whether what the numbers of an operation refer to is there, of so many `calls`."""
+    """Whether everything exists that the numbers of an operation refer to. There are so many `calls`."""
     if kind == w.ACCESS:
         return four < calls
     if kind == w.COPY:
@@ -67,7 +67,7 @@ def is_there(frame: Words, kind: int, one: int, three: int, four: int, calls: in
 
 @native
 def write_accesses(state: w.State, core: int, frame: Words, views: Views, count: int, logged: int) -> int:
-    """Write the next `count` accesses of a frame behind those that are `logged`, without those to L1; return how many are logged then."""
+    """Append the next `count` accesses of a frame to the log of `logged` ones, without those to L1. Return how many are logged then."""
     into = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
     (stamps, stamp_width), (entries, entry_width) = (
         at_column(frame, ACCESSES + STEP),
@@ -104,7 +104,7 @@ def write_accesses(state: w.State, core: int, frame: Words, views: Views, count:
 
 @native
 def on_board(frame: Words, copies: Words, kind: int, one: int, two: int, three: int) -> tuple[int, int, int]:
-    """Return the first three numbers of an operation that is no call with accesses as the bus has them."""
+    """Return the first three numbers, for the bus, of an operation other than a call with accesses."""
     if kind == w.SET_UP:
         return one * frame[MMR_WRITE] + two * frame[MMR_READ], three, 0
     if kind == w.COPY:

@@ -1,4 +1,4 @@
-"""The buffers of a core by name: as placed, or as the firmware declares them for smaller pictures over the same memory."""
+"""The buffers of a core by name: as placed, or as the firmware declares them for smaller pictures in the same memory."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from bfsim.machine.memories import Memories, Row
 
 Rows = tuple[Row, ...]
 MOST_PARTS = 1 << 10
-"""Parts of pictures that are remembered: one round what moves is another one in each frame."""
+"""Most parts of pictures that are remembered. A part around something that moves is a new one in each frame."""
 
 
 class _Arrays(dict[str, Row]):
-    """The rows of buffers that have only one, by name, as they were first asked for."""
+    """The rows of single-row buffers by name, as they were when first asked for."""
 
     def __init__(self, rows: Callable[[str], Rows]) -> None:
         self._rows = rows
@@ -31,7 +31,7 @@ class _Arrays(dict[str, Row]):
 
 
 class Layouts:
-    """One layout for each size of pictures that was used; the first is that of the placed buffers."""
+    """A layout for each picture size that was used. The first is the layout of the placed buffers."""
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class Layouts:
         size: FrameSize,
         declared: Callable[[FrameSize], Mapping[str, Buffer]],
     ) -> None:
-        """`placed`: the buffers for pictures of `size`. `declared`: what the firmware wants for another size."""
+        """`placed` are the buffers for pictures of `size`. `declared` returns what the firmware wants for another size."""
         self.core = core
         """Name of the core."""
         self.memories = memories
@@ -54,11 +54,11 @@ class Layouts:
         self._parts: dict[tuple[Rows, int, int], Rows] = {}
         self._cut_rows: dict[tuple[Row, int, int], Row] = {}
         self.arrays: dict[str, Row] = _Arrays(self.rows)
-        """The only row of each buffer that has one: firmware asks for these all the time."""
+        """The row of each single-row buffer. Firmware asks for these all the time."""
         self._size, self._buffers = size, placed
 
     def use(self, size: FrameSize) -> None:
-        """Give out the buffers for pictures of `size` from now on. Raises FirmwareError where they find no room."""
+        """Return the buffers for pictures of `size` from now on. Raises FirmwareError if they do not fit."""
         if size == self._size:
             return
         if not isinstance(size, FrameSize):
@@ -95,7 +95,7 @@ class Layouts:
             raise FirmwareError(f"core {self.core} has no buffer {name!r}; it has {known}") from None
 
     def overlay(self, buffer: str | Sequence[Row], element: Number, columns: int) -> Rows:
-        """Return the memory of a buffer, or of rows that follow each other, as rows of `columns` elements of another kind."""
+        """Return the memory of a buffer, or of consecutive rows, as rows of `columns` elements of another kind."""
         rows = self.rows(buffer) if isinstance(buffer, str) else buffer
         kind = (rows[0], rows[-1], element, columns)
         if kind not in self._overlays:
@@ -107,7 +107,7 @@ class Layouts:
         kind = (tuple(rows), first, count)
         if kind not in self._parts:
             if len(self._parts) == MOST_PARTS:
-                self._parts.clear()  # their rows are still the same
+                self._parts.clear()  # their rows remain the same objects
             self._parts[kind] = self._cut(*kind)
         return self._parts[kind]
 

@@ -1,4 +1,4 @@
-"""The line rings that a core makes for its firmware: of DMA, or of none where the picture lies in cached memory."""
+"""The line rings that a core makes for its firmware: with DMA, or without if the picture lies in cached memory."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Ring = TypeVar("Ring", InputRing, CachedInput, OutputRing, CachedOutput)
 
 
 TAKES = {"input_ring": "(rows, ring)", "window_ring": "(rows, ring)", "output_ring": "(ring, rows)"}
-"""What makes rings, and its arguments: who mistakes their order is told."""
+"""The methods that make rings, with their arguments: a message shows their order."""
 
 
 def _check_rows(method: str, image: Sequence[Row]) -> None:
-    """Raise FirmwareError unless a ring is over the rows of a picture."""
+    """Raise FirmwareError unless `image` is the rows of a picture."""
     if (
         isinstance(image, str)
         or not isinstance(image, Sequence)
@@ -34,13 +34,13 @@ def _check_rows(method: str, image: Sequence[Row]) -> None:
 
 
 class LineRings:
-    """Those of one core, by its two `streams`: of input and of output."""
+    """The rings of one core, on its two `streams`: one for input and one for output."""
 
     def __init__(
         self, progress: Progress, streams: tuple[MdmaStream, MdmaStream], layouts: Layouts, access_trace: AccessTrace,
         on_line: Callable[[int, int], None],
     ) -> None:  # fmt: skip
-        """`on_line`: called with the number of each line that is taken, and with how many there are."""
+        """`on_line` is called with the number of each line that is taken, and with the number of lines."""
         self.streams = streams
         self._progress = progress
         self._layouts = layouts
@@ -61,7 +61,7 @@ class LineRings:
         return self._noted(ring, "line")
 
     def output(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
-        """Return a ring that takes lines to `image`, or the image's own lines if it is cached."""
+        """Return a ring that sends lines to `image`, or the image's own lines if it is cached."""
         _check_rows("output_ring", image)
         if self._is_cached(image):
             return self._noted(CachedOutput(image), "row")
@@ -70,7 +70,7 @@ class LineRings:
         )
 
     def _noted(self, ring: Ring, method: str) -> Ring:
-        """Have each wait that `method` of a ring makes noted, while all are; then rings may hurry."""
+        """Note each wait that a ring's `method` makes, as long as all waits are noted. After that, rings may hurry."""
         waits = self._progress.waits
         if waits.are_all_noted:
             setattr(ring, method, waits.noting(getattr(ring, method)))

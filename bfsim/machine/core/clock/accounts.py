@@ -1,7 +1,7 @@
 """Where a core's cycles went: an account per stage of a frame, closed into records at the frame's end.
 
-Every cycle has an owner: kernels, which say themselves how it is split among them (`calls.ledger`), or one of those that no kernel
-is, by name: a ring, a semaphore, an interrupt, the cameras.
+Every cycle has an owner: the kernels, among which `calls.ledger` splits their cycles, or something else by name: a ring, a
+semaphore, an interrupt, the cameras.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from bfsim.trace import REST, CoreFrame, StageCost, StallReason
 from bfsim.trace.owner_costs import COLUMN_OF, COLUMNS, IDLE, ISSUE, Owner, OwnerCosts
 
 KERNELS = ""
-"""The owner of what kernels cost."""
+"""The owner of the cost of kernels."""
 SORTED_REASONS = sorted(COLUMN_OF.items())
 
 
@@ -30,7 +30,7 @@ class Account:
         self.row[ISSUE] += cclk
 
     def idle(self, cclk: int) -> None:
-        """Add cycles of nothing to do."""
+        """Add cycles without anything to do."""
         self.row[IDLE] += cclk
 
     def stall(self, reason: StallReason, cclk: int) -> None:
@@ -39,7 +39,7 @@ class Account:
 
 
 class StageAccount:
-    """Cycles of one stage in one frame: `owners` have an account each."""
+    """Cycles of one stage in one frame, with an account for each of `owners`."""
 
     __slots__ = ("kernels", "owners")
 
@@ -65,14 +65,14 @@ class StageAccount:
 
 
 class FrameAccounts:
-    """The accounts of one core's current frame. `now` is the account that cycles go to."""
+    """The accounts of one core's current frame. Cycles go to the account `now`."""
 
     def __init__(self, core: str, stages: tuple[str, ...]) -> None:
         self._core = core
         self._stages = stages
         self._begin_cclk = 0
         self._kernels: tuple[Owner, ...] = ()
-        self._owners: dict[tuple[tuple[str, str], ...], tuple[Owner, ...]] = {}  # these kernels and others
+        self._owners: dict[tuple[tuple[str, str], ...], tuple[Owner, ...]] = {}  # with these kernels, by the other owners
         self._open()
 
     def _open(self) -> None:
@@ -80,15 +80,16 @@ class FrameAccounts:
         self.now = self._accounts[REST]
 
     def enter(self, stage: str) -> None:
-        """Let cycles go to `stage`, or to the rest."""
+        """Let cycles go to `stage`, which may be the rest."""
         if stage not in self._accounts:
             self._accounts[stage] = StageAccount()
         self.now = self._accounts[stage]
 
     def close(self, end_cclk: int, kernels: tuple[Owner, ...], costs: NDArray[np.int64]) -> CoreFrame:
-        """End the frame at `end_cclk`, begin the next one, and return the record: stages in the budget's order.
+        """End the frame at `end_cclk`, begin the next one, and return the record with stages in the budget's order.
 
-        `kernels` are those that ran, in each stage, the same tuple for as long as none comes, with their `costs` as rows of an `OwnerCosts` table.
+        `kernels` ran in this frame, each in its stage: the same tuple as long as no kernel is new. `costs` are their rows of an
+        `OwnerCosts` table.
         """
         order = [each for each in (*self._stages, REST) if each in self._accounts]
         others, rows = [], []
@@ -110,7 +111,7 @@ class FrameAccounts:
         return frame
 
     def _with(self, kernels: tuple[Owner, ...], others: tuple[tuple[str, str], ...]) -> tuple[Owner, ...]:
-        """Return all owners of a frame, others by stage and name: most frames have the same ones, and then the same tuple."""
+        """Return all owners of a frame, `others` by stage and name. Most frames have the same owners and get the same tuple."""
         if kernels is not self._kernels:
             self._kernels, self._owners = kernels, {}
         if others not in self._owners:

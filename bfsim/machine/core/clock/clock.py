@@ -1,6 +1,6 @@
 """A core's clock and its accounts: how time passes for a core, and which account each cycle goes to.
 
-Every cycle of the clock goes to one account, so that issue + stall + idle = elapsed holds by construction. Nothing here waits.
+Every cycle of the clock goes to one account, so issue + stall + idle = elapsed holds by construction. Nothing here waits.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from bfsim.trace import StallReason
 from bfsim.trace.owner_costs import COLUMN_OF, ISSUE
 
 KERNEL_COLUMNS = (ISSUE, *(COLUMN_OF[each] for each in (StallReason.INTERLOCK, *BUS_STALLS)))
-"""Columns of what kernels took, in the order of `Played`."""
+"""Columns of the cycles that kernels took, in the order of `Played`."""
 ACCOUNT_COLUMNS = [(word, COLUMN_OF[reason]) for word, reason in REASON_OF_ACCOUNT.items()]
-"""Words of an account there, and columns of each."""
+"""Words of an account in `Played`, and the column of each."""
 
 
 class CoreClock:
-    """The clock of one core, which never goes back. `owner`, everywhere here: whom the cycles belong to."""
+    """The clock of one core, which never goes back. Throughout, cycles belong to `owner`."""
 
     def __init__(
         self, env: Simulation, name: str, board: BoardSpec, bus: Bus, stages: tuple[str, ...]
@@ -38,10 +38,10 @@ class CoreClock:
         self.cclk = 0
         """The core's own time."""
         self.owed_cclk = 0
-        """Of a wait: what passed before its interrupts, on no account yet."""
+        """Cycles of a wait that passed before its interrupts and are on no account yet."""
         self.accounts = FrameAccounts(name, stages)
         self.timeline = CoreTimeline(env.timeline, name) if env.timeline else None
-        """What is told what the core does, if anybody wants to know."""
+        """The timeline that hears what the core does, if anyone wants to know."""
 
     @property
     def ticks(self) -> int:
@@ -56,19 +56,19 @@ class CoreClock:
         self.accounts.now.of(owner).stall(reason, cclk)
 
     def issue(self, cclk: int, owner: str) -> None:
-        """Let `cclk` cycles pass with work that is no kernel's."""
+        """Let `cclk` cycles pass with work outside kernels."""
         if self.timeline:
             self.timeline.work(self.cclk, cclk)
         self.cclk += cclk
         self.accounts.now.of(owner).issue(cclk)
 
     def program_device(self, owner: str, *, writes: int, reads: int) -> None:
-        """Let the time pass that it takes to write and read registers of a device: that is DMA set-up."""
+        """Let the time of writing and reading a device's registers pass, as a stall for DMA set-up."""
         cclk = writes * self._events.mmr_write_cclk + reads * self._events.mmr_read_cclk
         self.stall(StallReason.DMA_SETUP, cclk, owner)
 
     def call(self, work: Work, stalls: dict[StallReason, int], name: str, owner: str = KERNELS) -> None:
-        """Let the cycles of a call of the kernel `name` pass; `stalls` are those of its accesses outside L1."""
+        """Let the cycles of a call of kernel `name` pass. `stalls` come from its accesses outside L1."""
         if work.stall_cclk:
             stalls[StallReason.INTERLOCK] = work.stall_cclk
         if self.timeline:
@@ -81,7 +81,7 @@ class CoreClock:
             account.stall(reason, cclk)
 
     def stretch(self, played: Played, owners: Sequence[str]) -> None:
-        """Charge what a stretch of work took that the bus has played; `owners`: of its accounts, by their numbers."""
+        """Charge the cycles of a stretch that the bus has played. `owners` of its accounts are by number."""
         self.cclk = played.clock_cclk
         now = self.accounts.now
         row = now.kernels.row
@@ -93,7 +93,7 @@ class CoreClock:
                 row[column] += words[word]
 
     def until(self, tick: int) -> int:
-        """Return the cycles up to the first CCLK edge from `tick` on; 0 if that is over."""
+        """Return the cycles until the first CCLK edge at or after `tick`, 0 if that has passed."""
         return max(0, -(-tick // self.cclk_ticks) - self.cclk)
 
     def is_over(self, transfer: Transfer) -> bool:
@@ -102,13 +102,13 @@ class CoreClock:
         return end is not None and end <= self.ticks
 
     def wake(self, reason: StallReason | None, owner: str, ended_by: Transfer | None = None) -> None:
-        """Go on at the first CCLK edge from now; that was a stall, or idle without a reason."""
+        """Go on at the first CCLK edge from now. The wait was a stall, or idle without a `reason`."""
         self.waited(reason, self.until(self._env.tick), owner, ended_by)
 
     def waited(
         self, reason: StallReason | None, cclk: int, owner: str, ended_by: Transfer | None = None
     ) -> None:
-        """Let `cclk` of a wait pass, and charge them with what it owes from before its interrupts."""
+        """Let `cclk` cycles of a wait pass, and charge them together with those owed from before its interrupts."""
         self.pass_waiting(reason, cclk, ended_by)
         cclk, self.owed_cclk = cclk + self.owed_cclk, 0
         if reason is None:
@@ -117,19 +117,19 @@ class CoreClock:
             self.accounts.now.of(owner).stall(reason, cclk)
 
     def pass_waiting(self, reason: StallReason | None, cclk: int, ended_by: Transfer | None = None) -> None:
-        """Let `cclk` cycles of a wait pass that are on no account yet."""
+        """Let `cclk` cycles of a wait pass without charging them yet."""
         if self.timeline and cclk:
             self.timeline.wait(reason, self.cclk, cclk, self._records.flow_of(ended_by))
         self.cclk += cclk
 
     def tell_level(self, name: str, value: int) -> None:
-        """Tell the timeline, if there is one, how high a level of this core's is from now on."""
+        """Tell the timeline, if there is one, the new value of one of this core's levels."""
         if self.timeline:
             self.timeline.level(name, value, self.cclk)
 
     @contextmanager
     def elsewhere(self) -> Iterator[None]:
-        """Have what is inside be about no place of the picture until it says so, and what comes after about the one before."""
+        """Begin this context without a place in the picture, and restore the previous place at its end."""
         if not self.timeline:
             yield
             return

@@ -1,1 +1,1 @@
-"""The pictures that a core takes, and what it says of them."""
+"""The pictures that a core takes, and what it publishes about them."""

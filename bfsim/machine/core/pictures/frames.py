@@ -1,4 +1,4 @@
-"""A frame as firmware gets it, and what a core has to say of it at its end."""
+"""A frame as firmware gets it, and what a core reports about it at its end."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.trace import CoreFrame
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One picture of this core's camera. `rows`: its lines in memory, 2 · `width` bytes of UYVY each."""
+    """One picture of this core's camera. `rows` are its lines in memory, 2 · `width` bytes of UYVY each."""
 
     index: int
     rows: Sequence[Row]
@@ -21,13 +21,13 @@ class Frame:
     height: int
 
     def __repr__(self) -> str:
-        """Return it in short, for who prints it: it has hundreds of rows."""
+        """Return a short text for printing: a frame has hundreds of rows."""
         return f"<frame {self.index}, {self.width}x{self.height}>"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FinishedFrame:
-    """What one core reports at the end of a frame. `counts`: what its kernels have counted in it."""
+    """What one core reports at the end of a frame. `counts` are the counters of its kernels in that frame."""
 
     index: int
     full_at_cclk: int

@@ -1,4 +1,4 @@
-"""What a view says of a mark, an object or the cameras, held to the types of its fields: what is drawn and written long after."""
+"""Checks of the marks, objects and cameras that a view returns against the types of their fields, long before they are drawn."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ NOUNS: Mapping[type, str] = {
     SeenRectangle: "a rectangle",
     SeenText: "a text",
 }
-"""What is checked here, and what a message calls it."""
+"""The classes that are checked here, and what messages call them."""
 
 _RULES: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
     "name": ("words without double quotes, for limits name it between these", lambda value: '"' not in value),
@@ -51,18 +51,18 @@ _RULES: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
     "share": ("0 to 1", lambda value: 0 <= value <= 1),
     "camera": (" or ".join(CAMERAS.values()), lambda value: value in CAMERAS.values()),
 }
-"""What a field must be besides, by its name."""
+"""Further conditions of fields, by name."""
 
 _ORDERED = (("left_px", "right_px"), ("top_px", "bottom_px"))
-"""Borders, of which the second one does not come first."""
+"""Pairs of borders in their order."""
 
 
 _NO_WORDS = re.compile("[\n\r\ud800-\udfff]")
-"""Lines that end, and halves of characters, which no file takes."""
+"""Ends of lines, and halves of characters, which no file can hold."""
 
 
 def check_fields(mark: Any) -> None:
-    """Raise FirmwareError unless each field of a mark is what its class says: numbers may be numpy's, and points its arrays."""
+    """Raise FirmwareError unless each field of a mark is what its class says. Numbers and points may be numpy's."""
     kind: type = type(mark)
     noun = NOUNS[kind]
     for name, words, is_one in _fields(kind):
@@ -85,7 +85,7 @@ def is_line_of_words(value: Any) -> bool:
 
 def is_number(value: Any) -> bool:
     """Whether a value is a number that can be drawn."""
-    is_usual = type(value) is float or type(value) is int  # to ask an abstract class takes six times as long
+    is_usual = type(value) is float or type(value) is int  # asking an abstract class takes six times as long
     return (is_usual or isinstance(value, Real)) and isfinite(value)
 
 
@@ -98,7 +98,7 @@ def _is_truth(value: Any) -> bool:
 
 
 def _are(count: int | None, is_one: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    """Return whether a value is a row of such values: of so many, or of any number."""
+    """Return a test whether a value is a sequence of `count` such values, or of any number."""
 
     def are(value: Any) -> bool:
         is_row = isinstance(value, (tuple, list, np.ndarray)) and (count is None or len(value) == count)
@@ -130,7 +130,7 @@ _KINDS: Mapping[Any, tuple[str, Callable[[Any], bool]]] = {
     tuple[int, ...]: ("a tuple of whole numbers", _are(None, _is_whole)),
     dict[str, int]: ("a dict of names and whole numbers", _is_named_numbers),
 }
-"""Types of fields: what they are called, and what tells them."""
+"""Types of fields: what messages call them, and their tests."""
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The pictures that a core takes, one after the other, and what it has to say of each when it is done with it."""
+"""The pictures that a core takes, one after the other, and what it reports about each at its end."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from bfsim.seen import Seen
 from bfsim.trace import REST, StallReason
 
 CAMERAS = "cameras"
-"""Owner of cycles."""
+"""The cameras as an owner of cycles."""
 
 
 class Pictures:
-    """Those of one core's camera. `finished` are the frames that are done, until the board takes them."""
+    """The pictures of one core's camera. `finished` holds completed frames until the board takes them."""
 
     def __init__(
         self, chip: ChipSpec, progress: Progress, tasks: Tasks, calls: CallCache, capture: Capture, access_trace: AccessTrace,
         layouts: Layouts, on_finished: Callable[[], None], view: Callable[[Readout], Seen | None] | None,
     ) -> None:  # fmt: skip
-        """`on_finished`: called at a frame's end. `view`: reads out what was seen, if anyone wants to know."""
+        """`on_finished` is called at a frame's end. `view` reads out what was seen, if anyone wants to know."""
         self.finished: list[FinishedFrame] = []
         self._chip = chip
         self._progress = progress
@@ -56,7 +56,7 @@ class Pictures:
         return self._tasks.is_over
 
     def next_frame(self) -> Wait:
-        """Finish the current frame and wait for the next picture; None when the recording is over."""
+        """Finish the current frame and wait for the next picture. Return None when the recording is over."""
         if self._calls.stage != REST:
             raise FirmwareError(f"next_frame must be called outside of stages, not in {self._calls.stage!r}")
         if self.is_over:
@@ -85,7 +85,7 @@ class Pictures:
         return self._frame
 
     def _invalidate(self, rows: tuple[Row, ...]) -> None:
-        """Let the data cache forget what it holds of a picture that DMA has written over."""
+        """Invalidate the data cache's lines of a picture that DMA has overwritten."""
         lines = self._access_trace.forget(rows[0].offset, rows[0].nbytes * len(rows))
         self._clock.issue(lines * self._chip.cache.invalidate_cclk, CAMERAS)
 
@@ -99,7 +99,7 @@ class Pictures:
         return any(name.startswith("ppi_words_lost_") for name in self._results)
 
     def remark(self, text: str) -> None:
-        """Add a sentence about the current frame to the report, as one line. Raises FirmwareError for what is no text."""
+        """Add a sentence about the current frame to the report, as one line. Raises FirmwareError if it is not text."""
         if not isinstance(text, str):
             raise FirmwareError(f"a remark must be text, not {shown(text)}")
         self._remarks.append(f"core {self._layouts.core} {printable(text)}")
@@ -107,12 +107,12 @@ class Pictures:
     def at(
         self, rows: int | range | Pixels | None = None, columns: Columns | None = None, *taken: Any
     ) -> None:
-        """Say what the work from here on is about."""
+        """Say which place of the picture the following work is about."""
         if self._clock.timeline:
             self._clock.timeline.say(None if rows is None else place_of(rows, columns, *taken))
 
     def take_line(self, number: int, lines: int) -> None:
-        """Note that the core took a line of a picture of so many `lines`, and works on it unless it says more exactly where."""
+        """Note that the core took a line of a picture of so many `lines`: it works there unless it has said more exactly where."""
         timeline = self._clock.timeline
         if (
             timeline

@@ -1,4 +1,4 @@
-"""Places of a picture as firmware says them."""
+"""Places in a picture, as firmware gives them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from bfsim.errors import FirmwareError, shown
 from bfsim.spans import Place
 
 Pixels = Callable[[], Iterable[tuple[int, int]]]
-"""What returns the row and the column of single pixels, and is called only if someone looks."""
+"""Returns the rows and columns of single pixels. Called only if someone looks."""
 
 Columns = int | range | Callable[..., Iterable[int]]
-"""Columns of a picture: one, those of a range, or what returns single ones of what it takes, and is called only if someone looks."""
+"""Columns of a picture: one, a range, or a function that returns single ones. It is called only if someone looks."""
 
 
 def place_of(rows: int | range | Pixels, columns: Columns | None, *taken: Any) -> Place | None:
-    """Return the place that rows and columns mean, None for no pixel; `taken`: by a function of columns.
+    """Return the place that rows and columns mean, None for no pixel. A function of columns is called with `taken`.
 
-    Raises FirmwareError for what is no place.
+    Raises FirmwareError for anything that is no place.
     """
     if callable(rows):
         given = rows()
@@ -53,7 +53,7 @@ def _pixels(given: Sequence[Any] | NDArray[Any]) -> Place | None:
 
 
 def _kind_of(given: Sequence[Any] | NDArray[Any]) -> str:
-    """Return the kind of numbers that pairs are, as numpy has it; nothing for what are no pairs of numbers."""
+    """Return numpy's kind of the numbers in pairs, empty if these are no pairs of numbers."""
     try:
         pairs = np.array(given)
     except ValueError:  # not all of them have the same length

@@ -1,4 +1,4 @@
-"""Reading a core's memories from outside, as a debugger does: it takes no cycle and changes nothing."""
+"""Reading a core's memories from outside, as a debugger does. It takes no cycle and changes nothing."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.seen import CAMERAS, Seen, SeenText
 
 
 class HasBuffers(Protocol):
-    """What has the buffers of a core by their names."""
+    """An object that has the buffers of a core by name."""
 
     @property
     def core(self) -> str:
@@ -31,7 +31,7 @@ class Readout:
     """What a core has in memory at the end of a frame, before anything of the next one arrives."""
 
     def __init__(self, buffers: HasBuffers, frame: Frame, results: Mapping[str, int]) -> None:
-        """`results`: the numbers published for the frame."""
+        """`results` are the numbers published for the frame."""
         self._buffers = buffers
         self._frame = frame
         self._results = results
@@ -43,7 +43,7 @@ class Readout:
 
     @property
     def camera(self) -> str:
-        """Name of the camera that it looks at: left or right."""
+        """Name of the core's camera: left or right."""
         return CAMERAS[self.core]
 
     def has_buffer(self, name: str) -> bool:
@@ -69,7 +69,7 @@ class Readout:
         return stacked(self._frame.rows)
 
     def published(self, name: str) -> int:
-        """Return a number that the core has published for the frame; 0 if it has not."""
+        """Return a number that the core has published for the frame, 0 if it has not."""
         return self._results.get(f"{name}_{self.core}", 0)
 
     @property
@@ -80,11 +80,11 @@ class Readout:
 
 
 LINE_PX = 12
-"""From one line of words to the next."""
+"""Pixels from one line of text to the next."""
 
 
 def plain_view(readout: Readout) -> Seen:
-    """Return what can be shown of any firmware: the picture, and the numbers that the core has published."""
+    """Return what can be shown for any firmware: the picture, and the numbers that the core has published."""
     picture = readout.picture()
     words = [f"{name} {each:,}" for name, each in readout.all_published.items()]
     texts = (

@@ -1,4 +1,4 @@
-"""What the view of a firmware says that a core saw, checked where it is handed over: files and pages draw it long after."""
+"""What a core saw according to the firmware's view, checked at once because files and pages draw it much later."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ _MARKS: dict[str, type] = {
     "objects": SeenObject,
     "lines_3d": SeenLine3D,
 }
-"""Fields of `Seen` that are tuples, and of what."""
+"""Fields of `Seen` that are tuples, and the classes of their elements."""
 
 
 def seen_by(view: Callable[[Readout], Seen | None], readout: Readout) -> Seen | None:
-    """Return what a view says. Raises FirmwareError where that is not of the core's camera, or cannot be drawn."""
+    """Return what a view says. Raises FirmwareError if it is about another camera or cannot be drawn."""
     seen = view(readout)
     if seen is None:
         return None
@@ -110,7 +110,7 @@ def _check_corner(corner: Any) -> None:
 
 
 def _check_edges(seen: Seen) -> None:
-    """Check the columns of numbers that edges are: one of each for each edge."""
+    """Check the columns of numbers that make up edges: one number in each per edge."""
     edges, in_space = seen.edges, seen.edges_3d
     _require_kind("edges", edges, SeenEdges)
     _require_kind("edges_3d", in_space, SeenEdges3D)

@@ -1,1 +1,1 @@
-"""How a core's firmware gets on against the simulated time: in step with it, or ahead of it."""
+"""How a core's firmware advances relative to simulated time: in step with it, or ahead of it."""

@@ -1,6 +1,6 @@
-"""A core in step with the simulated time: everything that it does is done at its time.
+"""A core in step with simulated time: it does everything at its time.
 
-Calls in L1 only add to its own clock, and it catches up with the simulated time where it meets another device.
+Calls in L1 only add to its own clock, and simulated time catches up with that where the core meets another device.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ class InStep:
     runs_ahead = is_full = False
     tape = None
     serve_interrupts: Callable[[], Wait]
-    """Runs the handlers of the interrupts that wait: set by what plays the firmware."""
+    """Runs the handlers of pending interrupts. Set by the part that plays the firmware."""
 
     def __init__(
         self, env: Simulation, bus: Bus, number: int, clock: CoreClock, interrupts: Interrupts, waits: Waits
     ) -> None:
-        """`number`: of the core on the bus."""
+        """`number` is the core's number on the bus."""
         self.clock = clock
         self.interrupts = interrupts
         self.waits = waits
@@ -74,7 +74,7 @@ class InStep:
     # ---- time
 
     def sync(self) -> Wait:
-        """Catch up, and take interrupts until none waits."""
+        """Catch up, and take interrupts until none is pending."""
         yield from self._catch_up_at_last()
         while self.interrupts.can_be_taken:
             yield from self.serve_interrupts()
@@ -85,14 +85,14 @@ class InStep:
             yield self._env.after(ahead_ticks)
 
     def catch_up(self) -> simpy.Event | None:
-        """Return what to wait for."""
+        """Return the event to wait for, if any."""
         ahead_ticks = self.clock.ticks - self._env.tick
         if ahead_ticks > 0:
             return self._env.after(ahead_ticks)
         return self._env.after(0) if self.interrupts.can_be_taken else None
 
     def when_there(self, what: Callable[[], None]) -> None:
-        """Do it: the core is there."""
+        """Call `what` now: the core is there."""
         what()
 
     def issue(self, cclk: int, owner: str) -> None:
@@ -106,7 +106,7 @@ class InStep:
     # ---- copies
 
     def copies(self, lines: Lines) -> LineCopies:
-        """Return what posts them."""
+        """Return the object that posts these copies."""
         return CopiesInStep(lines, self.clock)
 
     def settle(self) -> None:
@@ -114,14 +114,14 @@ class InStep:
         self._bus.settle()
 
     def has(self, copy: Copy) -> bool:
-        """Whether it is over."""
+        """Whether the copy is over."""
         assert isinstance(copy, Transfer), "nothing is copied ahead"
         return self.clock.is_over(copy)
 
     def wait_transfer(self, copy: Copy, reason: StallReason, owner: str) -> Wait:
-        """Wait for its end."""
+        """Wait for the end of the copy."""
         assert isinstance(copy, Transfer), "nothing is copied ahead"
-        can_come = self.interrupts.can_come  # meanwhile: an end that is known is waited for, too
+        can_come = self.interrupts.can_come  # during the wait, so even a known end is waited for
         if can_come or copy.end is None:
             yield from self.sync()
             self._bus.settle()
@@ -131,7 +131,7 @@ class InStep:
         self.clock.waited(reason, self.clock.until(copy.end), owner, copy)
 
     def _end_of(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at the end of `transfer`, which is behind the core's clock."""
+        """Return the event at the end of `transfer`, which is later than the core's clock."""
         if transfer.end is None:
             return self._bus.when_done(transfer)
         return self._env.after(max(0, transfer.end - self._env.tick))
@@ -139,7 +139,7 @@ class InStep:
     # ---- others
 
     def wait_event(self, event: simpy.Event | None, what: str, last: Callable[[], Transfer | None]) -> Wait:
-        """Wait for it unless it is over."""
+        """Wait for the event unless it is over."""
         yield from self.sync()
         if event is not None and not event.processed:
             yield from self.blocked(iter([event]), what, StallReason.RING_EMPTY)
@@ -148,7 +148,7 @@ class InStep:
     def blocked(
         self, wait: Any, what: str, reason: StallReason | None, away: Callable[[], Away] = nullcontext
     ) -> Wait:
-        """Play it."""
+        """Play the wait."""
         self.waits.present = f"{what}, since cycle {self.clock.cclk:,}"
         if self.interrupts.can_come:
             wait = self._interruptible(wait, reason, away)
@@ -157,9 +157,9 @@ class InStep:
         return result
 
     def _interruptible(self, wait: Any, reason: StallReason | None, away: Callable[[], Away]) -> Wait:
-        """Take interrupts between the events of `wait`; what passes before each of them is on no account yet."""
+        """Take interrupts between the events of `wait`. The time before each of them is on no account yet."""
         owed_cclk, what = 0, self.waits.present
-        with self.interrupts.held():  # the clock still stands where the wait began: nobody else may take them
+        with self.interrupts.held():  # the clock is still where the wait began, so nothing else may take them
             while True:
                 try:
                     event = next(wait)
@@ -183,8 +183,8 @@ class InStep:
         self.interrupts.attach(source, handler)
 
     def request_interrupt(self, source: str) -> None:
-        """Ask for it."""
+        """Request the interrupt."""
         self.interrupts.request(source)
 
     def stay_in_step(self) -> None:
-        """Do nothing: it is."""
+        """Do nothing: the core is in step already."""

@@ -1,4 +1,4 @@
-"""The copies of a ring: one a line, from or to rows that come again and again."""
+"""The copies of a ring: one per line, from or to rows that are used in turn."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
 
 Copy = Transfer | int
-"""A copy that a core has asked for: on its way, or made ahead, the how-manieth of all of its own."""
+"""A copy that a core has requested: its transfer, or the number that it has among the core's copies made ahead."""
 NO_COPY = w.NONE
-"""In place of one."""
+"""Stands for the absence of a copy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    """What a stream copies for a ring: each row of `sources` to one of `destinations`; where either has fewer, they come again.
+    """What a stream copies for a ring: each row of `sources` to one of `destinations`. The shorter of the two repeats.
 
-    `owner`: whom the cycles of setting copies up and of waiting for them belong to; the latter are stalls for `reason`.
+    The cycles of setting copies up and of waiting for them belong to `owner`; the latter are stalls for `reason`.
     """
 
     stream: MdmaStream
@@ -37,11 +37,11 @@ class Lines:
     reason: StallReason
 
     def __len__(self) -> int:
-        """Return how many copies there are."""
+        """Return the number of copies."""
         return max(len(self.sources), len(self.destinations))
 
     def rows(self, number: int) -> tuple[Row, Row]:
-        """Return what copy `number` reads and writes. Raises FirmwareError where these are not equally long."""
+        """Return what copy `number` reads and writes. Raises FirmwareError if these differ in length."""
         source = self.sources[number % len(self.sources)]
         destination = self.destinations[number % len(self.destinations)]
         if source.nbytes != destination.nbytes:
@@ -52,37 +52,37 @@ class Lines:
         return source, destination
 
     def rows_from(self, first: int) -> Iterator[tuple[Row, Row]]:
-        """Yield what the copies from line `first` on read and write, up to the first one whose rows are not equally long."""
+        """Yield what the copies from line `first` on read and write, up to the first whose rows differ in length."""
         rows = zip(cycle(self.sources), cycle(self.destinations), strict=False)
         return takewhile(lambda both: both[0].nbytes == both[1].nbytes, islice(rows, first, len(self)))
 
 
 class LineCopies(Protocol):
-    """The copies of lines, as a core has them done."""
+    """How a core has lines copied."""
 
     @property
     def ahead(self) -> NotedLines | None:
-        """What does all that belongs to a line at once, while the core runs ahead. Its copies must have been planned."""
+        """Does all steps of a line in one call while the core runs ahead. The line's copies must have been planned."""
 
     @property
     def at(self) -> int:
-        """Where that finds the words of these lines."""
+        """Address where `ahead` finds the words of these lines."""
 
     def plan(self, *numbers: int) -> None:
-        """Plan the copies of lines, of those that there are."""
+        """Plan the copies of those of the lines that exist."""
 
     def program(self) -> None:
         """Program the stream."""
 
     def copy(self, number: int) -> Copy:
-        """Have line `number` copied, behind all copies of the stream before."""
+        """Have line `number` copied, after all earlier copies of the stream."""
 
     def goes_on(self, copy: Copy) -> bool:
-        """Whether a core that needs a copy done can go on at once; else it must wait for it."""
+        """Whether a core that needs a finished copy can go on at once. Otherwise it must wait."""
 
 
 class CopiesInStep:
-    """`LineCopies` of a core in step with the simulated time, by its clock."""
+    """`LineCopies` of a core in step with simulated time, by its clock."""
 
     ahead, at = None, 0
 
@@ -91,7 +91,7 @@ class CopiesInStep:
         self._clock = clock
 
     def plan(self, *numbers: int) -> None:
-        """Do nothing: each is planned when it is posted."""
+        """Do nothing: each copy is planned when it is posted."""
 
     def program(self) -> None:
         """Let the time of the registers pass."""
@@ -102,6 +102,6 @@ class CopiesInStep:
         return self._lines.stream.copy(*self._lines.rows(number), self._clock.ticks)
 
     def goes_on(self, copy: Copy) -> bool:
-        """Whether it is over."""
+        """Whether the copy is over."""
         assert isinstance(copy, Transfer), "nothing is copied ahead"
         return self._clock.is_over(copy)

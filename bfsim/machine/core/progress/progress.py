@@ -1,6 +1,6 @@
-"""How a core's firmware gets on against the simulated time: in step with it (`in_step`), or ahead of it (`ahead`).
+"""How a core's firmware advances relative to simulated time: in step with it (`in_step`) or ahead of it (`ahead`).
 
-Whatever a core does that takes time or meets the rest of the machine goes through this, from its kernels to its rings.
+Everything that takes time or meets the rest of the machine goes through this, from the core's kernels to its rings.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ Away = AbstractContextManager[None]
 
 
 class Progress(Protocol):
-    """The progress of one core. `owner`, everywhere here: whom cycles belong to; `reason`: why they are a stall."""
+    """The progress of one core. Throughout, cycles belong to `owner`, and `reason` is why they are a stall."""
 
     clock: CoreClock
     interrupts: Interrupts
     waits: Waits
-    """What the firmware has asked to wait for."""
+    """The waits that the firmware has requested."""
     runs_ahead: bool
-    """Whether calls that nobody else can meet are made as soon as the firmware asks for them."""
+    """Whether calls that no other device can notice are made as soon as the firmware asks for them."""
 
     @property
     def tape(self) -> Tape | None:
-        """Where machine code notes calls that nobody else can meet."""
+        """Where machine code notes calls that no other device can notice."""
 
     @property
     def is_full(self) -> bool:
@@ -45,30 +45,30 @@ class Progress(Protocol):
     # ---- kernels
 
     def note_call(self, work: Work, call: KnownCall) -> None:
-        """Charge a call that has accesses outside L1 and was made ahead: only where `runs_ahead` says so."""
+        """Charge a call with accesses outside L1 that was made ahead. Only while `runs_ahead`."""
 
     def charge_call(self, work: Work, call: KnownCall) -> None:
-        """Charge a call that has met nobody."""
+        """Charge a call that stayed in L1."""
 
     def play_call(self, work: Work, call: KnownCall) -> Wait:
-        """Play the accesses of a call, if it has any, from the core's clock on, and charge it."""
+        """Play the accesses of a call, if any, from the core's clock on, and charge the call."""
 
     def access_shared(self, work: Work, owner: str) -> Wait:
-        """Play what an instruction accesses that is no kernel's."""
+        """Play and charge the accesses of an instruction that belongs to no kernel."""
 
     # ---- time
 
     def sync(self) -> Wait:
-        """Wait until the simulated time has reached the core's clock, and take the interrupts that wait then."""
+        """Wait until simulated time has reached the core's clock, and take the interrupts pending then."""
 
     def catch_up(self) -> simpy.Event | None:
-        """Return the event at which the simulated time reaches the core's clock, or now for an interrupt; None when it has."""
+        """Return the event when simulated time reaches the core's clock, or one for now to take an interrupt. None: go on."""
 
     def when_there(self, what: Callable[[], None]) -> None:
-        """Do `what` when all is done that the core has been told before: at once, unless its clock is still to be found out."""
+        """Call `what` after everything that the core was told before: at once, unless its clock is not known yet."""
 
     def issue(self, cclk: int, owner: str) -> None:
-        """Let `cclk` cycles pass with work that is no kernel's."""
+        """Let `cclk` cycles pass with work outside kernels."""
 
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Write and read registers of a device."""
@@ -76,35 +76,35 @@ class Progress(Protocol):
     # ---- copies
 
     def copies(self, lines: Lines) -> LineCopies:
-        """Return what has lines copied for this core."""
+        """Return the object that has lines copied for this core."""
 
     def settle(self) -> None:
-        """Let everything on the bus happen that is due; the core's clock must have been caught up with."""
+        """Let everything that is due on the bus happen. Simulated time must have reached the core's clock."""
 
     def has(self, copy: Copy) -> bool:
         """Whether a copy is done by the core's clock."""
 
     def wait_transfer(self, copy: Copy, reason: StallReason, owner: str) -> Wait:
-        """Stall until a copy or another transfer is done; interrupts that have handlers are taken as they come."""
+        """Stall until a copy or another transfer is done. Interrupts with handlers are taken as they come."""
 
     # ---- others
 
     def wait_event(self, event: simpy.Event | None, what: str, last: Callable[[], Transfer | None]) -> Wait:
-        """Stall until `event`, the end of a DMA that this core started; `last`: returns its last transfer then."""
+        """Stall until `event`, the end of a DMA that this core started. `last` then returns its last transfer."""
 
     def blocked(
         self, wait: Any, what: str, reason: StallReason | None, away: Callable[[], Away] = nullcontext
     ) -> Wait:
-        """Play `wait`, a generator of events, saying meanwhile what the core waits for; interrupts are taken as they come.
+        """Play `wait`, a generator of events; `what` names what the core waits for. Interrupts are taken as they come.
 
-        `away`: returns a context in which their handlers run.
+        `away` returns a context in which their handlers run.
         """
 
     def on_interrupt(self, source: str, handler: Handler) -> None:
-        """Have `handler` called at every interrupt of `source` from now on."""
+        """Call `handler` at every interrupt of `source` from now on."""
 
     def request_interrupt(self, source: str) -> None:
-        """Ask this core for an interrupt."""
+        """Request an interrupt of this core."""
 
     def stay_in_step(self) -> None:
-        """Do everything at its time from now on: somebody else may meet whatever the core does."""
+        """Do everything at its time from now on: other devices may notice whatever the core does."""

@@ -1,4 +1,4 @@
-"""What a core that runs ahead tells of itself: the bus keeps what each operation took, and here that becomes spans."""
+"""The timeline of a core that runs ahead: what each operation took, as kept by the bus, becomes spans."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ Rows = NDArray[np.int64]
 
 
 class ToldAhead:
-    """Tells a `timeline` what the core of a `tape` did; `calls`: those that it has prepared, by their numbers."""
+    """Tells a `timeline` what the core of a `tape` did. `calls` are its prepared calls by number."""
 
     def __init__(self, timeline: CoreTimeline, bus: WovenBus, tape: Tape, calls: Sequence[KnownCall]) -> None:
         assert bus.records.told, "a timeline is told of the bus, too"
         self.plans: dict[int, TransferPlan] = {}
-        """Of its copies, by their numbers."""
+        """Plans of the core's copies, by number."""
         self._rings = ToldRings(timeline, bus)
         _, self._outward = RING_STREAMS[tape.core]
         self._timeline = timeline
@@ -39,13 +39,13 @@ class ToldAhead:
         self._places: list[Place | None] = []
         self._first, self._clock_cclk, self._account = 0, 0, 0
         self._owners: Sequence[str] = ()
-        self._known: dict[str, Rows] = {}  # what calls are in each stage
+        self._known: dict[str, Rows] = {}  # by stage, the spans' numbers for calls
         tape.tell()
         timeline.when_said = self._note_place
         self._told.before.append(self.tell)
 
     def _note_place(self, place: Place | None) -> bool:
-        """Note that what follows is about a place; return whether it is told later."""
+        """Note that what follows is about a place. Return whether the place is told later."""
         if not self._tape.noted:
             return False
         self._tape.note(w.ABOUT, len(self._places), 0, 0, 0)
@@ -53,15 +53,15 @@ class ToldAhead:
         return True
 
     def begin(self, first: int, clock_cclk: int, owners: Sequence[str]) -> None:
-        """Take note that the bus plays operations from the `first` on, the core's clock being at a cycle; `owners`: of its accounts."""
+        """Take note that the bus plays operations from `first` on, with the core's clock at `clock_cclk`; `owners` of its accounts."""
         self._first, self._clock_cclk, self._owners = first, clock_cclk, owners
 
     def clear(self) -> None:
-        """Begin anew: all was told."""
+        """Begin anew: everything has been told."""
         self._places.clear()
 
     def tell(self) -> None:
-        """Tell what the bus has played since the last time."""
+        """Tell what the bus has played since the last call."""
         first, end = self._first, self._tape.played
         if end <= first:
             return
@@ -95,7 +95,7 @@ class ToldAhead:
         timeline.tell(spans[is_told], stalls, known)
 
     def _whats_of_calls(self, calls: Rows) -> Rows:
-        """Return what calls of the present stage are, by their numbers."""
+        """Return the timeline's numbers for calls in the current stage."""
         known = self._known.setdefault(self._timeline.stage, np.zeros(0, np.int64))
         if len(known) < len(self._calls):
             known = np.pad(known, (0, 2 * len(self._calls) - len(known)), constant_values=w.NONE)
@@ -105,7 +105,7 @@ class ToldAhead:
         return known[calls]
 
     def _whats_of_waits(self) -> Rows:
-        """Return what waits in the present stage are, by what they are for (`bus.state`)."""
+        """Return the timeline's numbers for waits in the current stage, by their counters in `bus.state`."""
         numbers = np.zeros(max(REASON_OF_ACCOUNT) + 1, np.int64)
         for counter, reason in REASON_OF_ACCOUNT.items():
             numbers[counter] = self._timeline.number(SpanKind.STALL, reason.value)
@@ -133,7 +133,7 @@ class ToldAhead:
 def _stalls(
     operations: Rows, took: Rows, is_call: NDArray[np.bool_], is_wait: NDArray[np.bool_], reasons: Rows, waits_cclk: Rows
 ) -> Rows:  # fmt: skip
-    """Return operation, reason and cycles of all stalls, in order: of a call those on the bus before others."""
+    """Return operation, reason and cycles of all stalls, in order. A call's stalls on the bus come before its others."""
     kinds, interlocks = operations[:, 0], operations[:, 2]
     (accesses,) = (kinds == w.ACCESS).nonzero()
     calls, counters = took[accesses, w.CALL_STALLS :].nonzero()

@@ -1,4 +1,4 @@
-"""How full the rings of a core that runs ahead are: told when the bus has found out."""
+"""How full the rings of a core that runs ahead are, told as soon as the bus knows."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from bfsim.machine.timeline import CoreTimeline
 
 @dataclass(slots=True)
 class _Output:
-    """The lines of an output ring: copies whose ends are not known yet, each with when it was sent, and the ends of others."""
+    """The lines of an output ring: copies without a known end, each with its cycle of sending, and the ends of the others."""
 
     sent: deque[tuple[int, int]] = field(default_factory=deque)
     ends: deque[int] = field(default_factory=deque)
 
 
 class ToldRings:
-    """Tells a `timeline` of rings, by the names of their owners."""
+    """Tells a `timeline` about rings, by the names of their owners."""
 
     def __init__(self, timeline: CoreTimeline, bus: WovenBus) -> None:
         self._timeline = timeline
@@ -26,7 +26,7 @@ class ToldRings:
         self._outputs: dict[str, _Output] = defaultdict(_Output)
 
     def send(self, owner: str, copied: int, cclk: int) -> None:
-        """Take note that a line of an output ring was sent at a cycle, by the number of its copy."""
+        """Take note that an output ring sent a line at a cycle; `copied` is the number of its copy."""
         self._outputs[owner].sent.append((copied, cclk))
 
     def ask(self, owner: str, *, is_there: bool, cclk: int) -> None:
@@ -35,7 +35,7 @@ class ToldRings:
         self._timeline.level(owner, int(is_there), cclk)
 
     def tell(self) -> None:
-        """Tell how many lines were on their way when each was sent, as far as that is known."""
+        """Tell how many lines were in transit when each was sent, as far as known."""
         for owner in self._outputs:
             self._tell(owner)
 

@@ -1,8 +1,8 @@
-"""Buffers that the cores hand over to each other: one of them works on such a buffer at a time, until it gives it away.
+"""Buffers that the cores hand over to each other: one core at a time works on such a buffer, until it gives it away.
 
-A core gives away what it has whenever it posts a semaphore, gives a lock back or interrupts the other core; who takes that
-semaphore or lock, or the interrupt, may work on it from then on. So it does not matter at which cycle each access is, and calls on
-such buffers can be done ahead. A core that works on one out of turn, whose cycles would decide what it finds, ends the run.
+A core gives away what it has whenever it posts a semaphore, gives a lock back or interrupts the other core. Whichever core takes
+that semaphore, lock or interrupt may work on the buffer from then on. So the cycle of each access does not matter, and calls on
+such buffers can be made ahead. A core that works on one out of turn ends the run: its cycles would decide what it finds.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from numpy.typing import NDArray
 from bfsim.errors import FirmwareError
 
 Gifts = dict[str, int]
-"""Of each core, how often it had given away what it has."""
+"""How often each core had given away what it has."""
 
 
 class Handovers:
-    """Who has given what away, and who knows of it: a vector clock (Mattern 1989) for each core and each thing that they wait for."""
+    """What each core has given away and knows of: a vector clock (Mattern 1989) for each core and each object waited for."""
 
     def __init__(self, cores: Iterable[str]) -> None:
         self._given = {core: np.zeros(1, np.int64) for core in cores}
         self._known: dict[str, Gifts] = {
             core: {} for core in cores
-        }  # of each core: the others' gifts that it knows of
+        }  # by core: the other cores' gifts that it knows of
         self._carried: dict[str, Gifts] = {}
         self._users: dict[
             str, tuple[str, int]
-        ] = {}  # of a buffer: who worked on it last, before which of its gifts
+        ] = {}  # by buffer: the core that worked on it last, and its gifts so far
 
     def give(self, core: str, by: str) -> None:
         """Note that a core gives away what it has, by a semaphore, a lock or an interrupt."""
@@ -42,7 +42,7 @@ class Handovers:
         self._known[core] = _latest(self._known[core], self._carried.get(by, {}))
 
     def use(self, core: str, buffer: str) -> None:
-        """Note that a core works on a buffer. Raises FirmwareError if another one may do so, too."""
+        """Note that a core works on a buffer. Raises FirmwareError if another core may be working on it."""
         user, gifts = self._users.get(buffer, (core, 0))
         if user != core and self._known[core].get(user, 0) <= gifts:
             raise FirmwareError(
@@ -53,10 +53,10 @@ class Handovers:
         self._users[buffer] = core, int(self._given[core][0])
 
     def turn_of(self, core: str) -> NDArray[np.int64]:
-        """Return how often a core has given away what it has, now and later: what it works on is its own until the next time."""
+        """Return the live count of a core's gifts. Until it changes, whatever the core works on is its own."""
         return self._given[core]
 
 
 def _latest(one: Gifts, other: Gifts) -> Gifts:
-    """Return what is known by whoever knows both."""
+    """Return the gifts known from both together."""
     return {core: max(one.get(core, 0), other.get(core, 0)) for core in {**one, **other}}

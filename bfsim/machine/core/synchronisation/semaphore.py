@@ -10,12 +10,12 @@ from bfsim.machine.simulation import Simulation
 
 
 class Semaphore:
-    """A counter that never falls below zero; waiters are served in the order in which they came."""
+    """A counter that never falls below zero. Waiters are served in order of arrival."""
 
     def __init__(self, env: Simulation, name: str) -> None:
         self.name = name
         self.taken = 0
-        """How often it was taken, by whomever."""
+        """How often it was taken, by any core."""
         self._env = env
         self._count = 0
         self._waiters: deque[simpy.Event] = deque()
@@ -34,7 +34,7 @@ class Semaphore:
             self._count += 1
 
     def take(self) -> simpy.Event | None:
-        """Take one and return None, or return the event that happens when this waiter's turn comes."""
+        """Subtract one and return None, or return the event at which this waiter's turn comes."""
         if self._count:
             self._count -= 1
             self.taken += 1

@@ -23,7 +23,7 @@ class SharedObjects:
         self.interrupts = interrupts
         self.handovers = Handovers(interrupts)
         self.turns: dict[str, simpy.Event] = {}
-        """Of each core that no device can let go on: the event at which its turn at a semaphore or lock comes."""
+        """By core that waits and that no device can release: the event at which its turn at a semaphore or lock comes."""
 
     def semaphore(self, name: str) -> Semaphore:
         """Return the semaphore `name`."""
@@ -31,7 +31,7 @@ class SharedObjects:
 
     @property
     def unawaited(self) -> list[str]:
-        """Names of the semaphores that were posted, and that nobody ever took."""
+        """Names of the semaphores that were posted but never taken."""
         return [name for name, each in self._semaphores.items() if each.count and not each.taken]
 
     def lock(self, name: str) -> SpinLock:
@@ -39,6 +39,6 @@ class SharedObjects:
         return self._locks.setdefault(name, SpinLock(self._env, name))
 
     def interrupt(self, source: str) -> None:
-        """Interrupt every core whose firmware asked for it: each has a SIC of its own."""
+        """Interrupt every core whose firmware has a handler for it: each core has its own SIC."""
         for each in self.interrupts.values():
             each.request(source)

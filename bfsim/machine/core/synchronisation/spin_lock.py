@@ -1,4 +1,4 @@
-"""A spin lock in shared memory: a byte that TESTSET sets, tried again and again until the other core has cleared it."""
+"""A spin lock in shared memory: a byte that TESTSET sets, retried until the other core has cleared it."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from bfsim.machine.simulation import Simulation
 
 
 class SpinLock:
-    """`holder` is the core that has it, in words for a message; None when it is free. Waiters have their turn in order."""
+    """A lock that waiters get in order of arrival. `holder` describes the core that has it, None if it is free."""
 
     def __init__(self, env: Simulation, name: str) -> None:
         self.name = name
         self.taken = 0
-        """How often it was taken, by whomever."""
+        """How often it was taken, by any core."""
         self.core: str | None = None
         self.holder: str | None = None
         self.since_cclk = 0
-        """When it was taken, by the clock of its core."""
+        """When it was taken, by the clock of the core that holds it."""
         self._env = env
         self._waiters: deque[tuple[simpy.Event, str]] = deque()
 

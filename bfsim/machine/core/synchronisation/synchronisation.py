@@ -1,4 +1,4 @@
-"""How cores meet each other: semaphores, spin locks, and the interrupt that one raises at the other."""
+"""How cores meet each other: semaphores, spin locks, and the interrupt that one core raises at the other."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ OTHER_CORE = "SUPPLEMENTAL_0"  # the supplemental interrupt that one core raises
 
 
 class Synchronisation:
-    """What core `name`, the `number` of the bus, does with semaphores, locks and the other core's interrupt.
+    """The semaphores, locks and interrupts of the other core, as core `name` uses them; `number` is its number on the bus.
 
-    XXX: the counter of a semaphore is not read and written beside its TESTSET, which would be a load and a store of L2,
-    10 to 12 CCLK; the first TESTSET of a wait decides at its end, those behind it when they have the port, which is
-    11 CCLK earlier; and a lock is free when its store is in the store buffer, though others may wait there before it.
+    XXX: the counter of a semaphore is not read and written besides its TESTSET; that would be a load and a store in L2,
+    10 to 12 CCLK. The first TESTSET of a wait decides at its end, later ones when they get the port, which is 11 CCLK
+    earlier. A lock is free as soon as its store is in the store buffer, though earlier stores may still wait there.
     """
 
     def __init__(
         self, env: Simulation, name: str, number: int, chip: ChipSpec, bus: Bus, progress: Progress, shared: SharedObjects,
         check_claimed: Callable[[], None],
     ) -> None:  # fmt: skip
-        """`check_claimed`: raises the error if the firmware has forgotten to yield a call."""
+        """`check_claimed` raises an error if the firmware has forgotten to yield a call."""
         self._env = env
         self._name = name
         self._number = number
@@ -79,7 +79,7 @@ class Synchronisation:
 
     def unlock(self, name: str) -> Wait:
         """Give a spin lock back."""
-        # of zero: the store buffer has it in its own cycle, and asks for the port at once
+        # asked for at cycle 0: the store buffer has it in its own cycle, and requests the port at once
         yield from self._access(log.STORE, UNLOCK_CCLK, 0, f"lock {name}")
         lock, clock = self._shared.lock(name), self._progress.clock
         if lock.core != self._name:
@@ -102,7 +102,7 @@ class Synchronisation:
         others[other].request(OTHER_CORE)
 
     def _take_turn(self, turn: simpy.Event, what: str, owner: str) -> Wait:
-        """Wait for `turn`, when another core gives way, in a loop around TESTSET; the first try from then on succeeds."""
+        """Loop around TESTSET until `turn`, when another core gives way. The first try from then on succeeds."""
         progress, cores = self._progress, self._bus.cores
         if not progress.interrupts.can_come:
             self._shared.turns[self._name] = turn
@@ -110,7 +110,7 @@ class Synchronisation:
             cores.spin(self._number, progress.clock.ticks)
             yield from progress.blocked(iter([turn]), what, StallReason.SEMAPHORE, away=self._not_spinning)
             self._shared.turns.pop(self._name, None)
-            with progress.interrupts.held():  # the clock still stands where the wait began
+            with progress.interrupts.held():  # the clock is still where the wait began
                 yield cores.stop_spinning(self._number)
         else:
             yield from progress.blocked(iter([turn]), what, StallReason.SEMAPHORE)
@@ -119,7 +119,7 @@ class Synchronisation:
 
     @contextmanager
     def _not_spinning(self) -> Iterator[None]:
-        """Do something else inside, and spin on from then."""
+        """Stop spinning inside this context, and spin on at its end."""
         self._bus.cores.pause_spinning(self._number)
         yield
         self._bus.cores.spin(self._number, self._progress.clock.ticks)
@@ -133,13 +133,13 @@ class Synchronisation:
         return f"core {self._name} since cycle {self._progress.clock.cclk:,} ({running_line()})"
 
     def _test_and_set(self, owner: str) -> Wait:
-        testset_cclk = self._chip.events.testset_cclk  # its memory comes on top
+        testset_cclk = self._chip.events.testset_cclk  # the time of its memory comes on top
         yield from self._access(log.TEST_AND_SET, testset_cclk, testset_cclk, owner)
 
     def _access(self, kind: int, issue_cclk: int, asks_cclk: int, owner: str) -> Wait:
-        """Access a shared variable in L2, in an instruction of `issue_cclk` that asks for its memory at cycle `asks_cclk`.
+        """Access a shared variable in L2, in an instruction of `issue_cclk` that requests its memory at cycle `asks_cclk`.
 
-        The simulated time comes up to that. Without L2 it costs its issue only.
+        Simulated time then catches up. Without L2, only the issue costs cycles.
         """
         self._check_claimed()
         progress = self._progress

@@ -1,1 +1,1 @@
-"""What a core's firmware does, one thing after the other: its main loop, its handlers, their calls of kernels."""
+"""The tasks of a core's firmware, one at a time: its main loop, its handlers, and their calls of kernels."""

@@ -1,4 +1,4 @@
-"""The call that a core's firmware has asked for last and has not yielded yet, and those that machine code makes."""
+"""The latest call that a core's firmware has requested but not yielded, and the calls that machine code makes."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from bfsim.machine_code.going_on import Noted, going_on
 
 
 class Asked:
-    """The last call of one core. Machine code makes and notes those that are known to it if the core has a `tape`."""
+    """The last call of one core. If the core has a `tape`, machine code makes and notes the calls that it knows."""
 
     ask: Callable[..., Work]
-    """Makes a call, of a kernel and its arguments, or has it made by what makes those that machine code does not know."""
+    """Makes a call of a kernel with its arguments, through `other` if machine code does not know it."""
     go_on: Callable[[Generator[Any, Any, Any], object], Any]
-    """Goes on with a generator until it yields what is no call to be noted without Python, or ends."""
+    """Resumes a generator until it ends, or yields something other than a call that can be noted without Python."""
 
     def __init__(
         self, calls: CallCache, tape: Tape | None, turn: NDArray[np.int64], other: Callable[..., Work]
     ) -> None:
-        """`turn`: the core's, which buffers that are handed over are its own in. `other` makes the other calls."""
+        """`turn` is the core's, in which handed-over buffers are its own. `other` makes calls that machine code does not know."""
         words = np.zeros(ASKED, np.int64)
         self._words: Any = words.data
         at = words.ctypes.data
@@ -41,19 +41,19 @@ class Asked:
             self.ask = asking(at, found, other)
 
     def know(self, call: KnownCall, kernel: Kernel, arguments: Sequence[Any]) -> None:
-        """Let machine code make a call from now on, if it can."""
+        """Let machine code make this call from now on, if it can."""
         if self._tape and self._tape.takes_calls and call.words and (call.stays_in_l1 or call.is_alone):
             note = note_run if call.stays_in_l1 else note_access
             turn = int(self._turn[0]) if call.handed_over else ALWAYS
             self._ready.lay(kernel, arguments, turn, (note.address(), call.words, call.number))
 
     def hold(self, work: Work, call: KnownCall) -> None:
-        """Note that a call was made, or is to be, and left something, which must live until it is claimed."""
+        """Note that a call was made, or is to be made, and left `work`, which must live until it is claimed."""
         self._words[LEFT], self._words[NOTE], self._words[NUMBER] = id(work), 0, call.number
 
     @property
     def unclaimed(self) -> KnownCall | None:
-        """The call that was not yielded yet, if there is one."""
+        """The call that was not yielded yet, if any."""
         return self._last if self._words[LEFT] else None
 
     @property
@@ -62,7 +62,7 @@ class Asked:
         return bool(self._words[NOTE])
 
     def claim(self, item: object) -> KnownCall | None:
-        """Return the call that has left `item`, if that is the one that was not yielded yet; from now on it is."""
+        """Return the call that left `item` if it was not yielded yet, and mark it as yielded."""
         if self._words[LEFT] != id(item):
             return None
         self._words[LEFT] = 0

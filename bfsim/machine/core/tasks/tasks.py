@@ -1,4 +1,4 @@
-"""The generators of one core's firmware, its main loop and its handlers: kernels are charged, events waited for."""
+"""The generators of one core's firmware, its main loop and handlers: their kernels are charged, their events waited for."""
 
 from __future__ import annotations
 
@@ -24,20 +24,21 @@ from bfsim.trace import REST, StallReason
 
 NO_KEYWORDS = "machine code() takes no keyword arguments"
 IN_ORDER = "core.run(kernel, ...) takes the kernel and its arguments in their order, without names"
-"""What Python says of `core.run(kernel, n=3)`, for it is machine code that runs kernels, and what is said instead."""
+"""What Python says about `core.run(kernel, n=3)`, because machine code runs kernels, and what bfsim says instead."""
 
 
 class Run(Protocol):
-    """What runs kernels for firmware."""
+    """The function that runs kernels for firmware."""
 
     def __call__(self, kernel: Kernel, *arguments: Row | int) -> Work:
         """Run a kernel."""
 
 
 class Tasks:
-    """What the firmware of core `name` does, one thing after the other.
+    """The tasks of core `name`'s firmware, one at a time.
 
-    Calls that nobody can meet are made and noted by machine code (`machine_code.asking`, `going_on`); the others, and each for the first time, here.
+    Machine code makes and notes the calls that no other device can notice (`machine_code.asking`, `going_on`). The others,
+    and the first call of each, are made here.
     """
 
     def __init__(
@@ -50,17 +51,17 @@ class Tasks:
         self._handovers = handovers
         self._events = events
         self._asked = Asked(calls, progress.tape, handovers.turn_of(name), self._run)
-        self._work: Work  # of the call that was asked for last here
-        self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
+        self._work: Work  # of the last call that was made here
+        self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that interrupted it
         self.run: Run = self._asked.ask
-        """Runs a kernel now, or promises to: what it gives must be yielded next."""
+        """Runs a kernel, now or once its result is yielded. The result must be yielded next."""
         self.frame_index: int | None = None
-        """Index of the picture that is worked on, None between two."""
+        """Index of the current picture, None between two."""
         self.is_over = False
         """Whether the firmware was told that the recording is over."""
 
     def _run(self, kernel: Kernel, *arguments: Row | int) -> Work:
-        """Run a kernel that machine code does not know, or promise to."""
+        """Run a kernel that machine code does not know, or return a promise to run it."""
         self.check_claimed()
         try:
             rows_of, calls = self._calls.known[kernel]
@@ -72,13 +73,13 @@ class Tasks:
         self._asked.know(call, kernel, arguments)
         if call.stays_in_l1 or (call.is_alone and self._progress.runs_ahead):
             self._work = call.run(*arguments)
-        else:  # it may meet what others do, and runs when the simulated time is there
+        else:  # other devices may notice it, so it runs at its simulated time
             self._work = DeferredWork(call, arguments)
         self._asked.hold(self._work, call)
         return self._work
 
     def perform(self, task: Generator[Any, Any, Any]) -> Wait:
-        """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
+        """Play a generator of the firmware: charge the kernels that it yields, and wait for its events."""
         before, self._task = self._task, task
         progress, interrupts, asked, value = self._progress, self._interrupts, self._asked, None
         while True:
@@ -110,7 +111,7 @@ class Tasks:
         self._task = before
 
     def idle(self) -> Wait:
-        """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
+        """Wait for an interrupt and let its handler run. One that was already requested ends the wait at once."""
         progress, interrupts = self._progress, self._interrupts
         with interrupts.held():
             yield from progress.sync()
@@ -121,7 +122,7 @@ class Tasks:
             yield from self.serve_interrupts()
 
     def serve_interrupts(self) -> Wait:
-        """Run the handlers of all interrupts that wait; the way in and out is a stall."""
+        """Run the handlers of all pending interrupts. Entry and exit are stalls."""
         clock, interrupts, name = self._progress.clock, self._interrupts, self._name
         with interrupts.held():
             while interrupts.is_waiting:
@@ -142,7 +143,7 @@ class Tasks:
                     clock.timeline.interrupt(source, begin_cclk, clock.cclk)
 
     def _handled(self, handler: Callable[[], object]) -> object:
-        """Call a handler of the firmware, which may be done then, or give a generator."""
+        """Call a handler of the firmware. It may be done at once or return a generator."""
         try:
             return handler()
         except BaseException as error:
@@ -159,7 +160,7 @@ class Tasks:
             )
 
     def describe_wait(self) -> str:
-        """Say what the core waits for and where in the firmware."""
+        """Say what the core waits for, and where in the firmware."""
         return (
             f"core {self._name} waits for {self._progress.waits.present or 'a device'}{line_at(self._task)}"
         )
@@ -167,9 +168,9 @@ class Tasks:
     # ---- what is wrong with the firmware
 
     def told(self, error: BaseException, called: object = None) -> BfsimError:
-        """Return what went wrong in the firmware, with its line there; what the system refused to bfsim was no line's fault.
+        """Return the error of the firmware with its line, or unchanged if the operating system refused bfsim something.
 
-        `called`: what was called, if that may be all that was wrong.
+        `called` is what was called, if the call itself may be what was wrong.
         """
         if isinstance(error, BfsimError) and isinstance(error.__cause__, OSError):
             return error
@@ -203,7 +204,7 @@ class Tasks:
             raise FirmwareError(f"{error} at the end of {name_of(task)}") from None
 
     def _misused(self, item: object, line: str) -> FirmwareError:
-        """Return what is wrong with a yield of `item`, which is no call and no event."""
+        """Return the error for a yield of `item`, which is neither a call nor an event."""
         if isinstance(item, Generator):
             wait = f"{name_of(item)}(...)"
             return FirmwareError(
@@ -223,7 +224,7 @@ class Tasks:
             raise KeyboardInterrupt(f"{error}{line_at(task)}") from None
 
     def _in_call(self, error: KernelError, line: str) -> KernelError:
-        """Return a mistake in a kernel with where and when the firmware called it."""
+        """Return a kernel's error, with where and when the firmware called it."""
         frame = "between two frames" if self.frame_index is None else f"frame {self.frame_index}"
         stage = "outside of stages" if self._calls.stage == REST else f"stage {self._calls.stage}"
         return KernelError(f"{error}\n    core {self._name}, {frame}, {stage}{line}")
