@@ -1,1 +1,1 @@
-"""Files: the cache on disk, what is written as a whole or not at all, and what users give to read."""
+"""Files: the cache on disk, files that are written completely or not at all, and files from users."""

@@ -1,7 +1,7 @@
-"""Drafts: what is written beside its place, and put there when it is complete.
+"""Drafts: files that are written beside their place, and moved there when complete.
 
-A draft is a folder with a lock on it for as long as its process lives. What a killed process left behind has no lock any
-more, and the next one that writes in the same folder removes it. Knows nothing of what is written.
+A draft is a folder that is locked as long as its process lives. What a killed process left behind is no longer locked, and the
+next process that writes in the same folder removes it. This module knows nothing about the content.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from bfsim.files.locks import lock_folder
 
 _PREFIX, _SUFFIX = ".bfsim-", ".draft"
 _NAME = re.compile(re.escape(_PREFIX) + r"\w{8}" + re.escape(_SUFFIX))
-"""Only such names, which nobody gives to anything else, are swept."""
+"""Only such names are swept, which nothing else has."""
 
 
 @contextmanager
 def draft_folder(where: Path) -> Iterator[Path]:
-    """Yield a new folder in `where` that goes away, with all that is still in it, at the end of the `with` block.
+    """Yield a new folder in `where`, which is removed with its contents at the end of the `with` block.
 
-    What killed processes left in `where` goes away at the beginning. Raises OSError where the system refuses.
+    First, remove what killed processes left in `where`. Raises OSError if the system refuses.
     """
     sweep(where)
     unnamed = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=where))
     lock = lock_folder(unnamed)
     folder = unnamed.with_name(unnamed.name + _SUFFIX)
-    unnamed.rename(folder)  # only now, with its lock on it, could it be swept
+    unnamed.rename(folder)  # only now, when it is locked, does it have a name that is swept
     try:
         yield folder
     finally:
@@ -43,10 +43,10 @@ def draft_folder(where: Path) -> Iterator[Path]:
 
 @contextmanager
 def growing_draft(path: Path, writing: Callable[[], AbstractContextManager[None]]) -> Iterator[IO[bytes]]:
-    """Yield a stream whose content takes its place at `path` on a clean exit of the `with` block; permissions are kept.
+    """Yield a stream whose content becomes the file at `path` on a clean exit of the `with` block. Permissions are kept.
 
-    After an error or Ctrl-C nothing is left of it, and a file that was at `path` before is untouched. What the system
-    says against writing goes through `writing`.
+    After an error or Ctrl-C, nothing is left of it, and an earlier file at `path` is untouched. The system's refusals to
+    write go through `writing`.
     """
     with ExitStack() as stack:
         with writing():
@@ -60,13 +60,13 @@ def growing_draft(path: Path, writing: Callable[[], AbstractContextManager[None]
                     shutil.copymode(path, draft)
                 draft.replace(path)
         finally:
-            # a full disk refuses what is still buffered; the draft goes away all the same
+            # a full disk refuses what is still buffered; the draft is removed all the same
             with suppress(OSError):
                 stream.close()
 
 
 def sweep(where: Path) -> None:
-    """Remove the drafts in `where` that no process holds any more; what cannot be removed stays."""
+    """Remove the drafts in `where` that no process holds any more. Those that cannot be removed stay."""
     with suppress(OSError):
         for folder in [each for each in where.iterdir() if _NAME.fullmatch(each.name)]:
             lock = lock_folder(folder)

@@ -1,4 +1,4 @@
-"""Locks on folders, held for as long as somebody has them open."""
+"""Locks on folders, held as long as a process has them open."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if sys.platform != "win32":  # elsewhere no folder can be locked
 
 
 def lock_folder(folder: Path) -> int | None:
-    """Open a folder and lock it, until what is returned is closed; None if another process holds it, or if it cannot be locked."""
+    """Open and lock a folder until the returned handle is closed. Return None if another process holds it or it cannot be locked."""
     if sys.platform == "win32":
         return None
     with suppress(OSError):

@@ -1,4 +1,4 @@
-"""What commands write beside their reports, told from files of the user by how it begins: those are never replaced."""
+"""The files that commands write besides their reports, recognised by how they begin: the user's own files are never replaced."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ JUNIT = re.compile(rb"<\?xml [^>]*>\s*<testsuites>\s*<testsuite name=\"bfsim che
 MARKDOWN = re.compile(rb"\*\*(\xe2\x9c\x85|\xe2\x9d\x8c) ")
 BENCHMARK = re.compile(rb'\[\s*(\]|\{\s*"name":)')
 TRACE = re.compile(rb"\n[\x80-\xff]*[\x00-\x7f]\x92\x03", re.DOTALL)
-"""A first packet of Perfetto's that holds others, compressed: its length, and the number of that field."""
+"""A first packet of Perfetto that holds others, compressed: its length, and the number of that field."""
 FLAME = re.compile(rb'\{"\$schema":\s*"https://www\.speedscope\.app/')
 WORK = re.compile(rb"PK\x03\x04.{26}run\.json", re.DOTALL)
 """A ZIP with that file first."""
@@ -21,7 +21,7 @@ _READ_BYTES = 4096
 
 
 def require_own(path: Path, output: re.Pattern[bytes]) -> None:
-    """Raise ConfigError if there is something at `path` that does not begin as an `output`: whoever forgets a FILE names another one."""
+    """Raise ConfigError if a file at `path` does not begin like an `output`: a user who forgets a FILE names another file."""
     if not path.exists():
         return
     try:

@@ -1,4 +1,4 @@
-"""Writing a file whole or not at all, and one after the other."""
+"""Writing a file completely or not at all, and one process at a time."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if sys.platform != "win32":
     import fcntl
 
 _STDOUT = Path("-")
-"""As many other programs have it."""
+"""Standard output, as in many other programs."""
 
 
 def require_place(path: Path) -> None:
-    """Raise ConfigError unless a file can be written at `path`: its folder exists and is writable, and what is there is a file."""
+    """Raise ConfigError unless a file can be written at `path`: its folder is writable, and nothing but a file is there."""
     require_name(path)
     if not path.parent.is_dir():
         raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
@@ -40,7 +40,7 @@ def require_name(path: Path) -> None:
 
 
 def require_apart(path: Path, others: Iterable[Path | None]) -> None:
-    """Raise ConfigError if one of the `others`, which a command reads or writes too, is the file at `path`."""
+    """Raise ConfigError if one of the `others`, which a command also reads or writes, is the file at `path`."""
     if _resolved(path) in {_resolved(each) for each in others if each}:
         raise ConfigError(
             f"{path} must be a file of its own to be written, not one that is read or written, too"
@@ -48,15 +48,15 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
 
 
 def write_text(path: Path, text: str | Iterable[str]) -> None:
-    """Write `text`, or its parts one after the other, to `path` as `write_bytes` does."""
+    """Write `text`, or its parts in sequence, to `path` as `write_bytes` does."""
     parts = [text] if isinstance(text, str) else text
     write_bytes(path, (legible(each).encode() for each in parts))
 
 
 def write_bytes(path: Path, content: Iterable[bytes]) -> None:
-    """Write `content` beside `path` first and then put it in its place; a link is followed, permissions are kept.
+    """Write `content` beside `path` first, and then move it there. Links are followed, and permissions are kept.
 
-    Raises ConfigError where the system refuses.
+    Raises ConfigError if the system refuses.
     """
     with growing_file(path) as stream, writing(path):
         stream.writelines(content)
@@ -64,9 +64,9 @@ def write_bytes(path: Path, content: Iterable[bytes]) -> None:
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Have other processes that change a file in `folder` wait until the end of the `with` block: what it reads of it, it may write back.
+    """Make other processes that change a file in `folder` wait until the end of the `with` block, which may read it and write it back.
 
-    Where a folder cannot be locked nobody waits.
+    If the folder cannot be locked, they do not wait.
     """
     if sys.platform == "win32":
         yield
@@ -82,14 +82,14 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 def growing_file(path: Path) -> AbstractContextManager[IO[bytes]]:
-    """Yield a stream whose content takes its place at `path` on a clean exit of the `with` block, as that of `write_bytes`."""
+    """Return a context of a stream whose content becomes the file at `path` on a clean exit, as with `write_bytes`."""
     require_place(path)
     return growing_draft(_resolved(path), partial(writing, path))
 
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turn what the system says against writing into a ConfigError."""
+    """Turn the system's refusal to write into a ConfigError."""
     try:
         yield
     except OSError as error:
@@ -97,7 +97,7 @@ def writing(path: Path) -> Iterator[None]:
 
 
 def _resolved(path: Path) -> Path:
-    """Return where a path leads; raise ConfigError for links in a circle and for what is no name.
+    """Return where a path leads. Raises ConfigError for links in a circle and for invalid names.
 
     Raises FileNotFoundError if the current folder was removed.
     """

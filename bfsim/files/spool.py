@@ -1,4 +1,4 @@
-"""What belongs to frames, kept outside of memory while a run goes on."""
+"""Data of frames, kept outside memory during a run."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from bfsim.errors import ConfigError
 
 
 class Spool(Mapping[int, bytes]):
-    """Bytes by the index of their frame, in a file that has no name and ends with the process.
+    """Bytes by the index of their frame, in a file that has no name and disappears with the process.
 
-    A context manager; raises ConfigError where there is no room for the file.
+    A context manager. Raises ConfigError if there is no room for the file.
     """
 
     def __init__(self) -> None:

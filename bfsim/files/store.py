@@ -1,12 +1,12 @@
-"""The cache on disk: compiled kernels, their costs and what else takes long to make, shared by every process of a user.
+"""The cache on disk: compiled kernels, their costs and other things that take long to make, shared by all processes of a user.
 
-An entry's name is a digest of everything it depends on. Files are written aside and renamed: two processes may start at
-once.
+An entry's name is a digest of everything that it depends on. Files are written aside and renamed, since two processes may
+start at once.
 
-Entries are run as they are, so nobody else may write them: the folder and each entry belong to the user alone, and an
-entry's checksum is that of its name and its contents.
+Entries are executed as they are, so nobody else may write them: the folder and each entry belong to the user alone, and an
+entry's checksum covers its name and its contents.
 
-Some of what takes long comes with bfsim, under such names too.
+Some of these things come with bfsim, also under such names.
 """
 
 from __future__ import annotations
@@ -34,33 +34,33 @@ from bfsim.files.locks import lock_folder
 CHECKSUM_BYTES = 32
 PRIVATE = 0o700
 KEPT = "kept"
-"""Folder of a package with what comes with bfsim."""
+"""Folder of a package with entries that come with bfsim."""
 
 
 def folder() -> Path:
-    """Where compiled kernels are kept: $BFSIM_CACHE_DIR, or the user's cache folder."""
+    """Return where compiled kernels are kept: $BFSIM_CACHE_DIR, or the user's cache folder."""
     return _path(os.environ.get("BFSIM_CACHE_DIR") or platformdirs.user_cache_dir("bfsim"))
 
 
 @cache
 def _path(name: str) -> Path:
-    """Return a folder by its name, in which nobody but a shell puts the home of `~`; a start asks for it hundreds of times."""
-    return Path(os.path.expanduser(name))  # noqa: PTH111  # `Path` raises for a user who is not there
+    """Return a folder by its name, with `~` expanded as a shell would. Starting up calls this hundreds of times."""
+    return Path(os.path.expanduser(name))  # noqa: PTH111  # `Path` raises for a user who does not exist
 
 
 def can_keep() -> bool:
-    """Return whether the cache can be written, and be read again."""
+    """Return whether the cache can be written and read again."""
     place = _trusted(folder())
     return place is not None and _is_writable(place)
 
 
 def load(name: str) -> bytes | None:
-    """Return the entry `name`, or None when there is none, it is damaged, or another user may have written it."""
+    """Return the entry `name`, or None if there is none, it is damaged, or another user may have written it."""
     place = _trusted(folder())
     if place is None:
         return None
     try:
-        with FileIO(f"{place}/{name[:2]}/{name}") as file:  # a start loads hundreds of them
+        with FileIO(f"{place}/{name[:2]}/{name}") as file:  # starting up loads hundreds of them
             if _stranger(os.fstat(file.fileno())):
                 return None
             data = file.readall()
@@ -71,20 +71,20 @@ def load(name: str) -> bytes | None:
 
 
 def save(name: str, body: bytes) -> None:
-    """Keep `body` under `name`. A cache that cannot be written is no error; the next start compiles again, and that is told."""
+    """Keep `body` under `name`. A cache that cannot be written is no error: a warning says that the next start compiles again."""
     place = _trusted(folder())
     if place is None or not _is_writable(place):
         return
     try:
         _write(place / name[:2], name, _checksum(name, body) + body)
-    except FileNotFoundError:  # somebody empties it
+    except FileNotFoundError:  # another process is emptying the cache
         pass
     except OSError as error:
         _tell_refusal(place, str(error.strerror))
 
 
 def _write(place: Path, name: str, data: bytes) -> None:
-    """Write a file as a whole, or not at all."""
+    """Write a file completely or not at all."""
     place.mkdir(mode=PRIVATE, exist_ok=True)
     handle, aside = tempfile.mkstemp(dir=place)
     try:
@@ -98,7 +98,7 @@ def _write(place: Path, name: str, data: bytes) -> None:
 
 @contextmanager
 def claimed() -> Iterator[bool]:
-    """In the `with` block, and until all processes that are forked in it end, be the one who fills the cache ahead, unless another process is."""
+    """Yield whether this process fills the cache ahead: only one does, until the `with` block and all processes forked in it end."""
     place = _trusted(folder())
     lock = lock_folder(place) if place is not None and _is_writable(place) else None
     try:
@@ -109,7 +109,7 @@ def claimed() -> Iterator[bool]:
 
 
 def kept(name: str, made: Callable[[], Any]) -> Any:
-    """Return the data that are kept under `name`, or that are `made` now and kept: as JSON has them, tuples as lists."""
+    """Return the data kept under `name`, or `made` and kept now, as JSON returns them: tuples as lists."""
     found = load(name)
     if found is None:
         found = json.dumps(made(), separators=(",", ":")).encode()
@@ -118,21 +118,21 @@ def kept(name: str, made: Callable[[], Any]) -> Any:
 
 
 def shipped(package: str, name: str) -> bytes | None:
-    """Return what comes with bfsim in a package, under a digest of what it was made of; None if nothing was made of that."""
+    """Return what comes with bfsim in a package under a digest of its source, None if there is nothing for that source."""
     file = files(package) / KEPT / name
     return zlib.decompress(file.read_bytes()) if file.is_file() else None
 
 
 def _checksum(name: str, body: bytes) -> bytes:
-    """Return the checksum of an entry, which holds under its own name alone."""
+    """Return the checksum of an entry, which is valid only under its own name."""
     return hashlib.sha256(f"{name}\0".encode() + body).digest()
 
 
 @cache
 def _trusted(place: Path) -> Path | None:
-    """Return the cache's folder, which is made if it is not there; None, after a warning, if there is none, or others can write in it.
+    """Return the cache's folder, creating it if necessary. Return None, after a warning, if there is none or others can write in it.
 
-    The folders above it are not asked: who can put another folder in its place cannot make the user its owner.
+    The folders above are not checked: whoever can replace the folder by another cannot make the user its owner.
     """
     try:
         place.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
@@ -150,7 +150,7 @@ def _trusted(place: Path) -> Path | None:
 
 @cache
 def _is_writable(place: Path) -> bool:
-    """Return whether the user can write to the cache's folder; otherwise after a warning."""
+    """Return whether the user can write to the cache's folder. Warn if not."""
     if os.access(place, os.W_OK | os.X_OK):
         return True
     _warn(place, "be writable: every start compiles what is not in it; `chmod u+w` makes it so, and ")
@@ -164,7 +164,7 @@ def _tell_refusal(place: Path, why: str) -> None:
 
 
 def _warn(place: Path, must: str) -> None:
-    """Warn of what the cache's folder must be."""
+    """Warn about what the cache's folder must be."""
     warnings.warn(
         f"the kernel cache {shown(str(place))} must {must}BFSIM_CACHE_DIR names another one",
         BfsimWarning,
@@ -173,8 +173,8 @@ def _warn(place: Path, must: str) -> None:
 
 
 def _stranger(found: os.stat_result) -> str:
-    """Say who else can write to a file or folder; nothing if only this user can."""
-    if os.name != "posix":  # elsewhere modes say nothing of that
+    """Say who else can write to a file or folder, or nothing if only this user can."""
+    if os.name != "posix":  # elsewhere, modes say nothing about that
         return ""
     if found.st_uid != os.geteuid():
         return f"it belongs to the user with the number {found.st_uid}"

@@ -1,4 +1,4 @@
-"""What is wrong with a value that pydantic refuses, as bfsim says it."""
+"""What is wrong with a value that pydantic refuses, in bfsim's words."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def key_of(place: Iterable[int | str]) -> str:
 
 
 def wrong_value(found: ErrorDetails) -> str:
-    """Return what a value must be, and is not: a list is one, whatever Python makes of it."""
+    """Return what a value must be and is not. A list is called a list, whatever Python type it becomes."""
     if found["type"] == "missing":
         return "must be there"
     must_be = re.sub(r"^\w+ should ", "must ", found["msg"]).partition(" after validation")[0]

@@ -1,1 +1,1 @@
-"""The simulated machine: a folder per block of the chip's diagram; `board` wires them. Only here is SimPy used."""
+"""The simulated machine: a folder per block of the chip's diagram, wired by `board`. SimPy is used only here."""

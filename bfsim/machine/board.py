@@ -57,7 +57,7 @@ from bfsim.trace import BoardRecord, FrameRecord, Later
 
 
 class Fidelity(StrEnum):
-    """How the buses are played: in compiled code, runs of words at once; or every transaction an event, which is slow."""
+    """How the buses are played: in compiled code, runs of words at once; or with an event for every transaction, which is slow."""
 
     FAST = "fast"
     DETAILED = "detailed"
@@ -65,11 +65,11 @@ class Fidelity(StrEnum):
 
 @dataclass
 class Board:
-    """A board with firmware in it, ready to run once. `devices`: at the other ends of peripherals, by the names of these.
+    """A board with firmware in it, ready to run once. `devices` are at the other ends of peripherals, by the peripherals' names.
 
-    `before_call` is told of each call of a kernel before it runs, `in_first_frame` of those of the first frame.
-    `ahead`: the progress of its cores, which run ahead unless they must not, or this is None. `core`: makes what firmware gets of a
-    core's parts.
+    The functions in `before_call` are called before each call of a kernel, those of `in_first_frame` only in the first frame.
+    `ahead` is the progress of its cores, which run ahead unless they must not, or this is None. `core` makes the firmware's object
+    from a core's parts.
     """
 
     spec: BoardSpec
@@ -120,19 +120,19 @@ class Board:
 
     @property
     def owners_of_memory(self) -> list[tuple[str, int]]:
-        """Name and bytes of each owner of memory; what belongs to no buffer has no name."""
+        """Name and bytes of each owner of memory. Memory that belongs to no buffer has no name."""
         return [(each.buffer, each.nbytes) for each in self._bus.owners]
 
     @property
     def is_bound_to_placement(self) -> bool:
-        """Whether what is accessed depends on where everything lies: where there is a cache, or a stack outside of L1."""
+        """Whether accesses depend on where everything lies: if there is a cache, or a stack outside L1."""
         return any(each.data or each.code for each in self._caches.values()) or any(
             self._stack_outside_l1(core) is not None for core in self.spec.chip.cores
         )
 
     @property
     def routines_outside(self) -> list[tuple[str, str]]:
-        """Core and name of each routine outside of L1."""
+        """Core and name of each routine outside L1."""
         return [(core, routine) for core in self.spec.chip.cores for routine in self._code_outside_l1(core)]
 
     def run(
@@ -143,9 +143,9 @@ class Board:
         on_time: OnTime | None = None,
         on_spans: OnSpans | None = None,
     ) -> BoardRecord:
-        """Play `pictures` until they end or the user interrupts, telling whoever listens.
+        """Play `pictures` until they end or the user interrupts, and tell the listeners.
 
-        Raises DeadlockError when the cores block each other.
+        Raises DeadlockError if the cores block each other.
         """
         calls: dict[str, CallCache] = {}
         frames = FinishedFrames(self.main_loops, calls, on_frame)

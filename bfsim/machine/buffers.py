@@ -1,4 +1,4 @@
-"""The buffers of the firmware, and the size of the pictures that it declares them for."""
+"""The buffers of the firmware, and the picture size that it declares them for."""
 
 from __future__ import annotations
 
@@ -82,4 +82,4 @@ class Buffer:
 
 
 Buffers = Mapping[str, Sequence[Buffer]]
-"""The buffers of each core, and under "shared" those of both."""
+"""The buffers of each core, with those of both cores under "shared"."""

@@ -20,7 +20,7 @@ ALIGN_BYTES = 4
 
 @once
 def code_symbols(main: Main, processor: str | None, build: Build) -> Sequence[Symbol]:
-    """Return a symbol for every kernel of a core's main loop, callees included, each once.
+    """Return one symbol for every kernel of a core's main loop, including callees.
 
     Library routines (division, floats) and the main loop itself are not counted.
     """
@@ -35,7 +35,7 @@ def code_symbols(main: Main, processor: str | None, build: Build) -> Sequence[Sy
 
 
 def object_file(name: str) -> str:
-    """Return the object file of a kernel or a buffer: each has one of its own, so that an LDF can place it apart."""
+    """Return the object file of a kernel or a buffer: each has its own, so that an LDF can place it separately."""
     stem = re.sub(r"\W", "_", name, flags=re.ASCII)
     return f"{stem}.doj"
 
@@ -43,7 +43,7 @@ def object_file(name: str) -> str:
 def code_records(
     link_map: LinkMap, processors: Mapping[str, str | None], regions: Sequence[Region]
 ) -> tuple[CodeRecord, ...]:
-    """Return where the code of each core went; `processors`: the names of the cores in the LDF."""
+    """Return where the code of each core went. `processors` are the names of the cores in the LDF."""
     free = {segment.name: segment.free_bytes for segment in link_map.segments}
     found: dict[tuple[str, str], list[Placement]] = {}
     for core, processor in processors.items():
@@ -70,7 +70,7 @@ def code_records(
 def code_outside_l1(
     link_map: LinkMap, processor: str | None, regions: Sequence[Region], memories: Memories
 ) -> dict[str, tuple[int, int]]:
-    """Return (offset in the arena, bytes) of every routine of a processor that lies in L2 or SDRAM, by its symbol."""
+    """Return (offset in the arena, bytes) of every routine of a processor in L2 or SDRAM, by symbol."""
     return {
         placed.symbol.name: (memories.offset_of(placed.address, placed.symbol.nbytes), placed.symbol.nbytes)
         for placed in link_map.placements

@@ -1,4 +1,4 @@
-"""The frames of a run that every core has finished, each as one record."""
+"""The frames that every core of a run has finished, one record for each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.trace import FrameRecord
 
 
 class FinishedFrames:
-    """`records` of the frames that are done; `seen` in each, by its index, until that was told."""
+    """`records` of the finished frames, and what was `seen` in each, by index, until that has been told."""
 
     def __init__(
         self,
@@ -20,7 +20,7 @@ class FinishedFrames:
         calls: Mapping[str, CallCache],
         on_frame: Callable[[FrameRecord], None] | None,
     ) -> None:
-        """`loops`, `calls`: of each core; `on_frame`: told each record."""
+        """`loops` and `calls` are by core. `on_frame` is called with each record."""
         self.records: list[FrameRecord] = []
         self.seen: list[tuple[int, tuple[Seen, ...]]] = []
         self._loops = loops

@@ -1,4 +1,4 @@
-"""Who is told how a run goes on, while it does: of frames, of what was seen in them, of time, and of the timeline."""
+"""The listeners of a run in progress: to frames, to what was seen in them, to time, and to the timeline."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from bfsim.trace import FrameRecord
 
 OnFrame = Callable[[FrameRecord], None]
 OnSeen = Callable[[int, tuple[Seen, ...]], None]
-"""Told the index of each frame and what its cores saw, if the firmware has a view."""
+"""Called with the index of each frame and what its cores saw, if the firmware has a view."""
 OnTime = Callable[[float], None]
-"""Told now and then the simulated time, in seconds."""
+"""Called now and then with the simulated time, in seconds."""
 OnSpans = Callable[[Sequence[Span]], None]
-"""Told again and again what the cores and devices did since."""
+"""Called repeatedly with what the cores and devices did since the last call."""
 
-STEPS_TOLD = 2048  # events between two times that are told
+STEPS_TOLD = 2048  # events between two calls of OnTime
 SPANS_TOLD = 256
-"""Spans are told so many at a time, or some more: few enough to be gone before Python's garbage collector looks at them."""
+"""Spans are told in batches of at least this size: small enough to be gone before Python's garbage collector looks at them."""
 
 
 class Announcer:
-    """Tells the listeners of one run, between its events and outside of the firmware: what fails in them is no fault of it."""
+    """Tells the listeners of one run, between its events and outside the firmware, so that their failures are not blamed on it."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class Announcer:
             bus.records.use(env.timeline)
 
     def tell_step(self) -> None:
-        """Tell what an event brought, if it is time."""
+        """Tell what an event brought, if it is time to."""
         self._steps += 1
         if self._on_time and self._steps % STEPS_TOLD == 0:
             self._on_time(float(self._env.tick / self._clocks.tick_hz))
@@ -63,19 +63,19 @@ class Announcer:
             self._tell_spans(timeline)
 
     def tell_seen(self) -> None:
-        """Tell what was seen in each frame that is done, as a whole: a frame with a record has been told, too."""
+        """Tell what was seen in each finished frame, uninterrupted, so that every recorded frame is told."""
         seen = self._frames.seen
         while seen and self._on_seen:
             with uninterrupted():
                 self._on_seen(*seen.pop(0))
 
     def tell_end(self) -> None:
-        """Tell the last of what happened: the run is over."""
+        """Tell the rest of what happened: the run is over."""
         if timeline := self._env.timeline:
             self._tell_spans(timeline, is_over=True)
 
     def _tell_spans(self, timeline: Timeline, *, is_over: bool = False) -> None:
-        """Tell what happened since the last time, or the last of it when the run is over."""
+        """Tell what happened since the last time, or all the rest when the run is over."""
         assert self._on_spans, "there is no timeline without it"
         now = self._env.tick
         with uninterrupted():

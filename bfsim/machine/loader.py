@@ -1,4 +1,4 @@
-"""The loader: lays the firmware's buffers out where the linker placed them, and knows whose memory is whose."""
+"""The loader: lays out the firmware's buffers where the linker placed them, and knows who owns which memory."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Rows = tuple[Row, ...]
 
 
 class LoadedBuffers:
-    """The buffers of a firmware in the memories of a board. `of`: those that each core knows by name, as rows."""
+    """The buffers of a firmware in the memories of a board. `of` has the buffers that each core knows, by name, as rows."""
 
     def __init__(
         self,
@@ -31,7 +31,7 @@ class LoadedBuffers:
         memories: Memories,
         owners: MemoryOwners,
     ) -> None:
-        """`owners`: told who owns which memory from now on. Raises FirmwareError for firmware of other cores."""
+        """Registers every buffer with `owners`. Raises FirmwareError if the firmware is for other cores."""
         require_cores(firmware, spec)
         self._cores = spec.chip.cores
         self._firmware = firmware
@@ -49,11 +49,11 @@ class LoadedBuffers:
         self.handed_over = frozenset(
             each.name for each in firmware.buffers(size).get("shared", ()) if each.handed_over
         ) - {firmware.camera}
-        """The shared buffers that one core works on at a time."""
+        """The shared buffers that only one core at a time works on."""
         self.of: dict[str, dict[str, Rows]] = {core: shared | placed.get(core, {}) for core in self._cores}
 
     def only_of(self, core: str) -> frozenset[str]:
-        """Return the buffers that a core works on alone: no other core knows them, and no camera writes them."""
+        """Return the buffers that only this core works on: no other core knows them, and no camera writes them."""
         return frozenset(self._own_names[core] - {self._firmware.camera})
 
     def declared(self, core: str, size: FrameSize) -> dict[str, Buffer]:
@@ -62,7 +62,7 @@ class LoadedBuffers:
         return {each.name: each for owner in ("shared", core) for each in buffers.get(owner, ())}
 
     def frame_buffers(self) -> list[Pair]:
-        """Split the camera buffer of each core into frames; frame n of every core makes pair n."""
+        """Split the camera buffer of each core into frames. Frame n of every core makes pair n."""
         name, height, line_nbytes = self._firmware.camera, self._size.height_px, 2 * self._size.width_px
         rows = {core: self.of[core].get(name, ()) for core in self._cores}
         lengths = {len(each) for each in rows.values()}
@@ -85,7 +85,7 @@ class LoadedBuffers:
 
 
 def _own(placed: Mapping[str, Mapping[str, Sequence[Row]]], owners: MemoryOwners) -> Iterator[BufferRecord]:
-    """Let every buffer own its memory; yield its record."""
+    """Let every buffer own its memory, and yield its record."""
     declared = Tally(name for buffers in placed.values() for name in buffers)
     for owner, buffers in placed.items():
         for name, rows in buffers.items():

@@ -13,7 +13,7 @@ from bfsim.machine.program import Main
 
 
 class MainLoop:
-    """What `main` does with a core. `is_done`: whether it has ended."""
+    """The function `main` at work on a core. `is_done` says whether it has ended."""
 
     def __init__(self, parts: Parts, core: Core, main: Main) -> None:
         self.pictures = parts.pictures
@@ -42,10 +42,10 @@ class MainLoop:
         self.is_done = True
 
     def describe_wait(self) -> str:
-        """Say what the core waits for and where in the firmware."""
+        """Say what the core waits for, and where in the firmware."""
         return f"core {self._core.name} has ended" if self.is_done else self._parts.tasks.describe_wait()
 
     @property
     def forgotten_wait(self) -> str:
-        """Which wait the main loop has never begun, in words; empty if none."""
+        """The wait that the main loop has never begun, in words, empty if none."""
         return self._parts.progress.waits.forgotten()

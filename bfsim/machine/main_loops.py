@@ -1,4 +1,4 @@
-"""The main loops of the cores, played side by side until they end, or until nothing lets a core go on any more."""
+"""The main loops of the cores, played side by side until they end, or until nothing can let a core go on."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from bfsim.machine.simulation import Simulation
 
 
 class MainLoops:
-    """One main loop a core. `shared`: what they wait for each other with."""
+    """One main loop per core. `shared` has the objects with which they wait for each other."""
 
     def __init__(
         self,
@@ -36,14 +36,14 @@ class MainLoops:
         self.play_until(self._env.all_of([self._env.process(each.play()) for each in self._loops.values()]))
 
     def play_until(self, event: simpy.Event) -> None:
-        """Let time pass until `event`, or until nothing can happen any more that lets a core go on."""
+        """Let time pass until `event`, or until nothing can let a core go on."""
         with suppress(simpy.core.EmptySchedule):
             while not (event.processed or (self._turns and self._is_deadlock())):
                 self._env.step()
                 self._announcer.tell_step()
 
     def _is_deadlock(self) -> bool:
-        """Whether every core has ended or waits for another one, whatever DMA and cameras go on doing."""
+        """Whether every core has ended or waits for another one, even if DMA and cameras go on."""
         return all(
             each.is_done or (name in self._turns and not self._turns[name].triggered)
             for name, each in self._loops.items()
@@ -52,8 +52,8 @@ class MainLoops:
     def check_end(self, frames: int, *, has_more: bool) -> None:
         """Raise an error unless both main loops have ended, with the same `frames`, and with all of them.
 
-        `has_more`: whether the recording has. Raises DeadlockError when the cores block each other, with
-        the wait that was never begun: it may be why.
+        `has_more` says whether the recording has more. Raises DeadlockError if the cores block each other, and names
+        a wait that was never begun, which may be why.
         """
         if not all(each.is_done for each in self._loops.values()):
             waits = [each.describe_wait() for each in self._loops.values()]

@@ -1,4 +1,4 @@
-"""The memories themselves: one host array, the arena, that stands for all memory of the chip, and the rows placed in it."""
+"""The memories: one host array, the arena, which stands for all memory of the chip, and the rows placed in it."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ REGISTERS_NBYTES = 64  # room for the longest descriptor
 class Row:
     """One row of a buffer where the linker put it. A row is the unit of DMA and the argument of kernels.
 
-    Kernels see its elements in `array`, DMA its bytes from `offset` in the arena. A main loop may read and write single elements of
-    `array`, `row.array[0] = 3`, which takes no cycles.
+    Kernels see its elements in `array`, DMA its bytes from `offset` in the arena on. A main loop may read and write single elements of
+    `array`, as in `row.array[0] = 3`, which takes no cycles.
     """
 
     __slots__ = ("address", "array", "buffer", "memory", "nbytes", "offset")
@@ -39,7 +39,7 @@ class Row:
 
     @property
     def octets(self) -> memoryview:
-        """Its bytes, to be read and written."""
+        """Its bytes, readable and writable."""
         return self.array.view(np.uint8).data
 
     @property
@@ -48,14 +48,14 @@ class Row:
         return self.memory.startswith("CORE")
 
     def __getitem__(self, where: object) -> NoReturn:
-        """Raise FirmwareError: elements and parts of a row have names of their own."""
+        """Raise FirmwareError: there are other ways to elements and parts of a row."""
         raise FirmwareError(
             f"a row of {self.buffer} must be handed to kernels whole, or as a part of it, `core.part([row], first, count)[0]`; "
             "`row.array[0]` is one of its elements, for which a core takes no cycles"
         )
 
     def __setitem__(self, where: object, value: object) -> NoReturn:
-        """Raise FirmwareError: kernels write rows, which takes their cycles."""
+        """Raise FirmwareError: kernels write rows, which costs cycles."""
         raise FirmwareError(
             f"a row of {self.buffer} must be written by a kernel, or by a DMA, not with `row[...] =`; `row.array[0] = 3` sets one of "
             "its elements, for which a core takes no cycles"
@@ -66,14 +66,14 @@ class Row:
 
 
 class Memories:
-    """All memories of one board, zeroed. What is never touched costs the host nothing; others may have them at addresses of their own, too.
+    """All memories of one board, zeroed. Untouched memory costs the host nothing. Others may map the arena at their own addresses, too.
 
-    In the arena SDRAM comes first, then L2, then what cameras and links keep of the world outside and the registers that
-    descriptors are fetched into, then the cores' own.
+    In the arena, SDRAM comes first, then L2, then the outside data of cameras and links and the registers that descriptors
+    are fetched into, then the cores' own memories.
     """
 
     def __init__(self, board: BoardSpec, outside_nbytes: int = 0) -> None:
-        """`outside_nbytes`: room for pictures and messages on their way in or out."""
+        """`outside_nbytes` is the room for pictures and messages on their way in or out."""
         self._regions = board.chip.regions
         self.first: dict[str, int] = {}
         """Offset of each region's first byte in the arena, by name."""
@@ -94,18 +94,18 @@ class Memories:
         self.arena: NDArray[np.uint8] = np.frombuffer(mmap(-1, end), np.uint8)
 
     def bytes_from(self, offset: int, nbytes: int) -> NDArray[np.uint8]:
-        """Return `nbytes` of the arena from `offset`, to be read and written."""
+        """Return `nbytes` of the arena from `offset` on, readable and writable."""
         return self.arena[offset : offset + nbytes]
 
     def offset_of(self, address: int, nbytes: int) -> int:
-        """Return where in the arena the chip's `address` is. LinkError where the board has no data memory there."""
+        """Return where in the arena the chip's `address` is. Raises LinkError if the board has no data memory there."""
         region = region_of(address, nbytes, self._regions)
         if region.name not in self.first:
             raise LinkError(f"0x{address:08X} must be in data memory of the board, not in {region.name}")
         return self.first[region.name] + address - region.start
 
     def place(self, buffer: Buffer, placement: Placement) -> tuple[Row, ...]:
-        """Lay `buffer` out where the linker placed it, with its initial contents, and return its rows."""
+        """Lay out `buffer` where the linker placed it, with its initial contents, and return its rows."""
         region = region_of(placement.address, buffer.nbytes, self._regions)
         offset = self.offset_of(placement.address, buffer.nbytes)
         grid = (
@@ -118,7 +118,7 @@ class Memories:
         return self._rows(buffer.name, region.name, placement.address, offset, grid)
 
     def overlay(self, rows: Sequence[Row], element: Number, columns: int) -> tuple[Row, ...]:
-        """Return the memory of all `rows` of a buffer as rows of `columns` elements; what is left over is in none."""
+        """Return the memory of all `rows` of a buffer as rows of `columns` elements, leaving out any remainder."""
         if not isinstance(element, Number):
             raise FirmwareError(f"a row over a buffer must have elements such as u8, not {shown(element)}")
         first, nbytes = rows[0], sum(each.nbytes for each in rows)
@@ -141,7 +141,7 @@ class Memories:
 
 
 def _kind(region: Region) -> str:
-    """Part of the arena that a region belongs to: SDRAM, L2, L1, or none for code and for banks with nothing on them."""
+    """Return the part of the arena that a region belongs to: SDRAM, L2, L1, or none for code and empty banks."""
     if region.memory in ("SDRAM", "L2"):
         return region.memory
     return "L1" if region.memory in ("L1_DATA_A", "L1_DATA_B", "SCRATCH") else ""

@@ -1,4 +1,4 @@
-"""Which kernels the code of firmware names, wherever it keeps them: in its functions, classes, tables and modules. Nothing is run."""
+"""The kernels that the code of firmware names, wherever it keeps them: in functions, classes, tables and modules. Nothing is run."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from bfsim.kernel import Kernel
 from bfsim.process.once import once
 
 LIBRARIES = frozenset({*sys.stdlib_module_names, "bfsim", "numpy", "_pytest", "pytest"})
-"""Packages whose code names no kernel of a firmware; to look there would take time only. Each `assert` in a file of tests names pytest's."""
+"""Packages whose code names no kernel of a firmware, so looking there would waste time. Each `assert` in a test file names pytest."""
 
 PLAIN = frozenset({str, int, float, bool, bytes, type(None)})
-"""Types of what holds nothing: half of all that firmware names."""
+"""Types of objects that hold nothing: half of what firmware names."""
 WRAPPERS = (partial, cached_property, MethodType, staticmethod, classmethod, property)
 WRAPPED = ("__func__", "__self__", "fget", "fset", "func", "args", "keywords")
-"""Where these keep what they are made of."""
+"""The attributes in which these keep what they wrap."""
 
 
 @once
 def kernels_named(main: object) -> tuple[Kernel, ...]:
-    """Return the kernels that a function names, or that something named by it names, in the order of their names."""
+    """Return the kernels that a function names, directly or through something that it names, in the order of their names."""
     found: dict[Kernel, None] = {}
-    seen: dict[int, object] = {}  # kept, so that no other object gets its identity
+    seen: dict[int, object] = {}  # kept, so that no other object gets the same identity
     waiting: list[object] = [main]
     while waiting:
         each = waiting.pop()
@@ -40,7 +40,7 @@ def kernels_named(main: object) -> tuple[Kernel, ...]:
 
 
 def _named(each: object) -> Iterable[object]:
-    """Return what a thing that firmware may name names itself, or holds."""
+    """Return what an object that firmware may name itself names or holds."""
     if isinstance(each, WRAPPERS):
         return [getattr(each, name, None) for name in WRAPPED]
     if isinstance(each, Mapping):
@@ -65,7 +65,7 @@ def _held(each: object) -> Iterator[object]:
 
 
 def _named_by(function: FunctionType) -> Iterator[Any]:
-    """Yield what the names in the code of a function stand for, as far as they are global, of a module, or bound in its closure."""
+    """Yield the values of the names in a function's code that are global, belong to a module, or are bound in its closure."""
     yield getattr(function, "__wrapped__", None)
     yield from function.__defaults__ or ()
     yield from (function.__kwdefaults__ or {}).values()
@@ -84,7 +84,7 @@ def _named_by(function: FunctionType) -> Iterator[Any]:
 
 
 def _content(cell: Any) -> object:
-    """Return what a cell of a closure holds; one that nothing was bound to yet holds nothing."""
+    """Return what a cell of a closure holds, None if nothing is bound to it yet."""
     try:
         return cell.cell_contents
     except ValueError:

@@ -1,4 +1,4 @@
-"""Memory straight from the system, of which only what is touched takes room."""
+"""Memory straight from the operating system: only touched pages take up room."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 
 def zeros(count: int) -> NDArray[np.int64]:
-    """Return `count` words straight from the system, which clears those small pages of them that are touched.
+    """Return `count` words straight from the operating system, which clears small pages as they are touched.
 
-    np.zeros asks for pages of 2 MB, or clears all words itself where the process has freed as much before: that took each further board
+    np.zeros asks for pages of 2 MB, or clears all words itself if the process has freed as much before. That cost each further board
     of a process 10 ms, and the process 100 MB.
     """
     pages = mmap(-1, 8 * count, MAP_PRIVATE | MAP_ANONYMOUS)
-    with suppress(OSError):  # of a system that has no large ones
+    with suppress(OSError):  # on a system without large pages
         pages.madvise(MADV_NOHUGEPAGE)
     return np.frombuffer(pages, np.int64)

@@ -1,4 +1,4 @@
-"""What firmware hands to the machine: its main loops, its buffers, its devices and the rows of its budget."""
+"""What firmware gives to the machine: its main loops, its buffers, its devices and the rows of its budget."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 Main = Callable[["Core"], Generator[Any, Any, None]]
 View = Callable[["Readout"], Seen | None]
-"""What a core has in memory at the end of a frame → what it saw; None if there is nothing to show."""
+"""A core's memory at the end of a frame → what the core saw, None if there is nothing to show."""
 
 
 @dataclass(frozen=True, slots=True)
 class SourcePixels:
-    """Where each pixel of a rectified picture comes from: int32 rows and columns of shape (height, width), -1 for nowhere."""
+    """The source of each pixel of a rectified picture: int32 rows and columns of shape (height, width), -1 for none."""
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
 
 
 class Geometry(Protocol):
-    """Where the two cameras are: what a `bfsim.recording.StereoGeometry` says; height and tilt are None where unknown."""
+    """The positions of the two cameras, as in `bfsim.recording.StereoGeometry`. Height and tilt are None if unknown."""
 
     @property
     def focal_px(self) -> float:
@@ -41,7 +41,7 @@ class Geometry(Protocol):
 
     @property
     def baseline_mm(self) -> float:
-        """Distance between the optical centres; 0 where one camera feeds both sides."""
+        """Distance between the optical centres, 0 if one camera feeds both sides."""
 
     @property
     def height_mm(self) -> float | None:
@@ -49,15 +49,15 @@ class Geometry(Protocol):
 
     @property
     def tilt_deg(self) -> float | None:
-        """How far the cameras look down."""
+        """Angle by which the cameras look down."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
-    """What a recording knows of its cameras.
+    """What a recording knows about its cameras.
 
-    `sources`: the source pixels of each core's camera, none where it is rectified. `geometries`: the geometry, none
-    where the recording does not say. `size`: that of the recorded pictures, None where nobody says.
+    `sources` are the source pixels of each core's camera, missing if it is rectified. `geometries` holds the geometry, or
+    nothing if the recording has none. `size` is the size of the recorded pictures, None if unknown.
     """
 
     size: FrameSize | None = None
@@ -97,7 +97,7 @@ _PARTS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
         lambda value: isinstance(value, (tuple, list)) and _are_words(value),
     ),
 }
-"""What each part of a firmware must be; otherwise it fails long after, where nothing tells of it."""
+"""What each part of a firmware must be. Otherwise it would fail much later, without a hint at the cause."""
 
 
 def _check_parts(firmware: Firmware) -> None:
@@ -108,7 +108,7 @@ def _check_parts(firmware: Firmware) -> None:
 
 
 def _check_rows(rows: Sequence[BudgetRow]) -> None:
-    """Raise FirmwareError for rows that no budget can have: each cycle would be counted twice, or in none."""
+    """Raise FirmwareError for rows that no budget can have: cycles would be counted twice, or not at all."""
     for row in rows:
         if not isinstance(row, BudgetRow):
             raise FirmwareError(f"rows must be of BudgetRow, not {shown(row)}")

@@ -1,8 +1,8 @@
 """SimPy's environment with time in whole ticks, which plays the bus up to each of its events.
 
-A word on a bus has no one who waits for it; only what it does to the bus matters to whoever comes next. So the bus is no
-process: before each event everything on it that comes earlier is played, and the end of a transfer becomes an event only
-if somebody waits for it.
+Nothing waits for a single word on a bus; only its effect on the bus matters to the next user. So the bus is no
+process. Before each event, everything earlier on the bus is played, and the end of a transfer becomes an event only
+if something waits for it.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from bfsim.machine.timeline import Timeline
 
 
 class Followed(Protocol):
-    """What keeps its own time behind the simulation's."""
+    """An object whose own time lags behind the simulation's."""
 
     @property
     def is_awaited(self) -> bool:
-        """Whether somebody waits for one of its ends."""
+        """Whether anything waits for one of its ends."""
 
     def play_until(self, tick: int) -> bool:
-        """Play up to `tick`; return True when it stopped at an end, whose event is on the queue."""
+        """Play up to `tick`. Return True if it stopped at an awaited end, whose event is on the queue."""
 
 
 END_OF_TIME = 1 << 62
@@ -37,7 +37,7 @@ class Simulation(simpy.Environment):
         super().__init__()
         self._bus: Followed | None = None
         self.timeline: Timeline | None = None
-        """What is told what happens when, if anybody wants to know."""
+        """The timeline that hears what happens when, if anyone wants to know."""
 
     def follow(self, bus: Followed) -> None:
         """Play `bus` up to each event from now on."""
@@ -49,11 +49,11 @@ class Simulation(simpy.Environment):
         return self._now  # type: ignore[return-value]  # only whole delays are ever scheduled
 
     def after(self, ticks: int) -> simpy.Timeout:
-        """Return the event that happens in so many ticks (as `timeout`, without its detour through a descriptor)."""
+        """Return the event after so many ticks (like `timeout`, without its detour through a descriptor)."""
         return simpy.Timeout(self, ticks)
 
     def trigger_at(self, event: simpy.Event, tick: int) -> None:
-        """Let `event` happen at `tick`, which is not over yet."""
+        """Let `event` happen at `tick`, which must not be over yet."""
         event._ok = True  # noqa: SLF001  # as simpy.Timeout does
         event._value = None  # noqa: SLF001
         self.schedule(event, delay=max(0, tick - self.tick))
@@ -61,17 +61,17 @@ class Simulation(simpy.Environment):
     def schedule(
         self, event: simpy.Event, priority: EventPriority = NORMAL, delay: simpy.core.SimTime = 0
     ) -> None:
-        """Put an event on the queue; but Ctrl-C, which SimPy would keep as the failure of a process, ends the simulation at once.
+        """Put an event on the queue. Ctrl-C, which SimPy would keep as the failure of a process, ends the simulation at once.
 
-        Until that failure had its turn, another core could begin what does not end. (To call SimPy's own for the rest takes as long as
-        an event does.)
+        Before that failure's turn came, another core could begin something endless. (Calling SimPy's own method for the rest takes as
+        long as an event.)
         """
         if not event._ok and isinstance(event._value, KeyboardInterrupt):  # noqa: SLF001  # the process has not happened yet
             raise event._value  # noqa: SLF001
         heappush(self._queue, (self._now + delay, priority, next(self._eid), event))
 
     def step(self) -> None:
-        """Play the bus up to the next event, or to an end before it that somebody waits for; then process the event."""
+        """Play the bus up to the next event, or to an awaited end before it; then process the event."""
         bus = self._bus
         if bus is not None and bus.is_awaited:
             while bus.play_until(self._queue[0][0] if self._queue else END_OF_TIME):  # type: ignore[arg-type]
@@ -79,5 +79,5 @@ class Simulation(simpy.Environment):
         super().step()
 
     def count_events(self) -> int:
-        """Return how many events were scheduled so far. Call it once, at the end: asking counts as one."""
+        """Return how many events were scheduled so far. Call this once, at the end: each call counts as an event."""
         return next(self._eid)

@@ -1,4 +1,4 @@
-"""The stack of a core, where it lies outside L1: compiled code spills to it, and its accesses then take their time."""
+"""The stack of a core if it lies outside L1: compiled code spills to it, and its accesses take their time."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from bfsim.linker import LinkMap
 from bfsim.machine.memories import Memories
 
 NAMED = "stack"
-"""[assumed] A reserve with this in its name is for the stack, as in the shipped LDFs and in VisualDSP++'s own."""
+"""[assumed] A reserve with this in its name is the stack, as in the shipped LDFs and in VisualDSP++'s own."""
 
 
 def stack_outside_l1(
     link_map: LinkMap, processor: str | None, regions: Sequence[Region], memories: Memories
 ) -> NDArray[np.uint8] | None:
-    """Return the memory of a processor's stack if it lies in L2 or SDRAM, or None: of several reserves the last one counts.
+    """Return the memory of a processor's stack if it lies in L2 or SDRAM, otherwise None. Of several reserves, the last counts.
 
-    Raises LinkError where it can be neither loaded nor stored.
+    Raises LinkError if it is in memory that cannot be loaded and stored.
     """
     found = [
         each

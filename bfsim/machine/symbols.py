@@ -32,8 +32,8 @@ def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
 
 
 def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) -> list[Symbol]:
-    """Return what the linker must place for pictures of `size`: buffers, and code as it is built."""
-    buffers = list(_of_buffers(firmware, size))  # first, for the size of code takes seconds to estimate
+    """Return what the linker must place for pictures of `size`: buffers, and code as `build` makes it."""
+    buffers = list(_of_buffers(firmware, size))  # first, because estimating the size of code takes seconds
     mains = firmware.mains.items()
     code = (each for owner, main in mains for each in code_symbols(main, PROCESSORS[owner], build))
     return [*code, *buffers]
@@ -67,7 +67,7 @@ def _of_buffers(firmware: Firmware, size: FrameSize) -> Iterator[Symbol]:
 
 
 def _called(firmware: Firmware, size: FrameSize) -> Buffers:
-    """Return the buffers of firmware whose code may have mistakes; a mistake is a FirmwareError with its line."""
+    """Return the firmware's buffers. A mistake in its code becomes a FirmwareError with the line."""
     try:
         buffers = firmware.buffers(size)
     except BfsimError as error:

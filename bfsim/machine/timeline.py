@@ -1,4 +1,4 @@
-"""What happens when, for whoever wants to know: cores and devices tell it, and nothing that they do depends on it."""
+"""What happens when, for anyone who wants to know. Cores and devices tell it, and nothing that they do depends on it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from bfsim.spans import NO_STALLS, Place, Span, SpanKind
 from bfsim.spans.columns import Ints, SpanColumns, Spans, Whats
 from bfsim.trace import REST, StallReason
 
-_span = Span._make  # half the time of a call of Span, and there are many
+_span = Span._make  # half the time of calling Span, and there are many
 _CALL = SpanKind.CALL
 _WAITS: dict[StallReason | None, tuple[SpanKind, str]] = {None: (SpanKind.IDLE, "idle")} | {
     reason: (SpanKind.STALL, reason.value) for reason in StallReason
@@ -16,23 +16,23 @@ _WAITS: dict[StallReason | None, tuple[SpanKind, str]] = {None: (SpanKind.IDLE, 
 
 
 class Timeline:
-    """The spans that were told since they were taken last."""
+    """The spans that were told since the last `take`."""
 
     def __init__(self, cclk_ticks: int) -> None:
         self.spans: list[Span] = []
-        """The last of them, told one by one."""
+        """The latest ones, told one by one."""
         self.whats = Whats()
         self._before: list[SpanColumns | Sequence[Span]] = []
         self._cclk_ticks = cclk_ticks
-        self._levels: dict[tuple[str, str], tuple[int, int]] = {}  # since when, and how high
+        self._levels: dict[tuple[str, str], tuple[int, int]] = {}  # since which cycle, and the value
 
     @property
     def count(self) -> int:
-        """How many they are."""
+        """Number of spans."""
         return len(self.spans) + sum(map(len, self._before))
 
     def take(self) -> Spans:
-        """Return the spans that were told since the last time."""
+        """Return the spans that were told since the last call."""
         parts, self._before, self.spans = [*self._before, self.spans], [], []
         return Spans(parts, self.whats)
 
@@ -51,13 +51,13 @@ class Timeline:
         value: int = 0,
         flow: int = 0,
     ) -> None:
-        """Tell what a device did; `value` and `flow` are as in `Span`."""
+        """Tell what a device did. `value` and `flow` are as in `Span`."""
         self.spans.append(
             _span((kind, where, name, begin_cclk, end_cclk, "", 0, NO_STALLS, value, flow, None))
         )
 
     def level(self, where: str, name: str, value: int, at_cclk: int) -> None:
-        """Note how high a level is from a cycle on, and tell how high it was until then; all levels begin at 0."""
+        """Note the value of a level from a cycle on, and tell its value until then. All levels begin at 0."""
         since_cclk, before = self._levels.get((where, name), (0, 0))
         if value != before:
             if at_cclk > since_cclk:
@@ -65,7 +65,7 @@ class Timeline:
             self._levels[where, name] = at_cclk, value
 
     def end(self, tick: int) -> None:
-        """Tell the levels as they are when the run is over."""
+        """Tell the final levels: the run is over."""
         at_cclk = self.cclk(tick)
         for (where, name), (since_cclk, value) in self._levels.items():
             if at_cclk > since_cclk:
@@ -77,7 +77,7 @@ class Timeline:
 
 
 class CoreTimeline:
-    """What one core does: calls, other work and waits fill its time without a gap, and so do the stages that it is in."""
+    """What one core does. Calls, other work and waits fill its time without a gap, and so do its stages."""
 
     def __init__(self, timeline: Timeline, core: str) -> None:
         self._timeline = timeline
@@ -86,11 +86,11 @@ class CoreTimeline:
         self._entered_cclk = 0
         self._frame_cclk = 0
         self.said: Place | None = None
-        """What the core's work is about from now on, as its firmware has said last."""
+        """What the core's work is about from now on, as its firmware said last."""
         self.place: Place | None = None
-        """What the work is about that is told."""
+        """What the work being told is about."""
         self.when_said: Callable[[Place | None], bool] | None = None
-        """Of a core that runs ahead: notes a place for what is told later; false if nothing is."""
+        """For a core that runs ahead: notes a place for later, and returns whether anything will be told later."""
 
     def say(self, place: Place | None) -> None:
         """Say what the core's work is about from now on."""
@@ -102,17 +102,17 @@ class CoreTimeline:
     def call(
         self, kernel: str, begin_cclk: int, issue_cclk: int, stall_cclk: Mapping[StallReason, int]
     ) -> None:
-        """Tell a call of a kernel, or of an instruction, that began at a cycle."""
+        """Tell a call of a kernel, or an instruction, that began at a cycle."""
         end_cclk = begin_cclk + issue_cclk + sum(stall_cclk.values())
         self._tell(_CALL, kernel, begin_cclk, end_cclk, issue_cclk, stall_cclk)
 
     def work(self, begin_cclk: int, cclk: int) -> None:
-        """Tell work that is no kernel's."""
+        """Tell work outside kernels."""
         if cclk:
             self._tell(SpanKind.WORK, "other work", begin_cclk, begin_cclk + cclk, cclk, NO_STALLS)
 
     def wait(self, reason: StallReason | None, begin_cclk: int, cclk: int, flow: int = 0) -> None:
-        """Tell a stall, or a wait of a core that has nothing to do without a `reason`; `flow`: of the transfer that ended it."""
+        """Tell a stall, or without a `reason` an idle wait. `flow` is that of the transfer that ended it."""
         if cclk:
             kind, name = _WAITS[reason]
             stalls = {reason: cclk} if reason else NO_STALLS
@@ -130,7 +130,7 @@ class CoreTimeline:
         )
 
     def number(self, kind: SpanKind, name: str) -> int:
-        """Return the number of what the core does in its present stage, for `tell`."""
+        """Return the number of something that the core does in its current stage, for `tell`."""
         return self._timeline.whats.number(kind, self._where, name, self._stage)
 
     def tell(self, spans: Ints, stalls: Ints, places: Sequence[Place | None]) -> None:
@@ -139,11 +139,11 @@ class CoreTimeline:
 
     @property
     def stage(self) -> str:
-        """The one that the core is in."""
+        """The core's current stage."""
         return self._stage
 
     def level(self, name: str, value: int, at_cclk: int) -> None:
-        """Note how high a level of the core's own is from a cycle on."""
+        """Note the value of one of the core's own levels from a cycle on."""
         self._timeline.level(self._where, name, value, at_cclk)
 
     def interrupt(self, source: str, begin_cclk: int, end_cclk: int) -> None:
@@ -161,7 +161,7 @@ class CoreTimeline:
         self._stage, self._entered_cclk = stage, at_cclk
 
     def end_frame(self, index: int, at_cclk: int) -> None:
-        """Tell the frame that ends at a cycle, and the part of its last stage."""
+        """Tell the frame that ends at a cycle, and its part of the last stage."""
         self.enter(self._stage, at_cclk)
         self._timeline.spans.append(
             Span(SpanKind.FRAME, self._where, f"frame {index}", self._frame_cclk, at_cclk, value=index)

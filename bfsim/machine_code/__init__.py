@@ -13,9 +13,9 @@ import llvmlite.binding as llvm
 
 
 class Effort(IntEnum):
-    """How much LLVM does for code to be fast.
+    """How much LLVM optimises.
 
-    Nothing; what makes registers of variables; that, and it looks for good instructions; what a compiler's -O1 does; all that it can.
+    Not at all; variables into registers; also better selection of instructions; as a compiler's -O1; as much as possible.
     """
 
     NONE = 0
@@ -32,7 +32,7 @@ SELECTION_LEVEL = {
     Effort.SOME: 2,
     Effort.ALL: 3,
 }
-"""How much LLVM does when it selects the host's instructions. At 0 that takes a sixth of the time."""
+"""LLVM's effort in selecting the host's instructions. Level 0 takes a sixth of the time."""
 
 
 def host_code(text: str, effort: Effort = Effort.ALL) -> bytes:
@@ -52,7 +52,7 @@ def host_code(text: str, effort: Effort = Effort.ALL) -> bytes:
 
 
 def _make_registers(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
-    """Turn variables on the stack into registers, and leave out what nobody reads."""
+    """Turn stack variables into registers, and remove values that nothing reads."""
     passes = llvm.create_new_module_pass_manager()
     passes.add_sroa_pass()
     passes.add_aggressive_dce_pass()
@@ -62,7 +62,7 @@ def _make_registers(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None
 
 
 def _simplify(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
-    """Simplify code and move out of loops what can be."""
+    """Simplify code and hoist what can be out of loops."""
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=1))
     builder.getModulePassManager().run(module, builder)
 
@@ -71,7 +71,7 @@ def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
     """Optimise for the host."""
     options = llvm.create_pipeline_tuning_options(speed_level=3)
     options.loop_vectorization = options.loop_unrolling = options.loop_interleaving = True
-    # it takes a fifth of the time to compile, most of it on counters, and kernels run no faster for it
+    # this takes a fifth of the compile time, most of it on counters, and makes kernels no faster
     options.slp_vectorization = False
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
@@ -85,10 +85,10 @@ def _host_machine(effort: Effort) -> llvm.TargetMachine:
 def _new_machine(effort: Effort) -> llvm.TargetMachine:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    # what has no line in a table of lines does not take that of what is before it
+    # instructions without a line in the line table do not inherit the previous one
     llvm.set_option("bfsim", "-use-unknown-locations=Enable")
-    # counts are used often, but nobody keeps their address: so those of a loop are in registers meanwhile, of code with up to some 70 of
-    # them; more would be moved from one place on the stack to another
+    # counts are used often, but no address of them is kept, so a loop's counts can be in registers: in code with up to some 70 of them;
+    # more would only be moved between places on the stack
     llvm.set_option("bfsim", "-capture-tracking-max-uses-to-explore=300")
     return llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
@@ -105,7 +105,7 @@ def _engine() -> llvm.ExecutionEngine:
 
 @cache
 def host() -> str:
-    """What machine code depends on beside its IR: LLVM and the host's processor."""
+    """Return what machine code depends on besides its IR: LLVM and the host's processor."""
     parts = (
         llvm.get_host_cpu_name(),
         llvm.get_host_cpu_features().flatten(),
@@ -129,17 +129,17 @@ def address_of(name: str) -> int:
 
 
 def loaded(code: bytes) -> llvm.ExecutionEngine:
-    """Add an object file to this process for as long as what is returned lives; its names are its own."""
+    """Add an object file to this process for as long as the returned engine lives. Its names do not clash with others."""
     engine = llvm.create_mcjit_compiler(
         llvm.parse_assembly(""), _new_machine(Effort.ALL)
-    )  # which ends with the engine
+    )  # the machine ends with the engine
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return engine
 
 
 METH_FASTCALL, METH_KEYWORDS, METH_NOARGS = 0x80, 0x02, 0x04
-"""CPython: a function gets its `self`, and the address of its arguments and their number; and the names of some of them; or has none."""
+"""CPython's flags: a function gets `self`, the address of its arguments and their number; also the names of some; or no arguments."""
 
 
 class _Method(ctypes.Structure):
@@ -165,6 +165,6 @@ def _new_function() -> Any:
 
 
 def python_function(address: int, bound: object, flags: int = METH_FASTCALL) -> Callable[..., Any]:
-    """Return machine code as a built-in function of Python, with the C interface of CPython: `bound` is its `self`."""
+    """Return machine code as a built-in function of Python, with the C interface of CPython and `bound` as its `self`."""
     made: Callable[..., Any] = _new_function()(ctypes.addressof(_method(address, flags)), bound, None)
     return made

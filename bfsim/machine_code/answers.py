@@ -1,6 +1,6 @@
-"""Built-in functions without arguments: machine code says by a number which of Python's objects is the answer, or Python is asked.
+"""Built-in functions without arguments: machine code returns the number of the Python object that is the answer, or asks Python.
 
-An answer may be one to `yield from`, which that has at once (`over`): a generator that only returns takes five times as long.
+An answer may be for `yield from`, which gets its result at once (`over`): a generator that only returns takes five times as long.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from bfsim.machine_code.calling import Block
 from bfsim.machine_code.native_code import native_code
 
 DEALLOC, ITER, ITERNEXT, AM_SEND = 52, 62, 63, 81
-"""CPython's numbers of a type's functions, in `typeslots.h`."""
+"""CPython's numbers of a type's functions, from `typeslots.h`."""
 NOT_BY_CALLS = 1 << 7
-"""CPython's flag of a type that Python cannot make objects of."""
+"""CPython's flag of a type that Python cannot instantiate."""
 VALUE_AT = object.__basicsize__
 OVER = f"""
 @PyExc_StopIteration = external global ptr
@@ -96,14 +96,14 @@ def _over() -> Callable[[object], Any]:
         _Slot(ITER, ctypes.cast(ctypes.pythonapi.PyObject_SelfIter, ctypes.c_void_p).value),
         _Slot(ITERNEXT, machine_code.address_of("bfsim_over_next")),
         _Slot(AM_SEND, machine_code.address_of("bfsim_over_send")),
-    )  # and one that is empty
+    )  # the fifth one is empty and ends the list
     spec = _Spec(b"bfsim.over", VALUE_AT + ctypes.sizeof(ctypes.c_void_p), 0, NOT_BY_CALLS, slots)
     made = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p)(("PyType_FromSpec", ctypes.pythonapi))
     return machine_code.python_function(machine_code.address_of("bfsim_over"), made(ctypes.addressof(spec)))
 
 
 def over(value: object) -> Generator[Any, Any, Any]:
-    """Return what `yield from` has `value` of at once, as often as that is asked for."""
+    """Return an object from which `yield from` gets `value` at once, any number of times."""
     made: Generator[Any, Any, Any] = _over()(value)
     return made
 
@@ -111,9 +111,9 @@ def over(value: object) -> Generator[Any, Any, Any]:
 def answering(
     address: int, bound: Sequence[int], answers: tuple[object, ...], other: Callable[[], Any]
 ) -> Callable[[], Any]:
-    """Return a function that calls the machine code at an address with the integers that are `bound`, of 64 bits.
+    """Return a function that calls the machine code at an address with the 64-bit integers in `bound`.
 
-    It returns the one of `answers` whose number that returns, or what `other()` does if it is negative.
+    It returns the one of `answers` whose number the machine code returns, or the result of `other()` if the number is negative.
     """
     block = Block(pack(f"{3 + len(bound)}q", address, id(answers), id(other), *bound))
     block.kept = answers, other
@@ -122,7 +122,7 @@ def answering(
 
 @cache
 def _caller(bound: int) -> int:
-    """Return the address of what calls a function with so many integers."""
+    """Return the address of code that calls a function with so many bound integers."""
     name, values = f"bfsim_answer_{bound}", [f"value.{number}" for number in range(bound)]
     words = [("function", "ptr"), ("answers", "ptr"), ("other", "ptr"), *((each, "i64") for each in values)]
     body = "".join(field(word, number, kind) for number, (word, kind) in enumerate(words))

@@ -1,7 +1,7 @@
-"""Calls of machine code that firmware asks for: found and made without Python in between, where a table knows them.
+"""Calls of machine code that firmware asks for: those in a table are found and made without Python in between.
 
-`ask(what, *arguments)` finds the call and makes it; what it leaves is yielded, and noted then (`going_on`). Both share what was asked for
-last (`ASKED`).
+`ask(what, *arguments)` finds the call and makes it. Its result is yielded, and the call is noted then (`going_on`). Both share the latest
+call (`ASKED`).
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from bfsim.machine_code.calling import Block
 from bfsim.machine_code.native_code import native_code
 
 LEFT, NOTE, BLOCK, NUMBER = range(4)
-"""Of what was asked for: the `id` of what it has left, 0 once that was yielded; the address of `int note(state, core, numbers, call)`, 0 if
-that is not to note it, or has returned 0 for it did not; that of the words of the call; and its number. The last three are those of a call
-that is found."""
+"""Words of the latest call: the `id` of its result, 0 once that was yielded; the address of `int note(state, core, numbers, call)`, 0 if that
+must not note the call or returned 0 because it did not; the address of the call's words; and its number. The last three are those of a
+found call."""
 ASKED = 4
 
 
 class Found(NamedTuple):
-    """What finds calls: the address of `int find(table, arguments, count, turn)`, its table, and the address of its turn.
+    """A finder of calls: the address of `int find(table, arguments, count, turn)`, its table, and the address of its turn.
 
-    It returns which word of the table the last three of ASKED begin with, 0 for none. It is asked while the word at `is_open` is not 0.
+    It returns the index in the table of the last three words of ASKED, 0 for none. It is used while the word at `is_open` is not 0.
     """
 
     find: int
@@ -36,7 +36,7 @@ class Found(NamedTuple):
 
 
 def words_of(*kinds: str) -> str:
-    """Return what loads words of the block that a function is bound to, each of a name and a type."""
+    """Return code that loads words, each with a type and a name, from the block that a function is bound to."""
     return "  %block = call ptr @PyBytes_AsString(ptr %self)\n" + "".join(
         field(name, number, kind) for number, (name, kind) in enumerate(each.split() for each in kinds)
     )
@@ -91,18 +91,18 @@ python:
 
 @cache
 def _add() -> None:
-    caller()  # which is called
+    caller()  # the module calls it
     machine_code.add(native_code(MODULE))
 
 
 def asking(asked: int, found: Found, other: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `ask`; it has `other` do what it cannot do itself."""
+    """Return `ask`, which leaves to `other` what it cannot do itself."""
     _add()
     return bound_to(ASK, (asked, *found, id(other)), other)
 
 
 def bound_to(name: str, words: Sequence[int], kept: object) -> Callable[..., Any]:
-    """Return a function by its name, bound to words."""
+    """Return the function with this name, bound to words."""
     block = Block(pack(f"{len(words)}q", *words))
     block.kept = kept
     return machine_code.python_function(machine_code.address_of(name), block)

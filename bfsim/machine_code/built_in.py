@@ -1,4 +1,4 @@
-"""Compiled functions as built-in ones of Python: these are called in a tenth of the time that ctypes takes."""
+"""Compiled functions as built-in functions of Python: calling these takes a tenth of the time of ctypes."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from bfsim.machine_code.native_code import native_code
 
 
 def built_in(address: int, taken: int, *bound: int, others_run: bool = False) -> Callable[..., int]:
-    """Return a function of `taken` integers that calls the machine code at an address with those that are `bound`, and then these.
+    """Return a function of `taken` integers that calls the machine code at an address with the `bound` integers, then with these.
 
-    It returns what that returns. All are of 64 bits. Nothing checks that it is given as many as it takes. `others_run`: whether other
-    threads have Python meanwhile, which takes longer.
+    It returns the result of the machine code. All integers have 64 bits. Nothing checks the number of arguments. With `others_run`,
+    other threads can run Python meanwhile, which takes longer.
     """
     words = pack(f"{1 + len(bound)}q", address, *bound)
     return machine_code.python_function(_caller(len(bound), taken, others_run=others_run), words)
@@ -36,7 +36,7 @@ def idle() -> Callable[..., None]:
 
 @cache
 def _caller(bound: int, taken: int, *, others_run: bool) -> int:
-    """Return the address of what calls a function with so many integers for Python."""
+    """Return the address of code that calls a function with so many integers for Python."""
     name = f"bfsim_call_{bound}_{taken}{'_others_run' * others_run}"
     rows = ["  %words = call ptr @PyBytes_AsString(ptr %self)", "  %function = load ptr, ptr %words"]
     for number in range(bound):

@@ -1,7 +1,7 @@
-"""The native function that calls machine code for Python: numbers are taken from its arguments, counts and a value are left in a `Work`.
+"""The native function that calls machine code for Python: it takes numbers from the arguments, and leaves counts and a value in a `Work`.
 
-What it is bound to (`self`) is words of 64 bits with all that it needs: HEAD of them, and behind these, of all numbers that are taken,
-their positions among Python's arguments, then the words where they are put, the kinds, and the least and the largest values.
+It is bound (as `self`) to 64-bit words with everything that it needs: HEAD of them, followed by columns for all numbers taken: their
+positions among Python's arguments, the words where they are put, their kinds, and their least and largest values.
 """
 
 from __future__ import annotations
@@ -16,32 +16,32 @@ from bfsim.machine_code.left import ACCESSES, INTERRUPTED, NO_ROOM, UNFIT, VALUE
 from bfsim.machine_code.native_code import native_code
 
 (
-    CALLED, DATA,  # what is called, and what it is told besides
+    CALLED, DATA,  # the function to call, and its data
     HANDED, GIVEN, TAKEN,  # where numbers are put; how many arguments Python must give, and how many of them are numbers
-    LOGGED, BEFORE, ROOM,  # the addresses of how many were logged, of how many had been before the call, and of how many can be; or 0
-    LEFT, COST, NAME, RESULT, SHIFT,  # what is returned, the address of its numbers, the name of its value, and what kind of one that is
-    REFUSE,  # what is called on failure
+    LOGGED, BEFORE, ROOM,  # addresses of the number of logged accesses, of that before the call, and of the most possible; or 0
+    LEFT, COST, NAME, RESULT, SHIFT,  # the object to return, the address of its numbers, its value's name, kind and unused upper bits
+    REFUSE,  # the function to call on failure
 ) = range(14)  # fmt: skip
 HEAD = 14
 ENTRY, BOUND, GET_VALUE, SET_VALUE = "bfsim_call", "bfsim_call_bound", "bfsim_get_value", "bfsim_set_value"
 SHORT_CCLK = 1_000_000
-"""[ours] A call that took no more cycles the last time is over in some 50 µs here: other threads wait for so long."""
+"""[ours] A call that took no more cycles the last time is over in some 50 µs here: other threads can wait that long."""
 
 
 class NumberKind(IntEnum):
-    """What number is taken from an argument of Python: an integer, or the bits of a float."""
+    """The kind of number taken from a Python argument: an integer, or the bits of a float."""
 
     INTEGER = 0
     FLOAT = 1
 
 
 def field(name: str, number: int, kind: str, of: str = "block") -> str:
-    """Return what loads word `number` of `%block`, or of what is said, as `%NAME`."""
+    """Return code that loads word `number` of `%block`, or of another block, as `%NAME`."""
     return f"  %{name}.at = getelementptr i64, ptr %{of}, i64 {number}\n  %{name} = load {kind}, ptr %{name}.at\n"
 
 
 def loop(name: str, count: str, body: str, after: str) -> str:
-    """Return a loop that runs `body` for `%NAME` from 0 to `count`; control comes from `%before.NAME`, and goes to `after`."""
+    """Return a loop that runs `body` for `%NAME` from 0 to before `count`, and goes on at `after`."""
     return f"""\
   br label %before.{name}
 before.{name}:
@@ -266,17 +266,17 @@ leave:
   ret ptr %left
 }}
 """
-"""ENTRY has CALLED leave the numbers in COST and returns LEFT, or what REFUSE returns or raises. Of the call that was made last GET_VALUE
-makes what it returned, and SET_VALUE puts that where Python looks for it.
+"""ENTRY has CALLED leave the numbers in COST and returns LEFT, or what REFUSE returns or raises. GET_VALUE returns the last call's value
+as an object, and SET_VALUE puts it where Python looks for it.
 
-Meanwhile other threads have Python, unless the call was short the last time and is the main thread's, which a signal ends (`endless`).
-Where one ends a kernel that never ends, ENTRY raises what Python's handler of the signal raises, and says where if that is KeyboardInterrupt.
+Meanwhile other threads can run Python, unless the call was short the last time and is in the main thread, where a signal ends it (`endless`).
+If a signal ends an endless kernel, ENTRY raises what Python's handler of the signal raises; a KeyboardInterrupt says where.
 """
 
 
 @cache
 def caller() -> int:
-    """Return the address of the function that Python calls. It calls ENTRY, with the words themselves in place of `self`, and SET_VALUE."""
+    """Return the address of the function that Python calls. It calls ENTRY, with the words themselves instead of `self`, and SET_VALUE."""
     add_leavable_calls()
     machine_code.add(native_code(MODULE))
     interruption = ctypes.c_int64.from_address(machine_code.address_of("bfsim_interruption"))

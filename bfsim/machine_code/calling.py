@@ -1,6 +1,6 @@
-"""Machine code as a function of Python's, bound to all that it needs (`caller`).
+"""Machine code as a Python function, bound to everything that it needs (`caller`).
 
-It has the C interface of CPython: to go through ctypes takes longer than many a call.
+It has the C interface of CPython: going through ctypes takes longer than many a call.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ VALUE = intern("value")
 
 
 class Called(NamedTuple):
-    """What is called: the address of a function that gets those of `data`, of words that are handed to it, and of what it leaves.
+    """A function to call: its address. It gets the addresses of `data`, of the words handed to it, and of the numbers that it leaves.
 
     It returns a negative number if it fails. It needs what is `kept`.
     """
@@ -40,7 +40,7 @@ class Taken(NamedTuple):
 
 
 class Log(NamedTuple):
-    """Where accesses are logged: the addresses of how many there are, of how many of them are of earlier calls, and of how many there can be."""
+    """A log of accesses: the addresses of their number, of the number from earlier calls, and of the most possible."""
 
     logged: int
     before: int
@@ -48,13 +48,13 @@ class Log(NamedTuple):
 
 
 class Block(bytes):
-    """Words, and what they have the addresses of."""
+    """Words that contain addresses, and the objects at these."""
 
     kept: object
 
 
 def words_at(call: Callable[..., Any]) -> int:
-    """Return the address of the words of what `bound_call` has made, 0 of anything else."""
+    """Return the address of the words of a function made by `bound_call`, 0 for anything else."""
     block = getattr(call, "__self__", None)
     return _as_string(block) if isinstance(block, Block) else 0
 
@@ -65,9 +65,9 @@ _as_string = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object)(("PyBytes_AsSt
 def bound_call(
     called: Called, words: Sequence[int | Taken], given: int, left: Left, log: Log | None
 ) -> Callable[..., Any]:
-    """Return a function to be called with `given` arguments; of these only the numbers that are taken are read.
+    """Return a function to be called with `given` arguments, of which it reads only the numbers to be taken.
 
-    `words` are handed over, of 64 bits each: what is always the same, or is taken from an argument of each call.
+    `words` of 64 bits are handed over, each a constant or taken from an argument of each call.
     """
     handed = (ctypes.c_int64 * len(words))(*(0 if isinstance(each, Taken) else each for each in words))
     taken = [
@@ -101,9 +101,9 @@ def bound_call(
 def followed_call(
     call: Callable[..., Any], then: int, given: tuple[int, int, int], log: Log, kept: object
 ) -> Callable[..., Any]:
-    """Return what `bound_call` has made with a function called behind it, at the address `then`, which is `given` three words.
+    """Return a function made by `bound_call`, followed by a call of the function at the address `then` with the three words `given`.
 
-    That logs accesses, and needs what is `kept`.
+    The latter logs accesses, and needs what is `kept`.
     """
     block: Block = call.__self__  # type: ignore[attr-defined]
     values = [each for (each,) in iter_unpack("q", block)]

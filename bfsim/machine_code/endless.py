@@ -1,8 +1,8 @@
-"""Machine code that does not end, ended by a signal: Ctrl-C, SIGTERM, SIGHUP.
+"""Ending endless machine code by a signal: Ctrl-C, SIGTERM, SIGHUP.
 
-Python hears of a signal when machine code has returned. Here a thread hears of it, too, which is machine code itself, for no other runs
-while a call has Python. Where the main thread is in the same call a moment later, it makes it leave that call by `longjmp`, from a handler
-of SIGINT that is there for as long as that takes. Then Python's own handler has its turn, and what it raises comes out of the call.
+Python learns of a signal only when machine code has returned. Here a thread learns of it, too. The thread is itself machine code, since no
+other code runs while a call has Python's lock. If the main thread is still in the same call a moment later, the thread makes it leave that
+call by `longjmp`, from a handler of SIGINT that is installed just for that. Then Python's own handler runs, and the call raises its exception.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from bfsim.machine_code.native_code import native_code
 from bfsim.machine_code.signal_action import SA_NODEFER, SignalAction
 
 DEAF_US = 1_000_000
-"""Calls of kernels take milliseconds: one that a signal has not ended by then does not end at all."""
+"""Calls of kernels take milliseconds: one that still runs so long after a signal does not end at all."""
 SOON_US = 10_000
-"""[ours] Until Python is in the call that it was about to make, and until a signal is delivered."""
+"""[ours] Time for Python to enter the call that it was about to make, and for a signal to be delivered."""
 ENDING = sum(1 << getattr(signal, each) for each in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, each))
 """The signals that end a call, a bit each."""
 
@@ -131,8 +131,8 @@ has_left:
   br label %wait
 }}
 """
-"""A call of the main thread, which has the odd ones of TURNS while it runs; in other threads nobody hears of signals. What watches for
-them is told where Python's own part of a handler writes the signal's number.
+"""A call in the main thread makes TURNS odd while it runs; other threads learn nothing of signals. The watching thread is told where
+Python's own part of a handler writes the signal's number.
 """
 
 
@@ -144,7 +144,7 @@ def add_leavable_calls() -> None:
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Let a signal end calls of machine code in the `with` block that do not end."""
+    """Let a signal end endless calls of machine code in the `with` block."""
     if current_thread() is not main_thread():
         yield
         return
@@ -159,16 +159,16 @@ def ended_by_signals() -> Iterator[None]:
 
 
 class _Watcher:
-    """The thread that Python tells of signals, for as long as the process lives."""
+    """The thread that Python tells about signals, for the life of the process."""
 
     def __init__(self) -> None:
         add_leavable_calls()
-        for name, value in (MAIN_THREAD, main_thread().ident or 0), (TURNS, 0):  # a fork may have others
+        for name, value in (MAIN_THREAD, main_thread().ident or 0), (TURNS, 0):  # a forked process may have other values
             ctypes.c_int64.from_address(machine_code.address_of(name)).value = value
         pressed, self.woken_by = os.pipe()
         os.set_blocking(self.woken_by, False)
         self.hands_on_to = ctypes.c_int32.from_address(machine_code.address_of("bfsim_hands_on_to"))
-        """Whom Python told before, such as asyncio; -1 is nobody."""
+        """The earlier listener of Python, such as asyncio; -1 for none."""
         self._leaves = SignalAction(handler=machine_code.address_of("bfsim_leave"), flags=SA_NODEFER)
         self._before = SignalAction()
         kind = ctypes.CFUNCTYPE(None, ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)
@@ -179,5 +179,5 @@ class _Watcher:
 
 @cache
 def _watcher(_process: int) -> _Watcher:
-    """Return the watcher of a process: one that was forked has none of the threads of its parent."""
+    """Return the watcher of a process: a forked process has none of its parent's threads."""
     return _Watcher()

@@ -1,4 +1,4 @@
-"""Machine code that other machine code is called behind, before anybody is told what a call has left."""
+"""Machine code followed by a call of other machine code, before anyone sees what the first call has left."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bfsim.machine_code.caller import field
 from bfsim.machine_code.native_code import native_code
 
 FIRST, DATA, SECOND, WORDS_AT = range(4)
-"""Of `data`: what is called first, what it is told besides, what is called then, and the three words that this is given."""
+"""Words of `data`: the first function, its data, the second function, and its three arguments."""
 
 MODULE = f"""
 define i64 @bfsim_call_both(ptr %data, ptr %handed, ptr %cost) {{
@@ -29,6 +29,6 @@ done:
 
 @cache
 def call_both() -> int:
-    """Return the address of what calls both, the second one only if the first one has not failed."""
+    """Return the address of code that calls both, the second only if the first has not failed."""
     machine_code.add(native_code(MODULE))
     return machine_code.address_of("bfsim_call_both")

@@ -1,6 +1,6 @@
-"""Generators that yield calls of machine code: these are noted, and the generator goes on, without Python in between.
+"""Generators that yield calls of machine code: the calls are noted, and the generator goes on, without Python in between.
 
-`go_on(task, value)` sends a value to a generator, has the call noted that this yields (`asking`), sends what that returned, and so on.
+`go_on(task, value)` sends a value to a generator, notes the call that it yields (`asking`), sends the call's value, and so on.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from bfsim.machine_code.caller import COST, GET_VALUE, SET_VALUE, caller, field
 from bfsim.machine_code.native_code import native_code
 
 OVER = object()
-"""What `go_on` returns when a generator has ended."""
+"""Returned by `go_on` when a generator has ended."""
 
 
 class Noted(NamedTuple):
-    """Where calls are noted: what `note` is told before the numbers, and the address of a word that is not 0 when Python must come between."""
+    """Where calls are noted: the first arguments of `note`, and the address of a word that is not 0 when Python must take over."""
 
     state: int
     core: int
@@ -93,11 +93,11 @@ python:
 
 @cache
 def _add() -> None:
-    caller()  # which has made the calls
+    caller()  # it has made the calls
     machine_code.add(native_code(MODULE))
 
 
 def going_on(asked: int, noted: Noted) -> Callable[[Generator[Any, Any, Any], object], Any]:
-    """Return `go_on`, which returns what a generator has yielded if that is no call to be noted, or OVER."""
+    """Return `go_on`, which returns anything yielded other than a call that it can note, or OVER."""
     _add()
     return bound_to(GO_ON, (asked, *noted, id(OVER)), OVER)

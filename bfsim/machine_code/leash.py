@@ -1,4 +1,4 @@
-"""A process that ends when another one lets go of it, whatever it is at: machine code of a kernel that does not end may keep Python for itself."""
+"""A process that ends when another one lets go of it, whatever it is doing: an endless kernel may keep Python's lock."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ end:
 
 
 def end_with(leash: int) -> None:
-    """End this process, with exit code 1, when the other end of a pipe is closed; `leash` is the number of this end."""
+    """End this process with exit code 1 when the other end of a pipe is closed. `leash` is the number of this end."""
     machine_code.add(native_code(MODULE))
     wait = ctypes.CFUNCTYPE(None, ctypes.c_int32)(machine_code.address_of(END_WITH))
     Thread(target=wait, args=(leash,), daemon=True).start()

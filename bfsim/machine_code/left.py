@@ -1,4 +1,4 @@
-"""What a call of machine code leaves: numbers, and a value."""
+"""The results of a call of machine code: numbers, and a value."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import NamedTuple, NoReturn
 
 WORD_BITS = 64
 ISSUE_CCLK, STALL_CCLK, ACCESSES, VALUE = range(4)
-"""What a call leaves in numbers: cycles without waits, waits, how many accesses were logged, and what it returned."""
+"""The numbers that a call leaves: cycles without waits, waits, the number of logged accesses, and its return value."""
 UNFIT, NO_ROOM = -1, -2
-"""Left in place of cycles: an argument does not fit, and nothing was run; there are more accesses than can be logged."""
+"""Left instead of cycles: an argument does not fit, and nothing was run; there are more accesses than the log can hold."""
 FAILED = -3
-"""Less the number of an event, left where that ended the code before it returned."""
+"""Left, minus the number of the event, if an event ended the code before it returned."""
 INTERRUPTED = -1000
 """Returned by a call that a signal has ended (`endless`)."""
 
 
 class Result(IntEnum):
-    """What the value of a call is: none, or what it returned as a number whose upper SHIFT of 64 bits are left out, or as a float."""
+    """The value of a call: none, its return value as an integer without the upper SHIFT of 64 bits, or as a float."""
 
     NONE = 0
     SIGNED = 1
@@ -27,9 +27,9 @@ class Result(IntEnum):
 
 
 class Left(NamedTuple):
-    """What a call leaves: `work`, which is returned, with numbers at the address `cost` and its `value`, `bits` of what it returned as a `result`.
+    """What a call leaves: it returns `work`, with numbers at the address `cost` and `bits` of its return value, as a `result`, as `value`.
 
-    `refuse` is called with the arguments where it fails.
+    `refuse` is called with the arguments if the call fails.
     """
 
     work: object

@@ -10,7 +10,7 @@ from bfsim.machine_code import Effort
 
 
 def native_code(text: str, effort: Effort = Effort.ALL) -> bytes:
-    """Compile a module, or take its machine code from the cache on disk, where only what took long is kept."""
+    """Compile a module, or load its machine code from the cache on disk, which keeps only code that took long to make."""
     if effort is Effort.NONE:
         return machine_code.host_code(text, effort)
     key = hashlib.sha256(f"object code\0{effort}\0{machine_code.host()}\0{text}".encode()).hexdigest()

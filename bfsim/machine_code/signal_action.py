@@ -1,11 +1,11 @@
-"""How machine code takes a signal of the host: as the C library of Linux has it."""
+"""How machine code handles a signal of the host, in the form of Linux's C library."""
 
 from __future__ import annotations
 
 import ctypes
 
 SA_SIGINFO, SA_NODEFER = 4, 0x40000000
-"""Linux: the handler gets the address; the signal is not blocked while it runs, for it never returns."""
+"""Linux: the handler gets the address; the signal is not blocked while the handler runs, because it never returns."""
 
 
 class SignalAction(ctypes.Structure):

@@ -1,4 +1,4 @@
-"""How a command ends: its exit code, what is said of a mistake, and output that nobody takes."""
+"""How a command ends: its exit code, its message about a mistake, and output that cannot be written."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from bfsim.process.signals import BY_SIGNAL, interrupted_code
 
 LIMIT_BROKEN, MISTAKE = 1, 2
 LONGEST_MESSAGE = 1000
-"""As many characters of a mistake are printed; a message names its place at the beginning."""
+"""Most characters of a message that are printed. A message names its place at the beginning."""
 FAULT = 70
-"""Exit code of a fault of bfsim's own: EX_SOFTWARE of sysexits.h."""
+"""Exit code of a fault of bfsim itself: EX_SOFTWARE of sysexits.h."""
 CLOSED_PIPE = BY_SIGNAL + 13
-"""Exit code where nobody reads the output any more: 13 is SIGPIPE."""
+"""Exit code if the reader of the output is gone: 13 is SIGPIPE."""
 
 
 def exit_code_of(command: Callable[[], Any]) -> int:
-    """Call a command; say in one paragraph on standard error what cut it short, and return its exit code."""
+    """Call a command and return its exit code. If it was cut short, say why in one paragraph on standard error."""
     streams = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = _Output(streams[0], "standard output"), _Output(streams[1], "standard error")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", BfsimWarning)
-            warnings.showwarning = _warn  # type: ignore[assignment]  # of its arguments two say all
+            warnings.showwarning = _warn  # type: ignore[assignment]  # two of its arguments are enough
             code = _exit_code_of(command)
         sys.stdout.flush()
         sys.stderr.flush()
@@ -50,7 +50,7 @@ def exit_code_of(command: Callable[[], Any]) -> int:
 
 
 def fault() -> int:
-    """Print the traceback of a fault of bfsim's own, and return its exit code."""
+    """Print the traceback of a fault of bfsim itself, and return its exit code."""
     traceback.print_exc()
     sys.stderr.write("bfsim: this is a fault of bfsim, and no mistake in what was given; please report it\n")
     return FAULT
@@ -70,7 +70,7 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
         return _mistake(str(error))
     except OSError as error:
         return _mistake(f"{_subject_of(error)}: {error.strerror or error}")
-    except (KeyboardInterrupt, click.Abort) as error:  # which may say where
+    except (KeyboardInterrupt, click.Abort) as error:  # it may say where
         click.echo(f"bfsim: interrupted{error}", err=True)
         return interrupted_code()
     except BdbQuit:
@@ -80,16 +80,16 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
 
 
 def _subject_of(error: OSError) -> str:
-    """Say what must be otherwise, of what the system has refused."""
+    """Say what must change after the system has refused something."""
     if error.filename:
         return f"{error.filename} must be accessible"
-    if error.errno == ENOENT:  # only asking for the current folder names none
+    if error.errno == ENOENT:  # only a request for the current folder names no file
         return "the current folder must be there, but was removed; `cd` to another one"
     return "the system must allow what bfsim asks of it"
 
 
 def _warn(message: Warning | str, category: type[Warning], *_place: Any) -> None:
-    """Say what bfsim warns of, once and on a line of its own; what libraries warn of is no matter of the user's."""
+    """Print a warning of bfsim, once and on a line of its own. Warnings of libraries do not concern the user."""
     if issubclass(category, BfsimWarning):
         click.echo(f"bfsim: warning: {message}", err=True)
 
@@ -100,25 +100,25 @@ def _mistake(message: str) -> int:
 
 
 def _shortened(message: str) -> str:
-    """Return a message without its middle if it is long, as where it lists what there is."""
+    """Return a message without its middle if it is long, for example because of a long list."""
     hidden = len(message) - LONGEST_MESSAGE
     half = LONGEST_MESSAGE // 2
     return f"{message[:half]}[{hidden} more characters]{message[-half:]}" if hidden > 0 else message
 
 
 class _OutputError(EndError):
-    """Raised when standard output or standard error takes no more.
+    """Raised when standard output or standard error can no longer be written.
 
-    No OSError, which click and rich end with code 1, and no Exception, which would be a mistake of the firmware that prints.
+    It is no OSError, which click and rich end with code 1, and no Exception, which would be blamed on firmware that prints.
     """
 
     def __init__(self, name: str, error: OSError) -> None:
-        super().__init__(name, error)  # simpy makes it once more of these
+        super().__init__(name, error)  # simpy makes a copy from these
         self.name = name
         self.error = error
 
     def tell(self, stream: Any) -> int:
-        """Say so, unless a pipe was closed, which is nobody's mistake; return the exit code."""
+        """Print the error, unless a pipe was closed, which is no mistake. Return the exit code."""
         if isinstance(self.error, BrokenPipeError):
             return CLOSED_PIPE
         with suppress(OSError):
@@ -128,7 +128,7 @@ class _OutputError(EndError):
 
 
 class _Output:
-    """A stream that says so if it takes no more, and writes what looks alike for what its encoding cannot say."""
+    """A stream that raises _OutputError if it cannot be written, and replaces characters outside its encoding by similar ones."""
 
     def __init__(self, stream: Any, name: str) -> None:
         self._stream = stream
@@ -148,7 +148,7 @@ class _Output:
             self._stream.flush()
 
     def close(self) -> None:
-        """Do what was to be done before: firmware that closes it has nothing more to say, but the report comes yet."""
+        """Only flush: firmware that closes the stream has nothing more to say, but the report is still to come."""
         self.flush()
 
     @contextmanager
@@ -160,7 +160,7 @@ class _Output:
 
 
 def _settle(stream: Any) -> None:
-    """Let what a stream does not take go nowhere: Python writes it once more when it ends."""
+    """Discard what a stream cannot take: Python would write it again when it ends."""
     try:
         stream.flush()
     except OSError:

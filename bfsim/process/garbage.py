@@ -1,4 +1,4 @@
-"""Python's search for garbage: nearly all that a command or a run makes lives as long as that."""
+"""Python's garbage collection: nearly everything that a command or a run creates lives as long as it does."""
 
 from __future__ import annotations
 
@@ -7,28 +7,28 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 COLLECT_AFTER = 500_000
-"""So many new objects make Python look for garbage, in place of 700: it took a seventh of a command's time, and a twentieth of a run's.
+"""Python collects garbage after so many new objects, instead of 700, which took a seventh of a command's time and a twentieth of a run's.
 
-More than a command makes until its run begins: looking through these took 80 ms each time.
+This is more than a command creates before its run begins: looking through these took 80 ms each time.
 """
 
 
 def collect_rarely() -> None:
-    """Have Python look for garbage rarely from now on."""
+    """Make Python collect garbage rarely from now on."""
     gc.set_threshold(COLLECT_AFTER)
 
 
 def collect_no_more() -> None:
-    """Have Python look at nothing that there is any more: a process that ends gives all back at once.
+    """Exclude all existing objects from garbage collection: a process that ends gives everything back at once.
 
-    Python would look through all of it twice while it ends, which takes a fifth of a second.
+    Otherwise Python would look through all of it twice while it ends, which takes a fifth of a second.
     """
     gc.freeze()
 
 
 @contextmanager
 def rarely_collected() -> Iterator[None]:
-    """Have Python look for garbage rarely inside."""
+    """Make Python collect garbage rarely in the `with` block."""
     before = gc.get_threshold()
     collect_rarely()
     try:

@@ -1,17 +1,17 @@
-"""What is printed where the terminal's encoding lacks a character: one of ASCII that looks like it, so that tables stay tables."""
+"""Substitutes for characters that the terminal's encoding lacks: similar ones of ASCII, so that tables stay tables."""
 
 from __future__ import annotations
 
 import codecs
 
 NAME = "bfsim.look_alikes"
-"""The error handler of a stream that says this."""
+"""Name of the error handler for streams."""
 _LIKE = str.maketrans("█▓░▏▁▂▃▄▅▆▇◆■│┌└─…→≥≤°µ·–×✅❌", "#=:|_.-=+*oo#|++-~>><ou.-x+!")  # noqa: RUF001 - they look alike
-"""A bar and its parts stay apart, and so do the steps of a trend."""
+"""A bar and its parts stay distinct, and so do the steps of a trend."""
 
 
 def _look_alike(error: UnicodeError) -> tuple[str, int]:
-    """Return what is written in place of what cannot be: a question mark for what looks like nothing in ASCII."""
+    """Return the substitutes for characters that cannot be encoded: a question mark if nothing in ASCII is similar."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     alike = error.object[error.start : error.end].translate(_LIKE)

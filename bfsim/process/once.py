@@ -1,4 +1,4 @@
-"""What runs that are planned together have in common is read once: functions remember what they returned, while they are asked to."""
+"""Reading once what runs planned together have in common: functions remember their results while they are told to."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Given = ParamSpec("Given")
 Returned = TypeVar("Returned")
 
 Known = dict[Hashable, tuple[Any, ...]]
-"""What is remembered: by function and arguments, what it returned, and the arguments, whose identities are theirs for as long."""
+"""Results by function and arguments, together with the arguments, so that these keep their identities."""
 
 _KNOWN: ContextVar[Known | None] = ContextVar("known", default=None)
 
 
 @contextmanager
 def remembering(known: Known) -> Iterator[None]:
-    """In the `with` block, remember in `known` what functions marked with `once` return."""
+    """In the `with` block, remember the results of functions marked with `once` in `known`."""
     token = _KNOWN.set(known)
     try:
         yield
@@ -30,15 +30,15 @@ def remembering(known: Known) -> Iterator[None]:
 
 @contextmanager
 def remembering_here() -> Iterator[None]:
-    """In the `with` block, remember as above, unless that is done already."""
+    """In the `with` block, remember as above, unless this is already the case."""
     with nullcontext() if _KNOWN.get() is not None else remembering({}):
         yield
 
 
 def once(function: Callable[Given, Returned]) -> Callable[Given, Returned]:
-    """While `remembering`, call a function once for the same arguments: text, numbers and paths of equal value, and the same other objects.
+    """While `remembering`, call a function once for the same arguments: equal text, numbers and paths, and identical other objects.
 
-    It must depend on nothing but them and files, and what it returns must never be changed.
+    The function must depend only on these and on files, and its result must never be changed.
     """
 
     @wraps(function)

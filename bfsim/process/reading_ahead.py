@@ -1,4 +1,4 @@
-"""Reading ahead: a thread reads and unpacks what comes next while the one before is worked on."""
+"""Reading ahead: a thread reads and unpacks the next item while the current one is in use."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Item = TypeVar("Item")
 
 
 def read_ahead(items: Iterator[Item]) -> Iterator[Item]:
-    """Yield `items`, each made by a thread while the one before is worked on; what goes wrong is raised where the item would come."""
+    """Yield `items`, each made by a thread while the previous one is in use. Errors are raised where the item would come."""
     end = object()
     with ThreadPoolExecutor(1) as thread:
         coming = thread.submit(next, items, end)

@@ -1,7 +1,7 @@
 """The signals that end a command early: Ctrl-C (SIGINT), SIGTERM and SIGHUP.
 
-All raise KeyboardInterrupt, so that drafts are removed and the frames that are done are reported; the exit code says which
-signal it was.
+All raise KeyboardInterrupt, so that drafts are removed and finished frames are reported. The exit code says which signal it
+was.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from types import FrameType
 from typing import TypeVar
 
 BY_SIGNAL = 128
-"""Exit codes from here on say which signal ended a command, as in a shell."""
+"""Exit codes above this say which signal ended a command, as in a shell."""
 
 AGAIN_S = 0.01
-"""A callback is over by then."""
+"""Time after which a callback is over."""
 POLL_S = 0.01
-"""So long after its end native code may still be waited for."""
+"""Longest time that native code is still waited for after its end."""
 
 _T = TypeVar("_T")
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 class _Heard(Event):
-    """Set when a signal was heard; `number` is the last one's."""
+    """Set when a signal was received. `number` is the latest signal's."""
 
     number = int(signal.SIGINT)
 
@@ -37,7 +37,7 @@ _heard = _Heard()
 
 
 def hear_signals() -> None:
-    """Let all signals that end a command raise KeyboardInterrupt, except those that are ignored, as by nohup."""
+    """Let all signals that end a command raise KeyboardInterrupt, except ignored ones, as under nohup."""
     for number in _SIGNALS:
         if signal.getsignal(number) in {signal.SIG_DFL, signal.default_int_handler}:
             signal.signal(number, _hear)
@@ -45,7 +45,7 @@ def hear_signals() -> None:
 
 
 def _hear_again(dropped: sys.UnraisableHookArgs) -> None:
-    """Have the signal sent again whose KeyboardInterrupt Python has dropped: it came in a callback of a weak reference."""
+    """Send a signal again whose KeyboardInterrupt Python has dropped because it came in a callback of a weak reference."""
     if isinstance(dropped.exc_value, KeyboardInterrupt) and _heard.is_set():
         here = Lock()
         with here:
@@ -55,7 +55,7 @@ def _hear_again(dropped: sys.UnraisableHookArgs) -> None:
 
 
 def _send_again(number: int, hook: Lock) -> None:
-    """Send a signal to the main thread a moment after it has left the hook, where Python would drop it, too."""
+    """Send a signal to the main thread a moment after that has left the hook, where Python would drop it, too."""
     with hook:
         sleep(AGAIN_S)
     signal.pthread_kill(main_thread().ident, number)  # type: ignore[arg-type]  # it has been started
@@ -74,7 +74,7 @@ def _hear(number: int, _frame: FrameType | None) -> None:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Let a signal wait until the end of the `with` block, for what is done as a whole or not at all."""
+    """Delay signals until the end of the `with` block, for work that must be done completely or not at all."""
     if current_thread() is not main_thread():  # signals are handled in the main thread alone
         yield
         return
@@ -98,9 +98,9 @@ def uninterrupted() -> Iterator[None]:
 
 @contextmanager
 def held_back() -> Iterator[list[int]]:
-    """Keep signals from all handlers in the `with` block, those of native code and of its new threads included; yield which ones.
+    """Keep signals from all handlers in the `with` block, including those of native code and its new threads. Yield which signals.
 
-    One that came is handled at the end.
+    Signals that came are handled at the end.
     """
     numbers = [number for number in _SIGNALS if callable(signal.getsignal(number))]
     before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
@@ -111,7 +111,7 @@ def held_back() -> Iterator[list[int]]:
 
 
 def cancellable(work: Callable[[], _T], cancel: Callable[[], object]) -> _T:
-    """Return what native code returns that takes long and has a handler of its own; a signal has it cancelled, and is then handled."""
+    """Return the result of slow native code that has a handler of its own. A signal cancels the work, and is then handled."""
     from concurrent.futures import ThreadPoolExecutor  # every start would import it
 
     if current_thread() is not main_thread():  # signals are handled in the main thread alone

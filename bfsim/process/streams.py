@@ -1,4 +1,4 @@
-"""Standard output and standard error, which firmware may change as it runs."""
+"""Standard output and standard error, which firmware may redirect as it runs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def streams_kept() -> Iterator[None]:
-    """Have both as they were at the end of the `with` block: two main loops that redirect them do not undo it in turn."""
+    """Restore both at the end of the `with` block: two main loops that redirect them may not undo it in the right order."""
     streams = sys.stdout, sys.stderr
     try:
         yield

@@ -1,4 +1,4 @@
-"""What a person sees at the terminal besides text: tables, and a bar while something takes long."""
+"""What people see on the terminal besides text: tables, and a bar while something takes long."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from rich.progress import (
 
 WIDTH_WITHOUT_TERMINAL = 100
 LEAST_WIDTH = 20
-"""Narrower than this, tables have no room for their borders."""
+"""On narrower terminals, tables have no room for their borders."""
 PATIENCE_S = 1.0
-"""What is done sooner shows no bar."""
+"""Shorter work shows no bar."""
 
 
 class Bar:
-    """What to tell of something that takes long: call it with what is done, and in all, or None when nobody knows."""
+    """The progress of something that takes long: call it with what is done, and the total, or None if unknown."""
 
     def __init__(self, progress: Progress, task: TaskID, unit: str) -> None:
         self.progress = progress
-        """What shows it."""
+        """Shows the bar."""
         self._task = task
         self._unit = unit
         self._began = monotonic()
@@ -46,16 +46,16 @@ class Bar:
         self.progress.update(self._task, reached=text)
 
     def reached(self, amount: float) -> None:
-        """Tell how far it is in a unit of its own, of which nobody knows the end; the bar says how many of them a second."""
+        """Tell the amount reached in a unit without a known total. The bar shows how many of it per second."""
         rate = amount / max(monotonic() - self._began, 0.001)
         self.say(f"{amount:,.1f} {self._unit}, {rate:,.1f} a second")
 
 
 @contextmanager
 def progress_bar(title: str, unit: str = "", *, with_time: bool = True) -> Iterator[Bar]:
-    """Yield what to tell; on a terminal a bar shows it, if it takes long, and leaves nothing behind.
+    """Yield an object to tell the progress. On a terminal, a bar shows it if it takes long, and leaves nothing behind.
 
-    `unit`: what `Bar.reached` counts. `with_time`: it shows the time left, as if all that is counted took the same time.
+    `unit` is what `Bar.reached` counts. With `with_time`, the bar shows the time left, as if every step took equally long.
     """
     columns: tuple[ProgressColumn, ...] = (
         TextColumn("{task.description}"),
@@ -78,7 +78,7 @@ def progress_bar(title: str, unit: str = "", *, with_time: bool = True) -> Itera
 
 
 def print_report(report: RenderableType) -> None:
-    """Print a report as wide as the terminal; elsewhere at a fixed width and without escape codes."""
+    """Print a report at the width of the terminal; elsewhere at a fixed width and without escape codes."""
     fixed = None if sys.stdout.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
     console = Console(width=fixed, markup=False, emoji=False, highlight=False)
     console.width = max(console.width, LEAST_WIDTH)

@@ -1,4 +1,4 @@
-"""What firmware saw, as plain data, and in which colours it is drawn. Knows no simulator."""
+"""What firmware saw, as plain data, and the colours to draw it in. Knows no simulator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Colours of marks in pictures and in space, for a dark field. All of them are ours."""
+"""Colours of marks in pictures and in space, for a dark background. All of them are ours."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LIGHTNESS = 0.66
 
 @dataclass(frozen=True, slots=True)
 class DepthScale:
-    """The depths that colours stand for, in mm: red for `near_mm` and nearer, blue for `far_mm` and farther."""
+    """A scale of colours for depths in mm: red for `near_mm` and nearer, blue for `far_mm` and farther."""
 
     near_mm: float = 200.0
     far_mm: float = 1600.0
@@ -33,18 +33,18 @@ class DepthScale:
 
 
 ROOM = DepthScale()
-"""From what just fits into both pictures to the end of a room."""
+"""From the nearest depth that is in both pictures to the end of a room."""
 
 
 def scale_colour(part: float) -> Colour:
-    """Return the colour of a part of a scale, 0 to 1: red for its beginning, blue for its end."""
+    """Return the colour at a position on a scale, 0 to 1: red at its beginning, blue at its end."""
     hue = _NEAR_HUE + min(max(part, 0.0), 1.0) * (_FAR_HUE - _NEAR_HUE)
     red, green, blue = colorsys.hls_to_rgb(hue, _LIGHTNESS, 1.0)
     return round(255 * red), round(255 * green), round(255 * blue)
 
 
 def depths_of(frame: SeenFrame) -> DepthScale:
-    """Return a scale of the depths that occur in a frame: of all but a twentieth at either end, to a round number."""
+    """Return a scale for the depths in a frame, without the twentieth at either end, and with round limits."""
     depths = [depth for line in frame.lines_3d for depth in (line.start_mm[2], line.end_mm[2])]
     depths += [depth for edges in frame.edges_3d() for depth in edges.places_mm[:, 2].tolist()]
     depths += [each.place_mm[2] for each in frame.objects if not each.is_direction]

@@ -32,9 +32,9 @@ class Seen:
     """What one core saw. `camera` is left or right; `picture`, UYVY of shape (height, 2 · width), is what it looked at.
 
     That may be an area of the camera's picture: `corner_px` is where the area's first pixel lies there. All coordinates
-    in pixels count in `picture`.
-    Objects and all that is in space are those of the core that has the results of both. Without a `geometry` the
-    firmware takes the cameras to be nowhere in particular.
+    in pixels refer to `picture`.
+    Objects and everything in space belong to the core that has the results of both. Without a `geometry`, the firmware
+    assumes no particular position of the cameras.
     """
 
     camera: str
@@ -68,7 +68,7 @@ class Seen:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenFrame:
-    """What all cores saw in one frame. `index` counts in the recording, `times_ns` are its time stamps, by camera."""
+    """What all cores saw in one frame. `index` is its number in the recording, `times_ns` its time stamps by camera."""
 
     index: int
     times_ns: dict[str, int]
@@ -86,7 +86,7 @@ class SeenFrame:
 
     @property
     def objects(self) -> tuple[SeenObject, ...]:
-        """The objects, whoever knows of them."""
+        """The objects that any core knows."""
         return tuple(one for each in self.cameras for one in each.objects)
 
     @property

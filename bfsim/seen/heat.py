@@ -1,4 +1,4 @@
-"""How heat is drawn: a translucent colour over each pixel for what it cost, dark violet to light yellow."""
+"""How heat is drawn: a translucent colour over each pixel for its cost, from dark violet to light yellow."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from PIL import Image
 from bfsim.seen.in_pictures import SeenHeat
 
 SHARE = 0.55
-"""Of the colour over the picture."""
+"""Opacity of the colour over the picture."""
 
 WITHIN = 0.98
-"""Of the pixels that cost anything: what is dearer has the last colour of the scale."""
+"""Share of the pixels with a cost that the scale covers. More expensive ones get its last colour."""
 
 _STEPS = 256
 _LIGHTNESS, _CHROMA, _HUE_DEG = (0.22, 0.94), (0.10, 0.19, 0.15), (300.0, 465.0)
-"""In OKLCH: lightness rises evenly, as the eye has it, while the hue goes from violet over red to yellow."""
+"""In OKLCH: lightness rises evenly for the eye, while the hue goes from violet over red to yellow."""
 
 # OKLab to linear sRGB: Björn Ottosson, "A perceptual color space for image processing", 2020
 _TO_LMS = np.array(
@@ -49,16 +49,16 @@ COLOURS = _scale()
 
 
 def row_us(heat: SeenHeat) -> NDArray[np.float64]:
-    """Return for each pixel what its row would cost if all of it cost as much, in µs."""
+    """Return for each pixel the cost of its row in µs if every pixel in it cost as much."""
     total = heat.total_us()
     total *= total.shape[1]
     return total
 
 
 def hottest_row_us(heats: Iterable[SeenHeat]) -> float:
-    """Return the end of a scale for pictures that stand side by side, in µs a row: WITHIN of the pixels that cost anything cost no more.
+    """Return the end of a scale for pictures side by side, in µs per row: WITHIN of the pixels with a cost have at most this.
 
-    The few that do are as bright: on a scale up to the dearest edge all else would be dark.
+    The few others are equally bright: on a scale up to the most expensive edge, everything else would be dark.
     """
     costs = [row_us(each).ravel() for each in heats]
     costly = np.concatenate(costs) if costs else np.zeros(0)
@@ -67,7 +67,7 @@ def hottest_row_us(heats: Iterable[SeenHeat]) -> float:
 
 
 def heated(image: Image.Image, heat: SeenHeat, hottest_us: float) -> Image.Image:
-    """Return a picture, magnified or not, under its heat; `hottest_us` a row is the end of the scale, 0 if no work had a place."""
+    """Return a picture, magnified or not, under its heat. The scale ends at `hottest_us` per row, 0 if no work had a place."""
     if not hottest_us:
         return image
     parts = np.clip(row_us(heat) / hottest_us, 0, 1)

@@ -1,6 +1,6 @@
 """What firmware saw in a picture: edges, blobs, lines and more, and what it drew over it.
 
-x runs to the right and y down, in pixels from the middle of the top left one. Colours to draw with are (red, green, blue), 0 to 255.
+x runs to the right and y down, in pixels from the middle of the top left pixel. Colours to draw with are (red, green, blue), 0 to 255.
 """
 
 from __future__ import annotations
@@ -18,9 +18,8 @@ Colour = tuple[int, int, int]
 class SeenEdges:
     """The edges of a picture, one element of each array per edge.
 
-    `x_px`, `y_px`: the pixel. `gradients`: how strong, in the firmware's units. `directions`: of the gradient, as the
-    firmware has it, 256 to a full turn from the x axis towards the y axis. `lost`: how many more there would have been
-    with room for them.
+    `x_px`, `y_px`: the pixel. `gradients`: their strength, in the firmware's units. `directions` of the gradients, as in the
+    firmware, 256 to a full turn from the x axis towards the y axis. `lost`: the number of further edges that had no room.
     """
 
     x_px: NDArray[np.int32]
@@ -35,7 +34,7 @@ class SeenEdges:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenLoss:
-    """Rows of a picture, the last one included, in which the firmware left out a `share`, 0 to 1, of what there was of `what`."""
+    """Rows of a picture, including the last one, in which the firmware left out a `share`, 0 to 1, of all `what`."""
 
     what: str
     top_px: int
@@ -45,7 +44,7 @@ class SeenLoss:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenArrow:
-    """An arrow from a place to another, such as the way that something moved, with words at its end."""
+    """An arrow from one place to another, such as the movement of something, with words at its end."""
 
     start_px: Point
     end_px: Point
@@ -66,8 +65,8 @@ class SeenText:
 class SeenMap:
     """A number for places all over the picture, drawn as a heat map over it.
 
-    `values` has any shape (rows, columns), whose elements cover the picture evenly; NaN is nothing there. They are drawn from
-    `lowest` to `highest`, without these from the least to the greatest of them.
+    `values` has any shape (rows, columns); its elements cover the picture evenly, and NaN means nothing there. The scale goes from
+    `lowest` to `highest`, or from the least to the greatest value without these.
     """
 
     name: str
@@ -80,14 +79,14 @@ class SeenMap:
 class SeenHeat:
     """Where in the picture the time of a frame went, by stage, in µs of the core that looked at it.
 
-    `stages_us`: arrays of the shape of the picture, what each pixel cost. `elsewhere_us`: what was about no place of it.
+    `stages_us`: arrays of the shape of the picture with the cost of each pixel. `elsewhere_us`: time that belongs to no place.
     """
 
     stages_us: dict[str, NDArray[np.float64]]
     elsewhere_us: dict[str, float]
 
     def total_us(self) -> NDArray[np.float64]:
-        """Return what each pixel cost all stages together."""
+        """Return the cost of each pixel for all stages together."""
         total: NDArray[np.float64] = np.add.reduce(list(self.stages_us.values()))
         return total
 
@@ -109,7 +108,7 @@ class SeenBlob:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenLine:
-    """A line with a direction. `probability`, 0 to 1: edges under it by its length."""
+    """A line with a direction. `probability`, 0 to 1, is the number of edges under it by its length."""
 
     start_px: Point
     end_px: Point
@@ -119,7 +118,7 @@ class SeenLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenCircle:
-    """A circle, or what was left of one when a test failed. `tests`: the names of those it passed."""
+    """A circle, or what was left of one when a test failed. `tests` are the names of those it passed."""
 
     centre_px: Point
     radius_px: float
@@ -130,7 +129,7 @@ class SeenCircle:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenRectangle:
-    """The borders found near something, as numbers of lines of the same picture by their side; the numbers of its blobs."""
+    """The borders found near something, as numbers of the picture's lines by side, and the numbers of its blobs."""
 
     blobs: tuple[int, ...]
     sides: dict[str, int]

@@ -1,4 +1,4 @@
-"""What firmware saw in space: objects, lines and edges, and where it takes its cameras to be.
+"""What firmware saw in space: objects, lines and edges, and where it assumes its cameras to be.
 
 Points are in mm in the left camera's frame: x to the right, y down, z forward along its axis.
 """
@@ -17,7 +17,7 @@ PointMm = tuple[float, float, float]
 
 
 class Solid(StrEnum):
-    """What an object is drawn as."""
+    """The solid that an object is drawn as."""
 
     SPHERE = "sphere"
     BOX = "box"
@@ -25,12 +25,12 @@ class Solid(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenObject:
-    """An object that the firmware knows of.
+    """An object that the firmware knows.
 
-    `accuracy` is 0 to 1. `place_mm` is where its middle is; where `is_direction`, only the way there is known, and its
-    length says nothing. `image_px` is its middle and `image_size_px` its width and height in what `camera` looked at.
-    `width_mm` and `height_mm` are those of its model. `tests`: the names of those passed. `age_frames` is 0 if it was
-    seen in this frame.
+    `accuracy` is 0 to 1. `place_mm` is its middle; with `is_direction`, only the direction is known, and the length means
+    nothing. `image_px` is its middle and `image_size_px` its width and height in what `camera` looked at. `width_mm` and
+    `height_mm` are those of its model. `tests` are the names of the tests passed. `age_frames` is 0 if it was seen in
+    this frame.
     """
 
     name: str
@@ -49,12 +49,12 @@ class SeenObject:
 
     @property
     def distance_mm(self) -> float:
-        """How far its middle is from the left camera; without meaning for a direction."""
+        """Distance of its middle from the left camera. Without meaning for a direction."""
         return float(np.linalg.norm(self.place_mm))
 
     @property
     def caption(self) -> str:
-        """What is written beside it: name, distance, accuracy, and when it was seen if that was before this frame."""
+        """Text beside it: name, distance, accuracy, and when it was seen if that was before this frame."""
         how_far = "direction only" if self.is_direction else f"{self.distance_mm:.0f} mm"
         frames = "frame" if self.age_frames == 1 else "frames"
         age = f"  {self.age_frames} {frames} ago" if self.age_frames else ""
@@ -63,7 +63,7 @@ class SeenObject:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenLine3D:
-    """A line in space, and the numbers of the lines of both pictures that it is from."""
+    """A line in space, and the numbers of the lines in both pictures that it comes from."""
 
     start_mm: PointMm
     end_mm: PointMm
@@ -73,7 +73,7 @@ class SeenLine3D:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenEdges3D:
-    """Edges in space: `places_mm` of shape (n, 3), and the numbers of the edges of the left picture that they are from."""
+    """Edges in space: `places_mm` of shape (n, 3), and the numbers of the left picture's edges that they come from."""
 
     places_mm: NDArray[np.int32]
     left_edges: NDArray[np.int32]
@@ -89,10 +89,10 @@ def no_edges_3d() -> SeenEdges3D:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenGeometry:
-    """Where the firmware takes its cameras to be: equal, parallel, side by side.
+    """Where the firmware assumes its cameras to be. They are equal, parallel and side by side.
 
-    `focal_px` and `principal_px` are those of the picture that it looked at. The cameras are `baseline_mm` apart,
-    `height_mm` above the floor, and look `tilt_deg` down.
+    `focal_px` and `principal_px` refer to the picture that it looked at. The cameras are `baseline_mm` apart, `height_mm`
+    above the floor, and look down by `tilt_deg`.
     """
 
     focal_px: float

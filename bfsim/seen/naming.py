@@ -1,4 +1,4 @@
-"""What firmware calls the colours of a picture, as plain data."""
+"""The firmware's names for the colours of a picture, as plain data."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from bfsim.seen.in_pictures import Colour
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NamedColour:
-    """A colour that firmware tells from others, and the one to draw it with.
+    """A colour that firmware distinguishes, and the colour to draw it with.
 
-    `hue_deg`: the hues that it stands for, from and to, on the firmware's own colour circle; none where it has no hue.
+    `hue_deg` is its range of hues, from and to, on the firmware's own colour circle, None if it has no hue.
     """
 
     name: str
@@ -26,7 +26,7 @@ class NamedColour:
 class PictureColours:
     """The colours of a picture: for each pixel the number of its colour in `named`, uint8 of shape (height, width).
 
-    `notes`: what the firmware says of the picture besides, such as the white balance that it asks for, a sentence each.
+    `notes` are further remarks of the firmware on the picture, such as the white balance that it asks for, a sentence each.
     """
 
     numbers: NDArray[np.uint8]
@@ -34,5 +34,5 @@ class PictureColours:
     notes: tuple[str, ...] = ()
 
     def share(self, number: int) -> float:
-        """Return the part of the picture, 0 to 1, that has a colour."""
+        """Return the share of the picture, 0 to 1, that has a colour."""
         return float((self.numbers == number).mean())

@@ -1,7 +1,7 @@
-"""What a run leaves behind: flat records of facts. Every statistic is derived from them later, in `report/`.
+"""The results of a run: flat records of facts. Every statistic is derived from them later, in `report/`.
 
 Cycles are CCLK cycles counted from the start of the run. For each core and frame, always:
-issue + stall + idle = elapsed. What `explain` finds in a kernel stands in `explanation` and `assembly`, which no run needs.
+issue + stall + idle = elapsed. The findings of `explain` about a kernel are in `explanation` and `assembly`, which no run needs.
 """
 
 from __future__ import annotations

@@ -16,12 +16,12 @@ class SourceText:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AssemblyInstruction:
-    """An instruction, or several that are issued together: `text` has one of them each.
+    """An instruction, or several that are issued together, each an element of `text`.
 
-    `source`: the line that it was made of, None where none is known. `cclk`: cycles of one execution without waits;
-    `taken_cclk`: of a branch that is taken, None of others. `stall_cclk`: how long it waits, at the worst, for the
-    register `waits_for`. `starts_block`: control may come to it from elsewhere. `executions`, `taken` and `total_cclk`
-    are those of a run, None without one.
+    `source` is the line that it was made from, None if unknown. `cclk` are the cycles of one execution without waits;
+    `taken_cclk` those of a taken branch, None for other instructions. `stall_cclk` is the longest wait for the register
+    `waits_for`. With `starts_block`, control may come from elsewhere. `executions`, `taken` and `total_cclk` come from a
+    run, None without one.
     """
 
     address: int
@@ -43,11 +43,11 @@ class AssemblyInstruction:
 class AssemblyLoop:
     """A loop, whose instructions lie between the addresses `first` and `last`.
 
-    `least_cclk` and `most_cclk`: one turn on the cheapest and the dearest way, loops in it once and without what it
-    calls. Of the dearest: `issue_cclk` to issue its instructions, `jump_cclk` more for its jumps and branches,
-    `stall_cclk` for registers that it waits for. `chain_cclk`: the registers of `chain` depend on each other from turn
-    to turn and take so long, whatever is issued beside them. `bound`: what bounds it. `turns` and `total_cclk` are
-    those of a run, None without one.
+    `least_cclk` and `most_cclk` are one iteration on the cheapest and the most expensive path, with inner loops once and
+    without callees. Of the latter, `issue_cclk` issue its instructions, `jump_cclk` more are for its jumps and branches, and
+    `stall_cclk` for registers that it waits for. The registers of `chain` depend on each other across iterations and take
+    `chain_cclk`, whatever else is issued. `bound` says what limits the loop. `turns` and `total_cclk` come from a run,
+    None without one.
     """
 
     first: int
@@ -70,9 +70,9 @@ class AssemblyLoop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assembly:
-    """The code of one kernel. `compiler` made it; `timing` counts its cycles, as `timing_about` says. `callees`: functions that it calls.
+    """The code of one kernel. `compiler` made it; `timing` counts its cycles, as `timing_about` says. It calls the functions `callees`.
 
-    `calls` are those of a run, None without one; its cycles are then those of all instructions.
+    `calls` are from a run, None without one; its cycles are then those of all instructions.
     """
 
     kernel: str
@@ -89,7 +89,7 @@ class Assembly:
 
     @property
     def total_cclk(self) -> int | None:
-        """Cycles of the run, without those of what it calls; None without one."""
+        """Cycles of the run without its callees, None without a run."""
         if self.calls is None:
             return None
         return sum(each.total_cclk or 0 for each in self.instructions)

@@ -1,4 +1,4 @@
-"""A kernel line by line, as one compiler profile sees it."""
+"""A kernel line by line, as seen by one compiler profile."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExplainedOperation:
-    """An operation of a source line: `count` of them, `cclk` issue cycles each; `conditional`: one way of a branch."""
+    """An operation of a source line: `count` of them, `cclk` issue cycles each. `conditional` if on one side of a branch."""
 
     operation: str
     mnemonic: str
@@ -18,10 +18,10 @@ class ExplainedOperation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExplainedLine:
-    """The part of one source line that stands in `depth` loops, and its cycles per execution, interlocks included.
+    """The part of one source line that is in `depth` loops, and its cycles per execution, including interlocks.
 
-    `stall_cclk` are the interlocks alone. `executions` and `total_cclk` are those of a run, at all depths together, and
-    stand in the line's last row; None without a run.
+    `stall_cclk` are the interlocks alone. `executions` and `total_cclk` come from a run, for all depths together, and
+    are in the line's last row. They are None without a run.
     """
 
     line: int
@@ -37,9 +37,9 @@ class ExplainedLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExplainedCall:
-    """Calls of `callee` in one line: whether its code takes their place, and why or why not.
+    """Calls of `callee` in one line: whether they are inlined, and why or why not.
 
-    `growth` is by how many statements, as the compiler counts them, the caller's code grows or would grow for each.
+    `growth` is the number of statements, as the compiler counts them, by which each call grows or would grow the caller.
     """
 
     caller: str
@@ -53,7 +53,7 @@ class ExplainedCall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InlinedKernel:
-    """A kernel whose code stands in that of another one: its lines there, at all its calls together."""
+    """A kernel whose code is inlined in another one: its lines there, for all its calls together."""
 
     kernel: str
     file: str
@@ -62,9 +62,9 @@ class InlinedKernel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """One kernel as one compiler profile sees it. `calls` are those of a run, None without one.
+    """One kernel as seen by one compiler profile. `calls` are from a run, None without one.
 
-    `lines` are its own; `kernel_calls` says what became of its calls of other kernels.
+    `lines` are its own. `kernel_calls` says what became of its calls of other kernels.
     """
 
     kernel: str

@@ -1,4 +1,4 @@
-"""What frames cost: cycles by core, stage and owner, and why a core did not work."""
+"""The cost of frames: cycles by core, stage and owner, and why a core did not work."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 REST = "(the rest)"
-"""The row of everything that a core does outside of a stage."""
+"""The row of everything that a core does outside stages."""
 
 NO_STAGES = frozenset(
     {"frame_rate", "missed", "latency", "frame", "memory", "results", "objects", "distance_mm"}
 )
-"""What limits of `bfsim check` begin with that are of no stage: a stage of such a name would be taken for that."""
+"""First words of limits of `bfsim check` other than stages: a stage with such a name would be mistaken for one of them."""
 
 
 class StallReason(StrEnum):
@@ -54,9 +54,9 @@ class StageCost:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnerCost(StageCost):
-    """The part of a stage's cost that one owner has: a kernel without its callees, or something that no kernel does.
+    """One owner's part of a stage's cost: a kernel without its callees, or something outside kernels.
 
-    `symbol` is the kernel's in the machine code (`KernelRecord`); it is empty for a ring, a semaphore, an interrupt, the
+    `symbol` is the kernel's in the machine code (`KernelRecord`). It is empty for a ring, a semaphore, an interrupt, the
     cameras ..., which `owner` then names.
     """
 
@@ -81,7 +81,7 @@ class CoreFrame:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameRecord:
-    """One stereo frame. `index` counts in the recording; latency runs from `last_line_cclk` to `result_cclk`.
+    """One stereo frame. `index` is its number in the recording; latency runs from `last_line_cclk` to `result_cclk`.
 
     `cores` begins with core A. `results` are the numbers that the firmware published for the frame (edges found ...),
     `remarks` its sentences (an order refused ...).

@@ -1,4 +1,4 @@
-"""What lay where, and what moved: buffers, code and memories, traffic on the buses, messages of peripherals."""
+"""Where things were, and what moved: buffers, code and memories, traffic on the buses, messages of peripherals."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BufferRecord:
-    """A buffer of the firmware, and where it lies. `core` is that which declares it, or "shared".
+    """A buffer of the firmware, and where it lies. `core` is the core that declares it, or "shared".
 
-    `buffer` is the name that other records have for it: its own, and that of the core behind it where both declare one.
+    `buffer` is its name in other records: its own, followed by that of the core if both declare one.
     """
 
     buffer: str
@@ -41,9 +41,9 @@ class TrafficRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeRecord:
-    """Code of one core's kernels in one segment of the LDF: how many kernels, their bytes, and what the segment has left.
+    """Code of one core's kernels in one segment of the LDF: the number of kernels, their bytes, and the segment's free bytes.
 
-    Without `in_l1`, fetches take cycles that are not in the kernels' costs.
+    Without `in_l1`, fetches take cycles beyond the kernels' own costs.
     """
 
     core: str
@@ -56,7 +56,7 @@ class CodeRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MemoryRecord:
-    """One memory of the chip, such as L2 or COREA_L1_DATA_A: its size, and what code, buffers and reserves take of it."""
+    """One memory of the chip, such as L2 or COREA_L1_DATA_A: its size, and the bytes used by code, buffers and reserves."""
 
     memory: str
     nbytes: int
@@ -65,9 +65,9 @@ class MemoryRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageRecord:
-    """One message over a peripheral, such as SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
+    """One message over a peripheral, such as SPI. `direction` is out or in, seen from the board; cycles are of core A's clock.
 
-    `type` is what the device calls it. Where the firmware's buffer had no room for all of it, "(cut short)" follows.
+    `type` is the device's name for it, followed by "(cut short)" if the firmware's buffer had no room for all of it.
     """
 
     over: str

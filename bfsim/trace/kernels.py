@@ -1,4 +1,4 @@
-"""What kernels cost over a run: by source line, by buffer, and by who called them."""
+"""The costs of kernels over a run: by source line, by buffer, and by caller."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from bfsim.trace.frames import StallReason
 class LineCost:
     """One source line of a kernel: how often its first operation ran, and the cycles of all of them.
 
-    `operations` are how often each ran and its issue cycles, which add up to `issue_cclk`; those of a routine of the run-time
-    library have the routine's name.
+    `operations` tells how often each ran and its issue cycles, which add up to `issue_cclk`. A routine of the run-time
+    library counts as one operation with the routine's name.
     """
 
     line: int
@@ -24,13 +24,13 @@ class LineCost:
 
     @property
     def elapsed_cclk(self) -> int:
-        """Cycles of the line, its stalls included."""
+        """Cycles of the line, including its stalls."""
         return self.issue_cclk + sum(self.stall_cclk.values())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KernelRecord:
-    """All calls of one kernel (or of a kernel called by it) by one core in one stage, over all frames, without its callees.
+    """All calls of one kernel, direct or by another kernel, on one core in one stage, over all frames, without its callees.
 
     `symbol` distinguishes kernels of the same name. `file` and `LineCost.line` say where the source is; `text` has its lines,
     beginning with `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; if code lies outside L1, the kernel's
@@ -52,15 +52,15 @@ class KernelRecord:
 
     @property
     def elapsed_cclk(self) -> int:
-        """Cycles of its calls, their stalls included, without its callees."""
+        """Cycles of its calls, including their stalls, without its callees."""
         return self.issue_cclk + sum(self.stall_cclk.values())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AccessRecord:
-    """What one line of a kernel accessed in one buffer, over all frames: elements that it read and wrote, and what it waited for them.
+    """The accesses of one line of a kernel to one buffer, over all frames: elements read and written, and the waits for them.
 
-    `fills` are lines that the data cache fetched for it. `buffer` is empty where the kernel's own code was waited for.
+    `fills` are lines that the data cache fetched for it. `buffer` is empty for waits for the kernel's own code.
     """
 
     core: str
@@ -76,7 +76,7 @@ class AccessRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathRecord:
-    """One path of calls: what the last kernel of `path` (symbols) cost when called through the others, without its own callees."""
+    """One path of calls: the cost of the last kernel of `path` (symbols) when called through the others, without its callees."""
 
     core: str
     stage: str

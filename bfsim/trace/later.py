@@ -1,4 +1,4 @@
-"""Records that are made when somebody asks for them: most runs are over before anybody does."""
+"""Records that are made on demand: most runs are over before anyone asks for them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Record_co = TypeVar("Record_co", covariant=True)
 
 
 class Later(Sequence[Record_co]):
-    """A tuple of what `make` yields, which is called once, at first use."""
+    """A tuple of what `make` yields. `make` is called once, at first use."""
 
     def __init__(self, make: Callable[[], Iterable[Record_co]]) -> None:
         self._make = make
@@ -18,7 +18,7 @@ class Later(Sequence[Record_co]):
     @cached_property
     def _records(self) -> tuple[Record_co, ...]:
         records = tuple(self._make())
-        del self._make  # and what it holds
+        del self._make  # and everything that it holds
         return records
 
     def __len__(self) -> int:

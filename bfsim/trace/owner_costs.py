@@ -1,4 +1,4 @@
-"""Whose cycles those of a frame are, kept small: a run of many frames has hundreds of owners in each, most of them with few numbers."""
+"""The owners of a frame's cycles, stored compactly: each frame of a run has hundreds of owners, most of them with few numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.trace.frames import OwnerCost, StallReason
 CALLS, ISSUE, IDLE, FIRST_STALL = range(4)
 REASONS = tuple(StallReason)
 COLUMNS = FIRST_STALL + len(REASONS)
-"""What a row has of one owner in one stage: calls, issue and idle cycles, and stalls in the order of `StallReason`."""
+"""Numbers in the row of one owner in one stage: calls, issue and idle cycles, and stalls in the order of `StallReason`."""
 COLUMN_OF = {reason: FIRST_STALL + number for number, reason in enumerate(REASONS)}
 
 
@@ -27,12 +27,12 @@ class Owner(NamedTuple):
 
 
 class OwnerCosts(Sequence[OwnerCost]):
-    """The costs of owners, made from a table with a row of COLUMNS for each; rows of zeros are left out."""
+    """The costs of owners, made from a table with a row of COLUMNS for each. Rows of zeros are left out."""
 
     __slots__ = ("_amounts", "_places", "owners")
 
     def __init__(self, owners: tuple[Owner, ...], table: NDArray[np.int64]) -> None:
-        """`owners`, those of the rows: best the same tuple for as many frames as have the same."""
+        """`owners` of the rows, ideally the same tuple for all frames with the same owners."""
         numbers = table.reshape(-1)
         (places,) = numbers.nonzero()
         self.owners = owners
@@ -40,7 +40,7 @@ class OwnerCosts(Sequence[OwnerCost]):
 
     @classmethod
     def of(cls, costs: Sequence[OwnerCost]) -> Self:
-        """Return costs as such a table."""
+        """Return costs in this form."""
         if isinstance(costs, cls):
             return costs
         owners = tuple(Owner(each.stage, each.owner, each.symbol) for each in costs)
@@ -56,7 +56,7 @@ class OwnerCosts(Sequence[OwnerCost]):
             yield _cost(self.owners[row], {column: number for _, column, number in group})
 
     def numbers(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.int64]]:
-        """Return row, column and amount of each number in the table that is not 0, in order."""
+        """Return row, column and amount of each non-zero number in the table, in order."""
         rows, columns = np.divmod(np.frombuffer(self._places, np.uint32), np.uint32(COLUMNS))
         return rows, columns, np.frombuffer(self._amounts, np.int64)
 
@@ -91,13 +91,13 @@ def _row(cost: OwnerCost) -> list[int]:
 
 
 class OwnerNumbers:
-    """A number for each owner of some costs, in the order in which they come."""
+    """A number for each owner of some costs, in order of appearance."""
 
     def __init__(self) -> None:
         self.owners: dict[Owner, int] = {}
         self._known: dict[
             int, tuple[tuple[Owner, ...], NDArray[np.int64]]
-        ] = {}  # by where a tuple of owners is
+        ] = {}  # by the identity of a tuple of owners
 
     def of(self, costs: OwnerCosts) -> NDArray[np.int64]:
         """Return the owner's number for each number of `costs`."""
@@ -110,7 +110,7 @@ class OwnerNumbers:
 
 
 def sum_of_owners(costs: Iterable[Sequence[OwnerCost]]) -> OwnerCosts:
-    """Return what all of the costs come to, an owner each."""
+    """Return the sum of all costs, by owner."""
     numbers = OwnerNumbers()
     parts = [(numbers.of(each), *each.numbers()[1:]) for each in map(OwnerCosts.of, costs)]
     table = np.zeros((len(numbers.owners), COLUMNS), np.int64)

@@ -1,4 +1,4 @@
-"""A whole run: what ran on what, and all that it left behind."""
+"""A whole run: what ran on what, and all its records."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from bfsim.trace.kernels import AccessRecord, KernelRecord, PathRecord
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """Measurements from elsewhere that the budget stands beside, such as those of a real board.
+    """Measurements from elsewhere that are shown beside the budget, such as those of a real board.
 
-    `name` heads their column in the report, `about` says in one sentence what they are and where they come from.
+    `name` heads their column in the report. `about` says in one sentence what they are and where they come from.
     """
 
     name: str
@@ -24,7 +24,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BudgetRow:
-    """A row of the budget: a stage of the firmware, and its milliseconds in the firmware's `Reference`, if they are known.
+    """A row of the budget: a stage of the firmware, and its milliseconds in the firmware's `Reference`, if known.
 
     `within` is the stage that this one is a part of; the row of that stage includes its parts. There is only one level.
     """
@@ -36,12 +36,12 @@ class BudgetRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Identity:
-    """All that a result depends on. Digests are sha256 in hex, or empty.
+    """Everything that a result depends on. Digests are sha256 in hex, or empty.
 
-    `..._numbers` say of a board or compiler that is not shipped which shipped one it is like, and what it has otherwise.
-    Paths are left out on purpose: `..._files` are relative to the folder that they were imported from; a shipped board or
-    compiler has none. `board` ends in --set PATH=VALUE for each number that was changed. `code` says whose object code
-    kernels ran as, and which timing counted its cycles, or why there was none; it is empty where `compiler` is an estimate.
+    For a board or compiler that is not shipped, `..._numbers` say which shipped one it is most like, and how it differs.
+    Absolute paths are left out on purpose: `..._files` are relative to the folder that they were imported from. A shipped board
+    or compiler has none. `board` ends in --set PATH=VALUE for each changed number. `code` says which compiler's object code
+    ran and which timing counted its cycles, or why there was none. It is empty if `compiler` is an estimate.
     """
 
     recording: str
@@ -74,7 +74,7 @@ class Identity:
 
 
 class WarningKind(StrEnum):
-    """What a warning is about, where that is no device; of the one on the SPI it is "SPI device"."""
+    """The subject of a warning, unless it is a device; for the one on the SPI, the kind is "SPI device"."""
 
     GEOMETRY = "geometry"
     CLOCKS = "clocks"
@@ -85,9 +85,9 @@ class WarningKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunWarning:
-    """Something about a run that must not be overlooked, and the numbers in its text. `results` are the published numbers that it is of.
+    """Something about a run that must not be overlooked, and the numbers in its text. It is about the published numbers `results`.
 
-    `kind`: a `WarningKind`, or whose device had it to say.
+    `kind` is a `WarningKind`, or the device that it comes from.
     """
 
     kind: str
@@ -98,13 +98,13 @@ class RunWarning:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardRecord:
-    """What a board leaves behind when the recording is over, or the user stopped it. `missed` are the recording's frames that came while the firmware was busy.
+    """The records of a board when the recording is over or the user stopped it.
 
-    `messages` went over peripherals; `device_notes` are what the devices there had to say at the end, by peripheral.
-    `interrupts` were taken, by core and source. `object_share` is the part of the kernels' issue cycles that
-    instructions of object code took. When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame
-    that was not finished; `interrupted_at` is the line of the firmware that was at work then, as ` (file:line)`, if one
-    was.
+    `missed` are the recording's frames that came while the firmware was busy. `messages` went over peripherals; `device_notes` are
+    the final warnings of the devices there, by peripheral. `interrupts` are the numbers taken, by core and source.
+    `object_share` is the share of object code in the kernels' issue cycles. If `interrupted` by Ctrl-C, `traffic` includes
+    that of the unfinished frame, and `interrupted_at` is the line of the firmware that was at work, as ` (file:line)`, if
+    one was.
     """
 
     frames: tuple[FrameRecord, ...]

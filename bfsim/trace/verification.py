@@ -1,4 +1,4 @@
-"""Records of `bfsim verify`: estimates beside what the real compiler's code takes. Data, and what follows from them."""
+"""Records of `bfsim verify`: estimates beside the cycles of the real compiler's code, and values derived from these."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class VerifiedKernel:
     """One kernel: its calls in a frame, how many were played, and the cycles of a frame, estimated and measured.
 
-    `different`: how many of the calls that were played left other bits than the kernel here. `unequal`: of how many the
-    translated code took other cycles than the GNU simulator counts.
+    `different` is the number of played calls with other resulting bits than the kernel here; `unequal`, the number of calls for
+    which the translated code took other cycles than the GNU simulator counts.
     """
 
     kernel: str
@@ -25,15 +25,15 @@ class VerifiedKernel:
 
     @property
     def error(self) -> float:
-        """By how much the estimate is off, as a part of what was measured."""
+        """Error of the estimate, relative to the measured cycles."""
         return self.estimated_cclk / self.measured_cclk - 1 if self.measured_cclk else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """All kernels of a run, the one that takes longest first. `compiler`: its version.
+    """All kernels of a run, the slowest first. `compiler` is its version.
 
-    `is_judged`: whether the GNU simulator played the calls too. If it did not, what is measured are the translated code's cycles.
+    `is_judged` says whether the GNU simulator played the calls, too. If not, the measured cycles are those of the translated code.
     """
 
     profile: str
@@ -49,27 +49,27 @@ class Verification:
 
     @property
     def signed_error(self) -> float:
-        """By how much the estimate of the frame is off, where one kernel's error makes up for another's."""
+        """Relative error of the frame's estimate. Errors of kernels may cancel out."""
         return sum(each.estimated_cclk for each in self.kernels) / self.measured_cclk - 1
 
     @property
     def error_by_share(self) -> float:
-        """By how much the kernels are off, where none makes up for another."""
+        """Relative error of all kernels, by their share of the frame. Errors do not cancel out."""
         return (
             sum(abs(each.estimated_cclk - each.measured_cclk) for each in self.kernels) / self.measured_cclk
         )
 
     @property
     def different(self) -> int:
-        """How many calls left other bits than the kernels here."""
+        """Number of calls with other resulting bits than the kernels here."""
         return sum(each.different for each in self.kernels)
 
     @property
     def played(self) -> int:
-        """How many calls were played."""
+        """Number of played calls."""
         return sum(each.played for each in self.kernels)
 
     @property
     def unequal(self) -> int:
-        """Of how many calls the translated code took other cycles than the GNU simulator counts."""
+        """Number of calls for which the translated code took other cycles than the GNU simulator counts."""
         return sum(each.unequal for each in self.kernels)

@@ -1,1 +1,1 @@
-"""The cameras and their PPIs: pictures arrive word by word in frame buffers, a pair at a time."""
+"""The cameras and their PPIs: pictures arrive word by word in frame buffers, one pair at a time."""

@@ -1,7 +1,7 @@
 """Stereo capture: which pictures are taken, into which frame buffers, and which pair the firmware gets.
 
-Both cores see the interrupts of both PPIs and agree on a pair through a shared variable; here that is one
-object. A pair that is overwritten, or comes when no buffer is free, is missed.
+Both cores see the interrupts of both PPIs and agree on a pair through a shared variable, which here is one
+object. A pair that is overwritten, or that comes when no buffer is free, is missed.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from bfsim.machine.simulation import Simulation
 
 
 class Feed(StrEnum):
-    """When pictures come: as fast as the firmware asks, at the time stamps of the recording, or at the cameras' own pace.
+    """When pictures come: as fast as the firmware asks, at the recording's time stamps, or at the cameras' own pace.
 
-    Only with the last one do the cameras run free of each other, each by its oscillator.
+    Only with the last one do the cameras run independently, each by its own oscillator.
     """
 
     DEMAND = "demand"
@@ -61,7 +61,7 @@ class StereoPictures(Protocol):
 
 
 class State(StrEnum):
-    """Life of a frame buffer."""
+    """State of a frame buffer."""
 
     FREE = "free"
     FILLING = "filling"
@@ -73,8 +73,8 @@ class State(StrEnum):
 class Pair:
     """A pair of frame buffers, one per core.
 
-    `index` is the recording's frame in it, `picture` the lines of that, `lost` the words that its PPIs lost, `last` the
-    transfer that ended last.
+    `index` is the recording's frame in it, `picture` has that frame's lines, `lost` the words lost by each PPI, and `last` is
+    the transfer that ended last.
     """
 
     rows: Mapping[str, Sequence[Row]]
@@ -88,7 +88,7 @@ class Pair:
 
 
 class Capture:
-    """Fills pairs of frame buffers from a recording and hands them to the cores, the newest first."""
+    """Fills pairs of frame buffers from a recording, and hands the newest one to the cores."""
 
     def __init__(
         self,
@@ -99,7 +99,7 @@ class Capture:
         pictures: Iterator[StereoPictures],
         feed: Feed,
     ) -> None:
-        """`ppis`: PPI of each core; the first core has the left camera."""
+        """`ppis` has the PPI of each core. The first core has the left camera."""
         self._env = env
         self._clocks = clocks
         self._ppis = ppis
@@ -118,7 +118,7 @@ class Capture:
         env.process(self._take())
 
     def claim(self, core: str) -> Generator[simpy.Event, Any, Pair | None]:
-        """Give back the pair that `core` had, and wait for the next one; None after the last."""
+        """Return the pair that `core` had, and wait for the next one, which is None after the last."""
         if core in self._held:
             self._release(self._held.pop(core))
         mine = self._handed_out[core]
@@ -135,7 +135,7 @@ class Capture:
 
     @property
     def has_more(self) -> bool:
-        """Whether there are pictures left that the firmware has not taken."""
+        """Whether there are pictures that the firmware has not taken yet."""
         return not self._ended or any(each.state in (State.FILLING, State.FULL) for each in self._pairs)
 
     def change_camera(self, core: str, settings: CameraSettings) -> None:
@@ -143,16 +143,16 @@ class Capture:
         self._ppis[core].change(settings)
 
     def read_status(self, core: str) -> int:
-        """Return PPI_STATUS of the PPI of a core; the read clears it."""
+        """Return and clear PPI_STATUS of a core's PPI."""
         return self._ppis[core].status.read()
 
     def change_size(self, core: str, size: FrameSize) -> None:
-        """Tell the camera of a core what size to send; the cameras change together, when all are told the same."""
+        """Tell a core's camera what size to send. The cameras change together, once all have been told the same."""
         self._ppis[core].check_size(size)
         self._wanted_sizes[core] = size
 
     def _change_sizes(self, frame: int) -> None:
-        """Change the size of the pictures from number `frame` on, if all cameras are told the same one."""
+        """Change the size of the pictures from number `frame` on, if all cameras have been told the same size."""
         wanted = list(self._wanted_sizes.values())
         if len(wanted) == len(self._ppis) and len(set(wanted)) == 1:
             for ppi in self._ppis.values():
@@ -201,7 +201,7 @@ class Capture:
         self._notify()
 
     def _when_wanted(self) -> Generator[simpy.Event, Any, list[int]]:
-        """Wait until the firmware has taken the picture before, a buffer is free and the sensors are through."""
+        """Wait until the firmware has taken the previous picture, a buffer is free and the sensors are ready."""
         while not self._is_picture_wanted():
             yield self._changed
         return [max(self._env.tick, self._sensors_ready_at)] * len(self._ppis)
@@ -211,9 +211,9 @@ class Capture:
         return State.FREE in states and states.isdisjoint({State.FILLING, State.FULL})
 
     def _begin(self, pictures: StereoPictures, starts: Mapping[str, int]) -> None:
-        """Receive a pair of pictures, unless a PPI still receives the one before or no buffer can be had.
+        """Receive a pair of pictures, unless a PPI still receives the previous one or no buffer is available.
 
-        Recorded time stamps jitter; a picture may come as early as in the vertical blanking of the one before.
+        Recorded time stamps jitter: a picture may come as early as in the vertical blanking of the previous one.
         """
         images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=False))
         receiving = any(start < self._receiving_until[core] for core, start in starts.items())
@@ -231,7 +231,7 @@ class Capture:
         self._env.process(self._fill(pair, images, starts))
 
     def _empty_pair(self) -> Pair | None:
-        """A free pair, or else the oldest full one, whose frame is missed then."""
+        """Return a free pair, or else the oldest full one, whose frame is then missed."""
         free = [each for each in self._pairs if each.state is State.FREE]
         if free:
             return free[0]
@@ -255,9 +255,9 @@ class Capture:
     def _receive(
         self, pair: Pair, core: str, image: NDArray[np.uint8], start: int
     ) -> Generator[simpy.Event, Any, None]:
-        """Let a PPI receive a picture that begins at tick `start`; until then it may still be at the one before.
+        """Let a PPI receive a picture that begins at tick `start`. Until then it may still receive the previous one.
 
-        The last words of that one may be in its FIFO even longer.
+        The last words of that one may stay in its FIFO even longer.
         """
         ppi = self._ppis[core]
         if start > self._env.tick:

@@ -1,4 +1,4 @@
-"""A camera's own oscillator: when its frames and lines come, in ticks of the board. Nothing locks two cameras together."""
+"""A camera's own oscillator: the times of its frames and lines, in ticks of the board. Nothing synchronises two cameras."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from bfsim.clocks import Clocks, PeriodicEdges
 
 @dataclass(frozen=True, slots=True)
 class Oscillator:
-    """The free-running time of one camera in one mode. Frames are counted from 0, lines of a picture too.
+    """The free-running time of one camera in one mode. Frames, and lines of a picture, are counted from 0.
 
-    Every time is a tick, each rounded up by itself from an exact fraction, so nothing drifts.
+    Every time is a tick, rounded up separately from an exact fraction, so nothing drifts.
     """
 
     clocks: Clocks
     mode: SensorMode
     camera: CameraSpec
     ppi_clk_hz: Fraction = field(init=False)
-    """The rate at which PPI_CLK really runs."""
+    """The actual rate of PPI_CLK."""
     _cycles: PeriodicEdges = field(init=False)
 
     def __post_init__(self) -> None:
@@ -40,7 +40,7 @@ class Oscillator:
         return self._cycles.after(self._cycles_before(frame, line))
 
     def line_end(self, frame: int, line: int) -> int:
-        """Return the tick at which the last byte of a line of the picture is through, its blanking not."""
+        """Return the tick at which the last byte of a line of the picture has been sent, before its blanking."""
         return self._cycles.after(self._cycles_before(frame, line) + self.mode.active_clocks)
 
     def _cycles_before(self, frame: int, line: int) -> int:

@@ -1,4 +1,4 @@
-"""PPI and camera: a picture arrives word by word, at the pace of the camera's own oscillator, in a frame buffer in memory."""
+"""PPI and camera: a picture arrives in a frame buffer in memory, word by word, at the pace of the camera's own oscillator."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from bfsim.spans import SpanKind
 
 
 class Ppi:
-    """One parallel peripheral interface with the camera on it. `status` is what the chip's PPI_STATUS shows."""
+    """One parallel peripheral interface with its camera. `status` is the chip's PPI_STATUS."""
 
     def __init__(
         self,
@@ -43,10 +43,10 @@ class Ppi:
         outside: int,
         interrupt: Callable[[str], None],
     ) -> None:
-        """`size`: of the recorded pictures. `number`: 0 or 1. `outside`: where in the arena two pictures stand while they come in.
+        """`size` of the recorded pictures. `number` is 0 or 1. `outside` is where in the arena two pictures are while they come in.
 
-        Two, since the next one may begin before the bus has taken the last words of the one before. `interrupt`: called with
-        PPI0_DMA at the end of each picture of PPI0, and with PPI0_ERROR while a bit of its status is set.
+        It is two because the next picture may begin before the bus has taken the last words of the previous one. `interrupt` is
+        called with PPI0_DMA at the end of each picture of PPI0, and then also with PPI0_ERROR if a bit of its status is set.
         """
         self._bus = bus
         self._memories = memories
@@ -58,20 +58,20 @@ class Ppi:
         self._name = f"PPI{number}"
         self._interrupt = interrupt
         self._outside = outside, outside + 2 * size.width_px * size.height_px
-        # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
+        # PPI_CONTROL with PACK_EN, and DMA32 if DMA has 32 bits
         self._word_bytes = board.chip.dma.word_bytes
         self._lines: dict[tuple[int, FrameSize], tuple[Row, ...]] = {}
         self._first_frame, self._origin_ticks = 0, 0
         self._send(size)
-        # a change of settings is what the firmware asks for; a run begins with settled cameras
+        # settings change only when firmware asks for it: a run begins with settled cameras
         self._settling = Settling(
             camera, CameraSettings(exposure_lines=0, gain=0, red_gain=0, blue_gain=0), camera.settling_frames
         )
         self._lost = 0
         self.through: simpy.Event | None = None
-        """The event at which the last picture that was begun is in its frame buffer."""
+        """The event at which the latest picture is complete in its frame buffer."""
         self.transfer: Transfer | None = None
-        """The transfer of that."""
+        """The transfer of that picture."""
         self._begin = 0
 
     def _send(self, size: FrameSize) -> None:
@@ -87,17 +87,17 @@ class Ppi:
         self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(ppi_clk_ticks).after(
             mode.active_clocks
         )
-        """Ticks from the first byte of a picture to its last one."""
+        """Ticks from the first byte of a picture to its last."""
         self.frame_ticks = lines.after(mode.frame_lines)
-        """Ticks from one picture's first line to the next one's, vertical blanking included."""
+        """Ticks from one picture's first line to the next picture's, including vertical blanking."""
         self.status = PpiStatus(self._name, mode.height_px, mode.active_clocks)
 
     def start_of(self, frame: int) -> int:
-        """Return the tick at which the camera, left to itself, sends the first byte of its picture number `frame`."""
+        """Return the tick at which the free-running camera sends the first byte of its picture number `frame`."""
         return self._origin_ticks + self._oscillator.line_start(frame - self._first_frame, 0)
 
     def check_size(self, size: FrameSize) -> None:
-        """Raise FirmwareError unless the recorded pictures can be sent in that size."""
+        """Raise FirmwareError unless the recorded pictures can be sent in this size."""
         width_px, height_px = self._recorded.width_px, self._recorded.height_px
         sizes = [
             FrameSize(width_px // step, height_px // step) for step in SKIPS if width_px % (2 * step) == 0
@@ -106,7 +106,7 @@ class Ppi:
             raise FirmwareError(f"pictures must be of {' or '.join(map(str, sizes))}, not of {size}")
 
     def change_size(self, size: FrameSize, frame: int) -> None:
-        """Send pictures of `size` from number `frame` on, and settle. [assumed] That one begins when it would have anyway."""
+        """Send pictures of `size` from number `frame` on, and settle. [assumed] That picture begins at its usual time."""
         if size == self.size:
             return
         start = self.start_of(frame)
@@ -115,7 +115,7 @@ class Ppi:
         self._settling.restart()
 
     def lines_in(self, rows: Sequence[Row]) -> Sequence[Row]:
-        """Return the lines that a picture of the present size takes in the frame buffer `rows`."""
+        """Return the lines that a picture of the current size takes in the frame buffer `rows`."""
         if self.size == self._recorded:
             return rows
         key = (rows[0].offset, self.size)
@@ -128,15 +128,15 @@ class Ppi:
         return self._settling.next_picture(skipped(picture, self._recorded.width_px // self.size.width_px))
 
     def change(self, settings: CameraSettings) -> None:
-        """Give the camera new settings: the next pictures are off until they have worked."""
+        """Give the camera new settings. The next pictures are off until these take effect."""
         self._settling.change(settings)
 
     def skip(self, picture: NDArray[np.uint8]) -> None:
-        """Let a picture go by: the camera sends it and goes on settling, but nobody takes it."""
+        """Let a picture go by: the camera sends it and goes on settling, but nothing receives it."""
         self._sent(picture)
 
     def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
-        """Write a recorded `picture` (height, 2 · width) to `rows`, as the camera sends it; its first line begins at tick `start`. Return the event at its end."""
+        """Write a recorded `picture` (height, 2 · width) to `rows` as the camera sends it from tick `start` on. Return the event at its end."""
         picture = self._sent(picture)
         words = picture.shape[1] // self._word_bytes
         self.status.frame_sync()
@@ -159,7 +159,7 @@ class Ppi:
         return self.through
 
     def end_picture(self) -> int:
-        """Ask for the interrupts of a picture's end; return how many of its words found the FIFO full: any of them sets OVR."""
+        """Request the interrupts of a picture's end. Return how many of its words found the FIFO full; any of them sets OVR."""
         if timeline := self._bus.records.timeline:
             self._tell_lines(timeline)
         total = self._bus.lost_by(self._master)
@@ -189,7 +189,7 @@ class Ppi:
 
 
 def require_pace(mode: SensorMode, size: FrameSize, sclk_hz: Fraction) -> None:
-    """Raise ConfigError, with what to do, if the camera sends pictures of `size` faster than a PPI takes them."""
+    """Raise ConfigError, with advice, if the camera sends pictures of `size` faster than a PPI can receive them."""
     try:
         check_ppi_clk(mode.ppi_clk_hz, sclk_hz)
     except ConfigError as error:

@@ -1,6 +1,6 @@
 """What a PPI notices about its camera and its DMA: frame tracking, and the sticky bits of PPI_STATUS.
 
-Only modes with external frame syncs: no field bit and no preambles of ITU-R 656.
+Only for modes with external frame syncs: no field bit, and no preambles of ITU-R 656.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from bfsim.chip.ppi_registers import PpiStatusBit
 
 
 class PpiStatus:
-    """PPI_STATUS of one PPI, and the counters that PPI_COUNT and PPI_FRAME are compared with.
+    """PPI_STATUS of one PPI, and the counters that are compared with PPI_COUNT and PPI_FRAME.
 
-    Until the first frame sync the PPI takes nothing. From then on it takes `frame_lines` lines a frame and
-    `line_samples` samples a line, and ignores what comes beyond. A frame that ends early sets FT_ERR, and the
-    next one is counted from 0 again; the DMA goes on where it was, so that its pictures are shifted from there.
+    Until the first frame sync, the PPI takes nothing. From then on it takes `frame_lines` lines per frame and
+    `line_samples` samples per line, and ignores the rest. A frame that ends early sets FT_ERR, and the next one is
+    counted from 0 again. The DMA goes on where it was, so its pictures are shifted from then on.
     """
 
     def __init__(self, name: str, frame_lines: int, line_samples: int) -> None:
-        """`name`: PPI0 or PPI1. `frame_lines` is what PPI_FRAME holds, `line_samples` PPI_COUNT + 1."""
+        """`name` is PPI0 or PPI1, `frame_lines` the value of PPI_FRAME, `line_samples` PPI_COUNT + 1."""
         self._name = name
         self._frame_lines = frame_lines
         self._line_samples = line_samples
@@ -29,11 +29,11 @@ class PpiStatus:
 
     @property
     def causes(self) -> Mapping[PpiStatusBit, str]:
-        """Each bit that is set, and a sentence about what set it first. Any of them asserts the error interrupt."""
+        """Each set bit, with a sentence about what set it first. Any of them asserts the error interrupt."""
         return MappingProxyType(self._causes)
 
     def frame_sync(self) -> None:
-        """Begin a frame. FT_ERR if the one before had too few lines."""
+        """Begin a frame. Sets FT_ERR if the previous one had too few lines."""
         if self._lines < self._frame_lines:
             self._set(
                 PpiStatusBit.FT_ERR,
@@ -42,7 +42,7 @@ class PpiStatus:
         self._lines = 0
 
     def lines(self, number: int, samples: int) -> int:
-        """Count `number` lines of so many `samples` and return how many samples the PPI takes of all. FT_ERR if they are too few."""
+        """Count `number` lines of so many `samples`, and return how many of all samples the PPI takes. Sets FT_ERR if a line has too few."""
         number = min(number, self._frame_lines - self._lines)
         if number and samples < self._line_samples:
             self._set(
@@ -53,18 +53,18 @@ class PpiStatus:
         return number * min(samples, self._line_samples)
 
     def overrun(self, lost_samples: int) -> None:
-        """Set OVR: the FIFO was full and samples are lost, since the DMA did not get its bus in time."""
+        """Set OVR: the FIFO was full and samples were lost, because the DMA did not get its bus in time."""
         self._set(
             PpiStatusBit.OVR,
             f"the FIFO must be emptied in time, but {lost_samples} samples found no room in it",
         )
 
     def read(self) -> int:
-        """Return the register; the read clears it."""
+        """Return the register and clear it."""
         word = int(sum(self._causes))
         self._causes.clear()
         return word
 
     def _set(self, bit: PpiStatusBit, cause: str) -> None:
-        """Set a bit; one that is set already keeps its cause."""
+        """Set a bit. One that is already set keeps its cause."""
         self._causes.setdefault(bit, f"{self._name}_STATUS {bit.name}: {cause}")

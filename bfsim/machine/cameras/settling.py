@@ -1,7 +1,7 @@
-"""What a camera does after its settings change: its loops need some frames, whose colours and brightness are off.
+"""A camera after a change of its settings: its control loops need some frames, whose colours and brightness are off.
 
-This is done to recorded pictures, which were taken with settled cameras. What the settings themselves do to a
-picture is not modelled: they are in the recording.
+This is applied to recorded pictures, which were taken with settled cameras. The effect of the settings themselves on a
+picture is not modelled: it is in the recording.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from bfsim.errors import FirmwareError, shown
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraSettings:
-    """What firmware sets in a camera, in units of the sensor's registers.
+    """The settings of a camera by firmware, in units of the sensor's registers.
 
-    `exposure_lines`: shutter time in lines. `gain`, `red_gain`, `blue_gain`: register values, 0..255.
+    `exposure_lines` is the shutter time in lines. `gain`, `red_gain` and `blue_gain` are register values, 0..255.
     """
 
     exposure_lines: int
@@ -39,7 +39,7 @@ class CameraSettings:
 
 @dataclass(slots=True)
 class Settling:
-    """A camera between a change of its settings and the frame where they have worked."""
+    """A camera between a change of its settings and the frame in which they have taken effect."""
 
     camera: CameraSpec
     settings: CameraSettings
@@ -52,7 +52,7 @@ class Settling:
             self.restart()
 
     def restart(self) -> None:
-        """Begin to settle: after new settings, or in a new size of pictures."""
+        """Begin to settle, after new settings or in a new picture size."""
         self.frames_since_change = 0
 
     def next_picture(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -65,14 +65,14 @@ class Settling:
 def settled(picture: NDArray[np.uint8], frames_since_change: int, camera: CameraSpec) -> NDArray[np.uint8]:
     """Return a UYVY picture (height, 2 · width) as `camera` sends it so many frames after new settings.
 
-    Integers throughout, clipped to 0..255. From `camera.settling_frames` on it is `picture` itself.
+    All arithmetic is in integers, clipped to 0..255. From `camera.settling_frames` on, this is `picture` itself.
     """
     frames_left = camera.settling_frames - frames_since_change
     if frames_left <= 0:
         return picture
     pairs = picture.view("<u2")  # a colour byte below, its Y above
     luma = pairs >> 8
-    # one more array beside the result, and no third: fresh pages cost more than the arithmetic
+    # only one array besides the result: fresh pages cost more than the arithmetic
     spare = luma * np.uint16(frames_left * camera.y_step_256ths)
     spare >>= 8
     luma += spare

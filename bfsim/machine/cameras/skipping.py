@@ -1,4 +1,4 @@
-"""How a sensor makes smaller pictures: it skips pixels and lines (OV9650 data sheet, sub-sampling), and averages nothing."""
+"""How a sensor makes smaller pictures: it skips pixels and lines without averaging (OV9650 data sheet, sub-sampling)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 SKIPS = (1, 2, 4)
-"""One pixel of so many in each direction is sent: VGA, QVGA and QQVGA of a sensor of 640x480."""
+"""One pixel in so many is sent, in each direction: VGA, QVGA and QQVGA for a sensor of 640x480."""
 
 
 def skipped(picture: NDArray[np.uint8], step: int) -> NDArray[np.uint8]:
     """Return every `step`-th pixel of every `step`-th line of a UYVY picture (height, 2 · width).
 
-    Of two pixels that become a pair, the colour is that of the left one's pair. Both sides are rounded down.
+    Two pixels that become a pair get the colour of the left one's original pair. Width and height are rounded down.
     """
     if step == 1:
         return picture

@@ -1,1 +1,1 @@
-"""The detailed mode: the same buses with an event per transaction. Slow, and the judge of the fast mode."""
+"""The detailed mode: the same buses with an event per transaction. It is slow, and the fast mode is checked against it."""

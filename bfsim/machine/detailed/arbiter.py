@@ -1,4 +1,4 @@
-"""The arbiter of a memory in the detailed mode: one transaction of a master at a time.
+"""The arbiter of a memory in the detailed mode: one transaction of one master at a time.
 
 The cores take turns, and their loads go before their stores [assumed].
 """
@@ -25,7 +25,7 @@ CORE_OF = STORES | LOADS
 
 @dataclass(frozen=True, slots=True)
 class Grant:
-    """How an access went: tick of the grant, when the next can be given, and when its first and its last data are through."""
+    """The result of an access: ticks of the grant, of the next possible grant, and of the end of its first and last data."""
 
     at: int
     free: int
@@ -36,13 +36,13 @@ class Grant:
 
 
 def never() -> bool:
-    """Whether a master is urgent that cannot be."""
+    """Whether a master that is never urgent is urgent."""
     return False
 
 
 @dataclass(eq=False, slots=True)
 class Request:
-    """A transaction that a master asks for. `owner`: of the memory. `granted` happens with a Grant when it has the bus."""
+    """A transaction that a master requests. `owner` of the memory. `granted` happens with a Grant when it gets the bus."""
 
     granted: simpy.Event
     master: int
@@ -53,33 +53,33 @@ class Request:
     offset: int = 0
     is_urgent: Callable[[], bool] = never
     hold_cclk: int = 0
-    """How long it holds the port of L2."""
+    """Cycles for which it holds the port of L2."""
 
 
 def wait_until(env: Simulation, tick: int) -> Generator[simpy.Event, Any, None]:
-    """Wait until `tick`, unless it is over."""
+    """Wait until `tick`, unless it has passed."""
     if tick > env.tick:
         yield env.after(tick - env.tick)
 
 
 def traffic_at(owner: int, master: int) -> int:
-    """Return where in the state it is counted what a master moves to or from memory of an owner."""
+    """Return where in the state the counters of a master's traffic with an owner's memory are."""
     return w.TRAFFIC_AT + (owner * w.MASTERS + master) * w.TRAFFIC_WORDS
 
 
 def count_bytes(words: Any, master: int, owner: int, nbytes: int, *, write: bool) -> None:
-    """Count what a master moved to or from memory of an owner."""
+    """Count bytes that a master moved to or from an owner's memory."""
     words[traffic_at(owner, master) + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
 
 
 class CoreTurns:
-    """How the cores take turns: the one that was served last comes behind the other."""
+    """How the cores take turns: the one served last comes after the other."""
 
     def __init__(self) -> None:
         self._last_core = 1
 
     def rank(self, master: int) -> tuple[int, ...]:
-        """Return a key by which the master of a core that is served first is the least."""
+        """Return the key of a core's master. The least key is served first."""
         core = CORE_OF[master]
         return (master in STORES, core == self._last_core, core)
 
@@ -98,14 +98,14 @@ class Memory(Protocol):
         """Whether the memory does something of its own first."""
 
     def rank(self, request: Request) -> tuple[int, ...]:
-        """Return a key by which the request that is served first is the least."""
+        """Return the key of a request. The least key is served first."""
 
     def serve(self, request: Request) -> Grant:
-        """Do what is asked for, from now on."""
+        """Serve the request from now on."""
 
 
 class Arbiter:
-    """Whoever asks for a transaction of a memory waits until it is free, and the best of them has it."""
+    """Requests for a memory wait until it is free. The one with the best rank is served then."""
 
     def __init__(self, env: Simulation, memory: Memory) -> None:
         self._env = env
@@ -115,7 +115,7 @@ class Arbiter:
         env.process(self._play())
 
     def ask(self, request: Request) -> simpy.Event:
-        """Ask for a transaction; return the event of its grant."""
+        """Request a transaction. Return the event of its grant."""
         self._requests.append(request)
         if not self._asked.triggered:
             self._asked.succeed()
@@ -134,7 +134,7 @@ class Arbiter:
             request.granted.succeed(self._memory.serve(request))
 
     def _everybody_asked(self, tick: int) -> simpy.Event:
-        """Return the event at which all have asked that ask until `tick`."""
+        """Return the event at which all requests up to and including `tick` have been made."""
         event = self._env.event()
         event._ok, event._value = True, None  # noqa: SLF001  # as simpy.Timeout does
         self._env.schedule(event, LAST_OF_A_TICK, max(0, tick - self._env.tick))

@@ -1,6 +1,6 @@
-"""The bus of the detailed mode: every transaction an event, every master a process. Slow, and the judge of the fast mode.
+"""The bus of the detailed mode: every transaction is an event, every master a process. Slow; the fast mode is checked against it.
 
-It keeps the same counters as the fast mode's, but nothing of it is compiled and no two words move at once.
+It keeps the same counters as the fast mode's bus, but none of it is compiled, and words move one at a time.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
 NO_L2 = L2Spec(read_cclk=0, next_cclk=0, port_bytes=1)
-"""Of a chip without: nothing lies in it, and nobody asks for it."""
+"""For a chip without L2: nothing lies in it, and nothing requests it."""
 
 
 class DetailedBus:
-    """`Bus` by a process for each master."""
+    """`Bus` with a process for each master."""
 
     def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
         self._env = env
@@ -53,26 +53,26 @@ class DetailedBus:
         self._on_their_way: dict[int, DetailedTransfer] = {}
         env.follow(self)
 
-    # ---- time: nothing here is ever behind the simulation
+    # ---- time: nothing here ever lags behind the simulation
 
     def settle(self) -> None:
-        """Let nothing happen: everything that is due has."""
+        """Only sample the load: everything that is due has happened."""
         if told := self.records.told:
             told.sample(self._env.tick)
 
     def play_until(self, tick: int) -> bool:  # noqa: ARG002
-        """Do nothing, and stop at nothing: the simulation plays every master."""
+        """Do nothing, and never stop: the simulation plays every master."""
         return False
 
     @property
     def is_awaited(self) -> bool:
-        """Whether anybody waits for what only this bus knows: nobody does."""
+        """Whether anything waits for an end that only this bus knows: never."""
         return False
 
     # ---- transfers
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
-        """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
+        """Append a transfer to its master's queue. It begins at tick `at` or later."""
         number = self.words[w.ALL_POSTED]
         self.words[w.ALL_POSTED] = number + 1
         self.words[w.ENDS_AT + number % w.ENDS] = w.NONE
@@ -89,19 +89,19 @@ class DetailedBus:
         del self._on_their_way[number]
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at a transfer's end, which must not be known yet."""
+        """Return the event at the end of a transfer, which must not be known yet."""
         return self._on_their_way[transfer.number].done
 
     def when_row(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        """Return the event at the end of the next row that a transfer writes, or at its own end. Neither may be known yet."""
         event = self._env.event()
         self._on_their_way[transfer.number].rows.append(event)
         return event
 
     def moved_by(self, transfer: Transfer) -> int:
-        """Return how many elements a transfer that is not over has moved."""
+        """Return the number of elements that an unfinished transfer has moved."""
         return self._on_their_way[transfer.number].moved
 
     def lost_by(self, master: int) -> int:
-        """Return how many elements of a device found the FIFO of its DMA full."""
+        """Return the number of a device's elements that found the FIFO of its DMA full."""
         return self._channels[master].lost

@@ -1,4 +1,4 @@
-"""The cores on the buses of the detailed mode: what each of them has its port do."""
+"""The cores on the buses of the detailed mode: what each core has its port do."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class DetailedCalls:
         self._spins: dict[int, Spin] = {}
 
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
-        """Play a call."""
+        """Play a call's accesses."""
         done = self._env.event()
         accesses = self._logs.accesses(core, cclk, entries)
         self._env.process(self._ports[core].call(begin, cclk, accesses, done))
@@ -35,7 +35,7 @@ class DetailedCalls:
         self._spins[core] = self._ports[core].spin(since + self._spin_ticks, self._spin_ticks)
 
     def pause_spinning(self, core: int) -> None:
-        """Stop for a while."""
+        """Pause the spinning."""
         self._spins[core].is_paused = True
 
     def stop_spinning(self, core: int) -> simpy.Event:

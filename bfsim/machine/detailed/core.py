@@ -1,7 +1,7 @@
-"""A core on the buses of the detailed mode: the accesses of a kernel call one by one, and its store buffer beside it.
+"""A core on the buses of the detailed mode: the accesses of a kernel call, one by one, and the core's store buffer.
 
-A load, a line fill and a fetch wait for their data. A store goes into the buffer, and waits only when that is full; it keeps
-its place until it is written. A load of anything that is in the buffer waits until that is empty.
+Loads, line fills and fetches wait for their data. A store goes into the buffer, and waits only if that is full. It keeps its
+place there until it is written. A load of anything in the buffer waits until the buffer is empty.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from bfsim.machine.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class CoreAccess:
-    """One access outside L1: cycle of its call, what it is, where, the site that makes it, and who owns the memory."""
+    """One access outside L1: its cycle in the call, its kind, place and size, its site, and the owner of the memory."""
 
     stamp_cclk: int
     kind: int
@@ -42,7 +42,7 @@ class CoreAccess:
 
 @dataclass(slots=True)
 class Spin:
-    """A core that tries TESTSET again and again: the first try granted from tick `won_at` on is the last, its end `done`."""
+    """A core that repeats TESTSET. The first try granted from tick `won_at` on is the last, and `done` happens at its end."""
 
     done: simpy.Event
     won_at: int | None = None
@@ -50,12 +50,12 @@ class Spin:
 
 
 class CorePort:
-    """One core with its store buffer. `stalls`: cycles that the last call stalled, by reason, in the order of `bus.state`."""
+    """One core with its store buffer. `stalls` has the last call's stall cycles by reason, in the order of `bus.state`."""
 
     def __init__(
         self, env: Simulation, board: BoardSpec, sdram: SdramArbiter, l2: L2Port, words: Any, number: int
     ) -> None:
-        """`words`: the state of the bus."""
+        """`words` is the state of the bus."""
         self._env = env
         self._board = board
         self._sdram, self._l2, self._sdram_end = sdram, l2, words[w.SDRAM_END]
@@ -71,9 +71,9 @@ class CorePort:
     def call(
         self, begin: int, cclk: int, entries: Iterable[tuple[int, int]], done: simpy.Event
     ) -> Generator[simpy.Event, Any, None]:
-        """Make the accesses of a call of `cclk` cycles from tick `begin` on, each an entry of the log and its site.
+        """Make the accesses of a call of `cclk` cycles from tick `begin` on. Each is an entry of the log and its site.
 
-        `done` happens at its end.
+        `done` happens at the end of the call.
         """
         self.stalls = [0] * w.STALLS
         for entry, site in entries:
@@ -95,7 +95,7 @@ class CorePort:
         done.succeed()
 
     def _wait_for_line(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
-        """Stall until the last line is whole: a core reads one at a time."""
+        """Stall until the last line is complete: a core reads one line at a time."""
         late = self._line_done - self._env.tick
         if late > 0:
             reason = w.CODE_FETCH if access.kind == log.FETCH_LINE else w.CACHE_FILL
@@ -103,7 +103,7 @@ class CorePort:
             yield from self._issue(begin, access)
 
     def _stall(self, access: CoreAccess, reason: int, cycles: int) -> None:
-        """Charge what an access stalls to the call and to its site."""
+        """Charge the stall of an access to the call and to its site."""
         self.stalls[reason] += cycles
         self._words[self._at_site(access) + reason] += cycles
 
@@ -128,17 +128,17 @@ class CorePort:
         )
 
     def _issue(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
-        """Wait for the cycle of the call at which an access is made, behind everything that stalled so far."""
+        """Wait for the cycle of the call at which an access is made, after all stalls so far."""
         yield from wait_until(self._env, begin + (access.stamp_cclk + sum(self.stalls)) * self._cclk)
 
     def _cycles_since(self, tick: int, until: int) -> int:
-        """Cycles of which the core loses all but the access's own."""
+        """Return the cycles that the core loses between two ticks: all but the access's own."""
         return max(0, -(-(until - tick) // self._cclk) - 1)
 
     # ---- loads, fills and fetches
 
     def _read_sdram(self, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
-        """Read from SDRAM. The wait for an SCLK edge is part of the cycles of synchronisation."""
+        """Read from SDRAM. The wait for an SCLK edge is part of the synchronisation cycles."""
         issued = self._env.tick
         edge = self._edge(issued)
         yield from wait_until(self._env, edge)
@@ -146,7 +146,7 @@ class CorePort:
             w.CORE_A + self._number, access.owner, access.offset, access.nbytes, write=False
         )
         self._count_fill(access)
-        # a load needs all of its word; with a line the core goes on when its first word is there
+        # a load needs its whole word; with a line, the core goes on once the first word is there
         through = grant.through if access.kind == log.LOAD else grant.first_through
         sync = (self._board.chip.external.core_sync_sclk - 1) * self._sclk
         done = through + sync - (edge - issued)
@@ -156,9 +156,9 @@ class CorePort:
         yield from wait_until(self._env, done)
 
     def _charge_read(self, access: CoreAccess, grant: Grant, edge: int, cycles: int) -> None:
-        """Charge what a read stalls: up to its grant to the others on the bus, then to a refresh, and the rest to its page.
+        """Charge the stall of a read: until the grant to arbitration, then to a refresh, and the rest to its page.
 
-        That rest is the SDRAM's own: its latency, opening and closing a page, and turning the data bus round.
+        The rest is the SDRAM's own time: its latency, opening and closing a page, and turning the data bus around.
         """
         began = grant.at - grant.refresh_wait
         waited = min(cycles, max(0, began - edge) // self._cclk)
@@ -189,7 +189,7 @@ class CorePort:
         yield from wait_until(self._env, grant.free)
 
     def spin(self, begin: int, turn: int) -> Spin:
-        """Try TESTSET again and again from tick `begin` on, `turn` ticks behind the last one."""
+        """Repeat TESTSET from tick `begin` on, each `turn` ticks after the end of the previous one."""
         spin = Spin(self._env.event())
         self._env.process(self._spin(begin, turn, spin))
         return spin
@@ -228,7 +228,7 @@ class CorePort:
     def _wait_for_buffer(
         self, begin: int, access: CoreAccess, holds_up: Callable[[], bool]
     ) -> Generator[simpy.Event, Any, None]:
-        """Stall for as long as the buffer holds an access up, and make it then."""
+        """Stall as long as the buffer holds an access up, until it can be made."""
         since = self._env.tick
         while holds_up():
             yield self._buffer_changed
@@ -240,7 +240,7 @@ class CorePort:
         event.succeed()
 
     def _drain(self) -> Generator[simpy.Event, Any, None]:
-        """Write the stores of the buffer, the oldest first: the process of the store buffer."""
+        """Write the stores of the buffer, oldest first: the process of the store buffer."""
         while True:
             while not self._buffer:
                 yield self._buffer_changed

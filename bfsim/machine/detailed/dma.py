@@ -1,7 +1,7 @@
 """A DMA channel of the detailed mode: two processes with a FIFO between them, one that reads and one that writes, word by word.
 
-A side in SDRAM asks for the bus for each word. A side on the chip takes a word in a cycle; the first one is read while the
-channel starts. A side that is a device keeps the device's pace, and loses what finds the FIFO full.
+A side in SDRAM requests the bus for each word. A side on the chip takes a word per cycle; the first one is read while the
+channel starts. A side that is a device keeps the device's pace, and loses words that find the FIFO full.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Play = Generator[simpy.Event, Any, None]
 
 @dataclass(slots=True)
 class DetailedTransfer:
-    """A plan on its way, from tick `at` on. `done` happens at its end; `rows` at the end of the next row that it writes."""
+    """A plan in progress, from tick `at` on. `done` happens at its end, `rows` at the end of the next row that it writes."""
 
     number: int
     plan: TransferPlan
@@ -39,20 +39,20 @@ class DetailedTransfer:
     moved: int = 0
 
     def tell_row(self, moved: int) -> None:
-        """Tell those who wait for a row, if the last of `moved` elements ended one. The last row ends with the transfer."""
+        """Trigger the waits for a row if the last of `moved` elements ended one. The last row ends with the transfer."""
         self.moved = moved
         if moved % self.plan.destination.x_count == 0 and moved < self.plan.count:
             self.tell()
 
     def tell(self) -> None:
-        """Tell those who wait for a row."""
+        """Trigger the waits for a row."""
         waiting, self.rows = self.rows, []
         for event in waiting:
             event.succeed()
 
 
 def offsets(walk: Walk, count: int) -> Iterator[int]:
-    """Return where the first `count` elements of a walk lie, one after the other."""
+    """Yield the offsets of the first `count` elements of a walk."""
     line, first = 0, walk.offset
     for _ in range(count):
         yield first + line * walk.x_modify
@@ -63,13 +63,13 @@ def offsets(walk: Walk, count: int) -> Iterator[int]:
 
 
 def arrival(pace: Pace, number: int) -> int:
-    """Return the tick at which a device has element `number`, or has sent it: the end of its time on the wire."""
+    """Return the tick at which a device has received or sent element `number`: the end of its time on the wire."""
     line, place = divmod(number, pace.line_elements)
     return pace.start + ceil(line * pace.line_ticks + (place + 1) * pace.element_ticks)
 
 
 class DmaMaster:
-    """One master with its queue of transfers. `lost`: elements of a device that found the FIFO full."""
+    """One master with its queue of transfers. `lost` counts elements of a device that found the FIFO full."""
 
     def __init__(
         self,
@@ -96,7 +96,7 @@ class DmaMaster:
         env.process(self._play())
 
     def post(self, transfer: DetailedTransfer) -> None:
-        """Put a transfer behind the others."""
+        """Append a transfer to the queue."""
         self._queue.put(transfer)
 
     def _play(self) -> Generator[simpy.Event, Any, None]:
@@ -143,7 +143,7 @@ class DmaMaster:
     def _word(
         self, plan: TransferPlan, fifo: Fifo, offset: int, *, write: bool
     ) -> Generator[simpy.Event, Any, Grant]:
-        """Wait for the bus and return how the access of an element went."""
+        """Wait for the bus, and return the result of an element's access."""
 
         def is_urgent() -> bool:
             if plan.mode == w.PACED_IN:
@@ -179,7 +179,7 @@ class DmaMaster:
             yield from wait_until(self._env, grant.free)
 
     def _pause(self, word_sclk: Fraction) -> int:
-        """Add up what a word takes beyond a cycle; return the ticks that are due, always those of a FIFO of words."""
+        """Add up the time of a word beyond one cycle. Return the ticks that are due, always for a whole FIFO of words."""
         burst = self._board.chip.dma.fifo_words
         self._late += word_sclk - 1
         cycles = int(self._late / burst) * burst
@@ -187,7 +187,7 @@ class DmaMaster:
         return cycles * self._sclk
 
     def _next(self, fifo: Fifo) -> Generator[simpy.Event, Any, bool]:
-        """Wait until the next element is there; return False if there is none."""
+        """Wait until the next element is there. Return False if there is none."""
         while not fifo.can_give:
             if fifo.is_done:
                 return False
@@ -198,7 +198,7 @@ class DmaMaster:
     # ---- sides on the chip
 
     def _read_through_l2_port(self, plan: TransferPlan, fifo: Fifo) -> Play:
-        """Take a word in its time from the moment that the internal DMA has the port of L2."""
+        """Read words, each in its time from the moment that the internal DMA gets the port of L2."""
         memories, word = self._memories, int(plan.pace.element_ticks)
         times = sum(
             memories.sdram_end <= each.offset < memories.l2_end for each in (plan.source, plan.destination)
@@ -258,7 +258,7 @@ class DmaMaster:
         self._bytes[offset : offset + len(value)] = value
 
     def _count(self, plan: TransferPlan, offset: int, *, write: bool) -> None:
-        """Count what goes to L2, to L1 and to its sub-banks; the arbiter counts what goes to SDRAM."""
+        """Count traffic with L2, L1 and its sub-banks. The arbiter counts traffic with SDRAM."""
         memories = self._memories
         if memories.sdram_end <= offset < memories.l2_end or offset >= memories.l1:
             count_bytes(self._words, self._master, plan.owners[write], plan.element_bytes, write=write)

@@ -1,4 +1,4 @@
-"""The FIFO of a DMA channel: what was read on one side and waits to be written on the other."""
+"""The FIFO of a DMA channel: elements that were read on one side and wait to be written on the other."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from bfsim.machine.simulation import Simulation
 
 
 class Element(NamedTuple):
-    """What a DMA moves at a time, and the tick at which it is there."""
+    """The unit that a DMA moves, and the tick at which it is there."""
 
     value: bytes
     there_at: int
 
 
 class Fifo:
-    """Elements between the two sides of a transfer; the two wait for each other by `changed`.
+    """Elements between the two sides of a transfer, which wait for each other by `changed`.
 
-    Where the sides take turns, it is filled before anything leaves it, and emptied before more comes in.
+    If the sides take turns, it is filled before anything leaves it, and emptied before more comes in.
     """
 
     def __init__(self, env: Simulation, depth: int, *, takes_turns: bool) -> None:
@@ -47,7 +47,7 @@ class Fifo:
 
     @property
     def is_done(self) -> bool:
-        """Whether all have left, and no more come."""
+        """Whether all elements have left and no more will come."""
         return self._is_closed and not self._elements
 
     @property
@@ -57,28 +57,28 @@ class Fifo:
 
     @property
     def there_at(self) -> int:
-        """Tick at which that is there; where the sides take turns, all of them must be."""
+        """Tick at which the first element can leave. If the sides take turns, all must be there."""
         return self._elements[-1 if self._takes_turns else 0].there_at
 
     def put(self, element: Element) -> None:
-        """Let an element in."""
+        """Put in an element."""
         self._elements.append(element)
         self._is_draining |= len(self._elements) == self.depth
         self._change()
 
     def take(self) -> None:
-        """Let the first element leave."""
+        """Take out the first element."""
         self._elements.popleft()
         self._is_draining &= bool(self._elements)
         self._change()
 
     def close(self) -> None:
-        """Tell that no more come."""
+        """Note that no more elements will come."""
         self._is_closed = self._is_draining = True
         self._change()
 
     def changed(self) -> simpy.Event:
-        """Return the event at which something comes in or leaves the next time."""
+        """Return the event at which something next comes in or leaves."""
         event = self._env.event()
         self._waits.append(event)
         return event

@@ -1,7 +1,7 @@
-"""SDRAM by its rules, in plain Python: for each thing that can happen, the earliest tick at which it may.
+"""SDRAM by its rules, in plain Python: the earliest tick of everything that can happen.
 
-Written apart from the compiled `sdram.py`, from the same data: the two must agree. Commands are given in order, one a cycle;
-a precharge or an activation keeps the next access waiting, whatever bank that is for.
+Written independently of the compiled `sdram.py`, from the same data: the two must agree. Commands are issued in order, one per
+cycle. A precharge or an activation delays the next access, whatever its bank.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from bfsim.clocks import Clocks
 
 
 class Page(IntEnum):
-    """What an access finds: its page open, its bank closed, or another page open in it."""
+    """What an access finds: its page open, its bank closed, or another page open in the bank."""
 
     HIT = 0
     MISS = 1
@@ -23,7 +23,7 @@ class Page(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """What an access would meet: ticks of its activation (on a hit: none), of its command, and at which its data are through."""
+    """An access as it would go: ticks of its activation (none on a hit), of its command, and of the end of its data."""
 
     page: Page
     activated: int
@@ -33,7 +33,7 @@ class Access:
 
 @dataclass(slots=True)
 class SdramBank:
-    """One internal bank. From tick `precharge_from` its open page may be closed."""
+    """One internal bank. Its open page may be closed from tick `precharge_from` on."""
 
     is_open: bool = False
     page: int = 0
@@ -56,7 +56,7 @@ class SdramBanks:
         """Tick of the next refresh."""
 
     def probe(self, now: int, offset: int, *, write: bool) -> Access:
-        """Return what an access to `offset` asked for at tick `now` would meet."""
+        """Return how an access to `offset`, requested at tick `now`, would go."""
         spec, sclk = self._spec, self._sclk
         bank, page = self._banks[offset // spec.bank_bytes], offset // spec.page_bytes
         found, activated = Page.HIT, 0
@@ -74,7 +74,7 @@ class SdramBanks:
         return Access(found, activated, command, command + (spec.nCL + 1) * sclk)
 
     def issue(self, now: int, offset: int, *, write: bool, beats: int) -> Access:
-        """Make an access of `beats` words of the data bus, a cycle each; return what its first one met."""
+        """Make an access of `beats` words of the data bus, one cycle each. Return how the first one went."""
         spec, sclk = self._spec, self._sclk
         access = self.probe(now, offset, write=write)
         bank = self._banks[offset // spec.bank_bytes]
@@ -91,7 +91,7 @@ class SdramBanks:
         return access
 
     def refresh(self) -> None:
-        """Refresh as soon as it is due, the data before it are through and every bank can be closed."""
+        """Refresh as soon as it is due, earlier data are through and every bank can be closed."""
         closing = (bank.precharge_from for bank in self._banks if bank.is_open)
         begin = max(self.refresh_due, self.command_from, self._data_from, *closing)
         for bank in self._banks:

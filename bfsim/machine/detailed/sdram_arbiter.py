@@ -1,6 +1,6 @@
 """The arbiter of the SDRAM bus in the detailed mode.
 
-Who goes first (HRM of the BF537, 5-50 to 5-54): an urgent DMA before everything; DMA or cores, as CDPRIO says; of the DMAs
+Priorities (HRM of the BF537, 5-50 to 5-54): an urgent DMA goes before everything; then DMA or cores, as CDPRIO says; among DMAs,
 those in the direction of the traffic, while its period lasts; then the lower channel, memory DMA last.
 """
 
@@ -52,7 +52,7 @@ class SdramArbiter:
         write: bool,
         is_urgent: Callable[[], bool] = never,
     ) -> simpy.Event:
-        """Ask for the bus, to move `nbytes` to or from memory of an owner; return the event of its grant."""
+        """Request the bus, to move `nbytes` to or from an owner's memory. Return the event of the grant."""
         granted = self._env.event()
         return self._arbiter.ask(
             Request(granted, master, owner, nbytes, write=write, offset=offset, is_urgent=is_urgent)
@@ -73,7 +73,7 @@ class SdramArbiter:
         return late > 0
 
     def rank(self, request: Request) -> tuple[int, ...]:
-        """Return a key by which the request that is served first is the least."""
+        """Return the key of a request. The least key is served first."""
         if request.master in CORE_OF:
             return (True, self._board.dma_over_core, *self._core_turns.rank(request.master))
         against = self._direction_left > 0 and request.write != self._direction
@@ -85,7 +85,7 @@ class SdramArbiter:
         )
 
     def serve(self, request: Request) -> Grant:
-        """Do what is asked for, from now on."""
+        """Serve the request from now on."""
         now, banks, write = self._env.tick, self._banks, request.write
         beats = max(1, request.nbytes // self._board.sdram.word_bytes)
         access = banks.issue(now, request.offset, write=write, beats=beats)
@@ -101,7 +101,7 @@ class SdramArbiter:
         )
 
     def _go_on(self, request: Request) -> None:
-        """Count a transfer of a DMA to the periods of traffic control."""
+        """Count a DMA's transfer towards the periods of traffic control."""
         if request.write != self._direction:
             self._direction, self._direction_left = request.write, self._board.deb_period_transfers
         elif self._direction_left:
@@ -118,19 +118,19 @@ class SdramArbiter:
 
 
 class MdmaTurns:
-    """How the two memory DMA streams of a controller take turns: in bursts of up to `period` words; 0: stream 0 goes first."""
+    """How the two memory DMA streams of a controller take turns: in bursts of up to `period` words. With 0, stream 0 goes first."""
 
     def __init__(self, period: int) -> None:
         self._period = period
         self._left = dict.fromkeys(RANKS, period)
 
     def rank(self, master: int) -> int:
-        """Return the rank of a channel; a stream that had its turn comes behind its partner."""
+        """Return the rank of a channel. A stream that had its turn comes after its partner."""
         had_its_turn = self._period and master in PARTNERS and not self._left[master]
         return RANKS[PARTNERS[master]] + 1 if had_its_turn else RANKS[master]
 
     def count(self, master: int) -> None:
-        """Count a word of a channel; after the last one of its turn the partner has its own."""
+        """Count a word of a channel. After the last word of its turn, it is the partner's turn."""
         if not self._period or master not in PARTNERS:
             return
         self._left[master] = max(0, self._left[master] - 1)

@@ -1,1 +1,1 @@
-"""The peripherals of the chip beside the cameras, and what devices at their other ends are."""
+"""The peripherals of the chip besides the cameras, and the devices at their other ends."""

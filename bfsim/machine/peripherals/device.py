@@ -1,6 +1,6 @@
-"""The other end of a peripheral: how firmware brings a device that its board talks to.
+"""The other end of a peripheral: how firmware provides a device that its board talks to.
 
-A device is a class that says what happens at the far end of the wire, such as that of the SPI:
+A device is a class that says what happens at the far end of a wire, such as that of the SPI:
 
     class Echo(SpiDevice):
         '''Sends everything back, a millisecond after it came.'''
@@ -28,9 +28,9 @@ and talks to it from a main loop:
     yield from core.send(row, nbytes)          # to `receive`, as soon as the last word is out
     nbytes = yield from core.receive(row)      # from `send`, if `requests`; 0 bytes if not
 
-What is simulated is the board's side: registers, DMA, the time of each word on the wire, the interrupt of the DMA. A device
-itself takes no time of the board; when something of its own takes time, it says so in `requests`, by `now_ns`. Equal
-runs must be equal: a device may depend on its script, on what it received and on `now_ns`, and on nothing else.
+Only the board's side is simulated: registers, DMA, the time of each word on the wire, the interrupt of the DMA. The device
+itself costs the board no time. If something of its own takes time, `requests` says so by `now_ns`. Runs must be
+reproducible: a device may depend only on its script, on what it received and on `now_ns`.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ LARGEST_MESSAGE_BYTES = 4096
 """Room for a message on its way. [ours]"""
 
 Script = Mapping[str, Any]
-"""What a JSON or TOML file for a device says, as dicts, lists, strings and numbers; empty without a file."""
+"""The content of a JSON or TOML file for a device, as dicts, lists, strings and numbers. Empty without a file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """What a device sends in one transfer: what the report calls it, and its words as bytes, low byte first."""
+    """What a device sends in one transfer: its name in the report, and its words as bytes, low byte first."""
 
     type: str
     octets: bytes
@@ -73,43 +73,43 @@ class Message:
 
 
 class Device:
-    """A device at the other end of a peripheral. As it stands it takes everything and never has anything to say.
+    """A device at the other end of a peripheral. By default it accepts everything and never sends anything.
 
-    Derive from that of the peripheral and override what your device does. One object serves one run. Raise FirmwareError to
-    end the run, for instance in `receive` when what came is nothing that the device understands: the message is shown to the
-    user.
+    Derive from the peripheral's own device class and override what your device does. One object serves one run. Raise
+    FirmwareError to end the run, for instance in `receive` if the device does not understand a message: the user sees the
+    error's text.
     """
 
     def receive(self, octets: bytes, now_ns: int) -> str:
-        """Take what the board sent, words as bytes, low byte first; return what the report is to call it.
+        """Take what the board sent, words as bytes, low byte first. Return its name for the report.
 
-        Called once a transfer, when its last word is in, at `now_ns` ns after the start of the run.
+        Called once per transfer, when its last word is in, at `now_ns` ns after the start of the run.
         """
         return "words"
 
     def requests(self, now_ns: int) -> bool:
-        """Whether the request line is asserted at `now_ns`: there is something to send. Asked whenever firmware looks."""
+        """Whether the request line is asserted at `now_ns`: there is something to send. Called whenever firmware looks."""
         return False
 
     def send(self, now_ns: int) -> Message:
-        """Return the next message, for firmware begins to take it at `now_ns`. Called only where `requests` is true.
+        """Return the next message: firmware begins to receive it at `now_ns`. Called only if `requests` is true.
 
-        What has no room in the firmware's buffer is lost, as on a wire that nobody listens to.
+        Words without room in the firmware's buffer are lost, as on a wire that no one listens to.
         """
         raise NotImplementedError("a device that requests must send")
 
     def finish(self) -> Sequence[str]:
-        """Return what the user is to be warned of when the run is over, a sentence each, such as what was never fetched."""
+        """Return warnings for the user when the run is over, a sentence each, such as about messages never fetched."""
         return ()
 
 
 MakeDevice = Callable[[Script], Device]
-"""The script of the user, empty without one → a new device; raises a FirmwareError that names the key and what it must be."""
+"""The script of the user, empty without one → a new device. Raises a FirmwareError that names the key and what it must be."""
 
 
 @contextmanager
 def device_at_work(peripheral: str) -> Iterator[None]:
-    """Turn what goes wrong inside the device on a peripheral into a FirmwareError that names the device's line."""
+    """Turn an error inside the device on a peripheral into a FirmwareError that names the device's line."""
     try:
         yield
     except BfsimError:
@@ -122,7 +122,7 @@ def device_at_work(peripheral: str) -> Iterator[None]:
 
 
 def notes_of(device: Device, peripheral: str) -> tuple[str, ...]:
-    """Return what the device on a peripheral has the user warned of, now that the run is over."""
+    """Return the warnings of the device on a peripheral, now that the run is over."""
     with device_at_work(peripheral):
         notes = device.finish()
     if isinstance(notes, str) or not all(isinstance(each, str) for each in notes):

@@ -1,4 +1,4 @@
-"""A peripheral beside the cameras: a serial port that moves messages by DMA, between buffers of the firmware and a device."""
+"""A peripheral other than a camera: a serial port that moves messages by DMA between buffers of the firmware and a device."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from bfsim.trace import MessageRecord
 
 
 class Peripheral:
-    """What all peripherals do. One of them says what it is called, what its messages and its device are, and how its wires go."""
+    """The common part of all peripherals. Each says its name, the classes of its messages and device, and its wires."""
 
     name: ClassVar[str]
-    """What firmware, records and reports call it; firmware brings its device under this name in small letters."""
+    """Its name in firmware, records and reports. Firmware provides its device under this name in lower case."""
     device_kind: ClassVar[type[Device]]
     message_kind: ClassVar[type[Message]]
     transfer_writes: ClassVar[int]
-    """Registers that a transfer needs."""
+    """Registers to write for a transfer."""
     wires: ClassVar[int]
-    """How many transfers it has at a time; each needs room for a message outside."""
+    """Number of simultaneous transfers. Each needs room for a message outside."""
 
     def __init__(
         self, around: Surroundings, device: Device, specs: tuple[WireSpec, ...], outside: int
     ) -> None:
-        """`specs`: of the wire out and of the wire in, or of the one for both. `outside`: where messages stand on their way."""
+        """`specs` of the wire out and the wire in, or of one for both. `outside` is where messages are on their way."""
         self._around = around
         self._device = device
         wires = [
@@ -38,11 +38,11 @@ class Peripheral:
         ]
         self._out, self._in = wires[0], wires[-1]
         self.records: list[MessageRecord] = []
-        """Every message so far, in order of their ends."""
+        """All messages so far, in order of their ends."""
 
     @property
     def sending(self) -> simpy.Event | None:
-        """The event at which the wire out is free, None if it is."""
+        """The event at which the wire out becomes free, None if it is free."""
         return self._out.busy
 
     @property
@@ -52,7 +52,7 @@ class Peripheral:
 
     @property
     def has_message(self) -> bool:
-        """Whether the device has something to say, and the wire is free for it."""
+        """Whether the device has something to send, and the wire is free for it."""
         if self._in.busy is not None:
             return False
         with device_at_work(self.name):
@@ -60,7 +60,7 @@ class Peripheral:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user must be warned of, now that the run is over: what was lost, and what the device has to say."""
+        """Warnings for the user, now that the run is over: about lost words, and from the device."""
         lost = self._in.lost
         loss = (f"{lost} words came while the FIFO of the DMA was full, and were lost",) if lost else ()
         return (*loss, *notes_of(self._device, self.name))
@@ -84,7 +84,7 @@ class Peripheral:
         self._record("out", kind, len(octets), begin)
 
     def receive(self, row: Row) -> tuple[Transfer, int]:
-        """Begin to take the next message into `row`; return the transfer and its bytes. What has no room there is lost."""
+        """Begin to receive the next message into `row`. Return the transfer and its bytes. Words without room there are lost."""
         with device_at_work(self.name):
             message = self._device.send(self._now_ns)
         if not isinstance(message, self.message_kind):

@@ -1,4 +1,4 @@
-"""The SPI: the board is its master, and moves 16-bit words through DMA2 channel 4, one direction at a time."""
+"""The SPI: the board is the master, and moves 16-bit words through DMA2 channel 4, one direction at a time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.machine.peripherals.wire import Surroundings, WireSpec
 
 
 class SpiMessage(Message):
-    """What a device on the SPI sends in one transfer: what the report calls it, and its words as bytes, low byte first."""
+    """What a device on the SPI sends in one transfer: its name in the report, and its words as bytes, low byte first."""
 
     over = "SPI"
     word_bytes = 2  # SPI_CTL with SIZE

@@ -1,4 +1,4 @@
-"""The peripherals of a board in one table. All that others know of them is derived from it."""
+"""The peripherals of a board in one table. Everything else about them is derived from it."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from bfsim.machine.program import Firmware
 PERIPHERALS = (Spi, Uart)
 
 OUTSIDE_NBYTES = sum(each.wires for each in PERIPHERALS) * LARGEST_MESSAGE_BYTES
-"""Room for the messages of all of them on their way."""
+"""Room for the messages of all peripherals on their way."""
 
 
 def wired(around: Surroundings, devices: Mapping[str, Device], outside: int) -> dict[str, Peripheral]:
-    """Return the peripherals of a board by name, with `devices` at their other ends. `outside`: where the room above begins."""
+    """Return the peripherals of a board by name, with `devices` at their other ends. `outside` is where the room above begins."""
     made: dict[str, Peripheral] = {}
     for kind in PERIPHERALS:
         made[kind.name] = kind(
@@ -30,13 +30,13 @@ def wired(around: Surroundings, devices: Mapping[str, Device], outside: int) -> 
 
 
 def makers_of(firmware: Firmware) -> dict[str, MakeDevice]:
-    """Return what makes the devices that a firmware brings, by the names of their peripherals."""
+    """Return the functions that make the firmware's devices, by the names of their peripherals."""
     fields = {each.name: getattr(firmware, each.name.lower()) for each in PERIPHERALS}
     return {name: make for name, make in fields.items() if make is not None}
 
 
 def devices_of(firmware: Firmware, script: Script) -> dict[str, Device]:
-    """Return a new device for each peripheral that a firmware brings one for, which does as the script says."""
+    """Return a new device, following the script, for each peripheral for which the firmware provides one."""
     kinds = {each.name: each.device_kind for each in PERIPHERALS}
     devices = {}
     for name, make in makers_of(firmware).items():

@@ -1,7 +1,7 @@
-"""The UART: bytes out through DMA2 channel 6 and in through channel 5, both at a time, between two ends with clocks of their own.
+"""The UART: bytes go out through DMA2 channel 6 and in through channel 5, simultaneously, between two ends with their own clocks.
 
-XXX: UART_TX_DMA comes with the last stop bit; on the chip when the last byte is in UART_THR, up to two bytes earlier. Bytes
-that come while nobody receives are not there: the device waits for the board, as with a flag for a clear-to-send line.
+XXX: UART_TX_DMA comes with the last stop bit; on the chip it comes when the last byte is in UART_THR, up to two bytes earlier. No
+bytes come while the board does not receive: the device waits for it, as with a flag as a clear-to-send line.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from bfsim.machine.peripherals.wire import Surroundings, WireSpec
 
 
 class UartMessage(Message):
-    """What a device on the UART sends in one transfer: what the report calls it, and its bytes."""
+    """What a device on the UART sends in one transfer: its name in the report, and its bytes."""
 
     over = "UART"
     word_bytes = 1
@@ -26,8 +26,8 @@ class UartMessage(Message):
 class UartDevice(Device):
     """A device at the other end of the UART, with 8 data bits, no parity and one stop bit. Its messages are `UartMessage`.
 
-    `baud`: the rate at which it sends and listens. The board's divisor latch is set to the nearest one that it has, at which
-    the board sends; they must be near enough to understand each other.
+    `baud` is the rate at which it sends and listens. The board's divisor latch is set to its nearest rate, at which the board
+    sends. The two rates must be close enough for both to understand each other.
     """
 
     baud: Fraction | int = 115_200

@@ -1,4 +1,4 @@
-"""A wire of a serial peripheral: words to and from its other end, one direction at a time, through a DMA channel."""
+"""A wire of a serial peripheral: words to and from its other end through a DMA channel, one direction at a time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from bfsim.machine.simulation import Simulation
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surroundings:
-    """What a board has for its peripherals. `interrupt`: asks for the interrupt of that name on every core."""
+    """What a board has for its peripherals. `interrupt` requests the interrupt with that name on every core."""
 
     env: Simulation
     board: BoardSpec
@@ -30,7 +30,7 @@ class Surroundings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WireSpec:
-    """How words go over a wire: the DMA that moves them, as a row of `bus.state`, the interrupt at its end, and their time."""
+    """How words go over a wire: the DMA that moves them, as a row of `bus.state`, the interrupt at its end, and the words' time."""
 
     master: int
     interrupt: str
@@ -39,10 +39,10 @@ class WireSpec:
 
 
 class Wire:
-    """A wire of a board. `busy` is the event at which the present transfer ends, or the last one that waits for its turn."""
+    """A wire of a board. `busy` is the event at which the current transfer ends, or the last one queued after it."""
 
     def __init__(self, around: Surroundings, spec: WireSpec, outside: int) -> None:
-        """`outside`: where in the arena a message stands on its way."""
+        """`outside` is where in the arena a message is on its way."""
         self._around = around
         self._env = around.env
         self._bus = around.bus
@@ -52,17 +52,17 @@ class Wire:
 
     @property
     def lost(self) -> int:
-        """How many words found the FIFO of the DMA full."""
+        """Number of words that found the DMA's FIFO full."""
         return self._bus.lost_by(self._spec.master)
 
     def send(self, row: Row, nbytes: int, on_out: Callable[[bytes, int], None]) -> None:
-        """Begin to send the first `nbytes` of `row`; when they are out, `on_out` is called with them and the tick of the first."""
+        """Begin to send the first `nbytes` of `row`. At the end, `on_out` is called with them and the tick of the first."""
         self.busy = self._env.process(self._send(row, nbytes, on_out, self.busy))
 
     def _send(
         self, row: Row, nbytes: int, on_out: Callable[[bytes, int], None], before: simpy.Event | None
     ) -> Generator[Any, Any, None]:
-        """Send, once the transfer `before` is through: both cores may have waited for that one."""
+        """Send once the transfer `before` is over: both cores may have waited for it."""
         if before is not None:
             yield before
         begin, spec = self._env.tick, self._spec
@@ -77,9 +77,9 @@ class Wire:
     def receive(
         self, octets: bytes, row: Row, name: str, on_in: Callable[[int, int], None]
     ) -> tuple[Transfer, int]:
-        """Begin to take `octets`, called `name`, into `row`; return the transfer and its bytes.
+        """Begin to receive `octets`, called `name`, into `row`. Return the transfer and its bytes.
 
-        DMA takes as many words as `row` has room for. When they are in, `on_in` is called with their bytes and the tick of the first.
+        DMA takes as many words as `row` has room for. At the end, `on_in` is called with their number of bytes and the first one's tick.
         """
         spec = self._spec
         nbytes = min(len(octets), row.nbytes // spec.word_bytes * spec.word_bytes)
@@ -100,7 +100,7 @@ class Wire:
         return transfer, nbytes
 
     def _finish(self, transfer: simpy.Event | None) -> None:
-        """End `transfer`, which is the present one unless another one has queued up behind it."""
+        """End `transfer`, the current one. The wire stays busy if another one has queued up after it."""
         if self.busy is transfer:
             self.busy = None
         self._around.interrupt(self._spec.interrupt)

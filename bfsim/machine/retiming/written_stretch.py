@@ -119,11 +119,12 @@ def write_stretch(
     state_at: Any, core: int, frame_at: Any, octets_at: Any, halves_at: Any, words_in_at: Any, longs_at: Any, copies_at: Any, kinds_at: Any,
     calls: int, must_look: int,
 ) -> int:  # fmt: skip
-    """Write the next operations of a frame up to a call of its firmware or its end, or as many as a stretch can have; return how many.
+    """Write the next operations of a frame up to a call of its firmware or its end, or as many as fit a stretch. Return how many.
 
-    It goes on behind the call. It stops before the beginning of a stage, too, where Python must look at that which ends.
+    The next time it goes on after the call. It also stops before the beginning of a stage if Python must look at the one that ends.
 
-    The arrays: the words above; the octets of a `PackedWork` in each of its widths; rows of what is behind COPY for each copy; and what running each of so many `calls` is to the bus.
+    The arrays: the words above; the octets of a `PackedWork` in each width; the numbers after COPY, a row for each copy; and the kind of
+    operation of each of the `calls`.
     """
     state, frame = words_at(state_at), words_at(frame_at)
     views = words_at(octets_at), words_at(halves_at), words_at(words_in_at), words_at(longs_at)
