@@ -163,7 +163,7 @@ class _Watcher:
 
     def __init__(self) -> None:
         add_leavable_calls()
-        for name, value in (MAIN_THREAD, main_thread().ident or 0), (TURNS, 0):  # a forked process may have other values
+        for name, value in (MAIN_THREAD, main_thread().ident or 0), (TURNS, 0):  # a fork may have others
             ctypes.c_int64.from_address(machine_code.address_of(name)).value = value
         pressed, self.woken_by = os.pipe()
         os.set_blocking(self.woken_by, False)

@@ -1,7 +1,7 @@
 """The timeline of a run: flat records of what each core and device did, and from which cycle to which.
 
 They are handed out during the run (`bfsim.run.simulate(..., on_spans=...)`), so a long run takes no more memory. Cycles
-are CCLK cycles from the start of the run. Whatever a device does between two CCLK edges begins or ends at the next one.
+are CCLK cycles from the start of the run. What devices do between two CCLK edges begins and ends at the next edge.
 """
 
 from __future__ import annotations

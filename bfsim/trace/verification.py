@@ -31,7 +31,7 @@ class VerifiedKernel:
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """All kernels of a run, the slowest first. `compiler` is its version.
+    """All kernels of a run, the slowest first. `compiler` is the compiler's version.
 
     `is_judged` says whether the GNU simulator played the calls, too. If not, the measured cycles are those of the translated code.
     """

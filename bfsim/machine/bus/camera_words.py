@@ -1,6 +1,6 @@
-"""Cameras on the bus, compiled: words that come while nobody else wants the bus, into pages that are open. Most requests are such.
+"""Cameras on the bus, compiled: words into open pages while nothing else needs the bus. Most requests are of this kind.
 
-What they do is what `dma_requests` and `sdram` would do with each; what cannot come up among them is left out.
+The effect is what `dma_requests` and `sdram` would do for each word, without the cases that cannot occur here.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from bfsim.machine.bus.traffic import traffic_at
 from bfsim.machine.bus.walk import WORD_BITS, WORD_BYTES
 
 SLOW_SCLK = 4
-"""A camera whose words are so far apart loses none, and none gets urgent, while it waits for a word of the other one."""
+"""A camera whose words are at least so many SCLK apart loses none, and none becomes urgent, while it waits for the other camera's."""
 
 
 @native
 def transfer_of(state: State, number: int) -> int:
-    """Return where the transfer of a master stands."""
+    """Return where the transfer of a master is."""
     return w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
 
 
 @native
 def hits_of(state: State, number: int) -> int:
-    """How many words of a PPI are sure to be hits, and to be followed by another one in their line: 0 where it does anything else."""
+    """Return how many words of a PPI are sure to hit and to be followed by another one in their line, 0 if it does anything else."""
     master = w.MASTERS_AT + number
     if (
         state[master + w.TRANSFER] == w.NONE
@@ -54,10 +54,10 @@ def hits_of(state: State, number: int) -> int:
 
 @native
 def take_hits(state: State, memory: Memory, limit: int) -> None:
-    """Take the words of both PPIs that come before tick `limit`, up to which nobody else wants the bus and no refresh is due.
+    """Take the words of both PPIs that come before tick `limit`, until which nothing else needs the bus and no refresh is due.
 
-    All at once: words of a camera are so far apart that each has the bus as soon as it is there, or, where the left one comes
-    at the same time, right behind that, which has the better rank.
+    This works for all at once because a camera's words are so far apart that each gets the bus as soon as it is there, or
+    right after the left camera's word of the same time, which has the better rank.
     """
     left_ready, right_ready = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
     free, sclk, first = state[w.COMMAND_FREE], state[w.SCLK], min(left_ready, right_ready)
@@ -81,13 +81,13 @@ def take_hits(state: State, memory: Memory, limit: int) -> None:
 
 @native
 def word_at(state: State, number: int, ahead: int) -> int:
-    """Return when a PPI asks for the bus with the word `ahead` of its next one, both of one line."""
+    """Return when a PPI requests the bus for the word `ahead` words after its next one, in the same line."""
     return aligned(arrival(state, transfer_of(state, number), ahead), state[w.SCLK])
 
 
 @native
 def words_before(state: State, number: int, tick: int) -> int:
-    """With how many words a PPI asks for the bus before a tick, all of one line."""
+    """Return for how many words of its line a PPI requests the bus before a tick."""
     transfer, sclk = transfer_of(state, number), state[w.SCLK]
     last_edge = (tick - 1) // sclk * sclk
     there = state[transfer + w.LINE_BEGAN] + (state[transfer + w.PLACE] + 1) * state[transfer + w.ELEMENT]
@@ -97,7 +97,7 @@ def words_before(state: State, number: int, tick: int) -> int:
 
 @native
 def granted_at(state: State, ahead: int, left: int) -> int:
-    """Return when the right PPI has the bus for the word `ahead` of its next one, the left one having it for so many words."""
+    """Return when the right PPI gets the bus for the word `ahead` words after its next one, if the left one has it for `left` words."""
     at, sclk = word_at(state, w.PPI1, ahead), state[w.SCLK]
     if left == 0:
         return at
@@ -107,7 +107,7 @@ def granted_at(state: State, ahead: int, left: int) -> int:
 
 @native
 def take_words(state: State, memory: Memory, number: int, count: int, free: int) -> None:
-    """Write so many words of a PPI into the page that is open for it; the bus is free behind them at a tick."""
+    """Write so many words of a PPI into its open page. The bus is free after them at tick `free`."""
     if count == 0:
         return
     master, transfer, sclk = w.MASTERS_AT + number, transfer_of(state, number), state[w.SCLK]

@@ -1,4 +1,4 @@
-"""The port of L2 as the cores use it, compiled: loads, lines and code that are read, and bytes that are tested and set."""
+"""The port of L2 as used by the cores, compiled: reads of words, lines and code, and TESTSET."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.machine.bus.traffic import count_traffic
 
 @native
 def hold_l2(state: State, core: int, at: int, nbytes: int) -> int:
-    """Let a core have the port of L2 from tick `at` on for `nbytes`; return when it is free again."""
+    """Let a core have the port of L2 from tick `at` on for `nbytes`. Return when the port is free again."""
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
     state[w.L2_FREE] = at + hold_of(state, nbytes)
     return state[w.L2_FREE]
@@ -21,20 +21,20 @@ def hold_l2(state: State, core: int, at: int, nbytes: int) -> int:
 
 @native
 def hold_of(state: State, nbytes: int) -> int:
-    """Return for how many ticks `nbytes` hold the port."""
+    """Return the ticks for which `nbytes` hold the port."""
     return ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
 
 
 @native
 def wait_for_l2(state: State, core: int, at: int) -> None:
-    """Stall a core from its present access until it has the port of L2, at tick `at`."""
+    """Stall a core from its current access until it gets the port of L2, at tick `at`."""
     stall(state, core, at + state[w.CCLK], w.L2_PORT)
     state[w.JOBS_AT + core * w.JOB_WORDS + w.ISSUED_AT] = at
 
 
 @native
 def read_l2(state: State, core: int, at: int, kind: int, offset: int) -> int:
-    """Read from L2 through the port that both cores share; return when the first data are there."""
+    """Read from L2 through the port that both cores share. Return when the first data are there."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     nbytes = bytes_of(state, kind)
     hold_l2(state, core, at, nbytes)
@@ -49,7 +49,7 @@ def read_l2(state: State, core: int, at: int, kind: int, offset: int) -> int:
 
 @native
 def test_and_set(state: State, core: int, at: int) -> int:
-    """Read and write a byte of L2 with the port locked; return when that is done."""
+    """Read and write a byte of L2 with the port locked. Return when that is done."""
     locked = state[w.L2_READ] + state[w.L2_NEXT]
     wait_for_l2(state, core, at)
     stall(state, core, at + locked + state[w.CCLK], w.L2_LATENCY)
@@ -59,7 +59,7 @@ def test_and_set(state: State, core: int, at: int) -> int:
 
 @native
 def try_lock(state: State, core: int, at: int, until: int) -> None:
-    """Let a core that spins try its lock from tick `at` on, as often as nobody else wants the port until a tick."""
+    """Let a spinning core try its lock from tick `at` on. Until tick `until`, nothing else needs the port."""
     locked = state[w.L2_READ] + state[w.L2_NEXT]
     turn = locked + state[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN]
     tries = tries_before(at, turn, until)
@@ -69,29 +69,29 @@ def try_lock(state: State, core: int, at: int, until: int) -> None:
 
 @native
 def lock_l2(state: State, core: int, free: int, times: int) -> None:
-    """Let a core have the port of L2 until it is free again at a tick, and count what it has read and written so many times."""
+    """Let a core have the port of L2 until tick `free`, and count what it has read and written in so many tries."""
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2], state[w.L2_FREE] = core, 0, free
     count_tries(state, core, times)
 
 
 @native
 def tries_before(at: int, turn: int, until: int) -> int:
-    """How often a core that spins tries its lock from tick `at` on, every `turn` ticks, before another tick: once at least."""
+    """Return how often a spinning core tries its lock from tick `at` on, every `turn` ticks, before tick `until`: at least once."""
     room = until - at - 1
-    if room < 2 * turn:  # most often; a division takes the host longer than all else here
+    if room < 2 * turn:  # the usual case; a division takes the host longer than everything else here
         return 1 if room < turn else 2
     return 1 + room // turn
 
 
 @native
 def count_tries(state: State, core: int, times: int) -> None:
-    """Count what a core has read and written that has tried a lock so many times."""
+    """Count what a core has read and written by trying a lock so many times."""
     for write in (False, True):
         count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, times * w.CORE_WORD_BYTES)
 
 
 @native
 def has_turn(state: State, core: int) -> bool:
-    """Whether a core comes before the other one at the port."""
+    """Whether a core goes before the other one at the port."""
     last = state[w.LAST_CORE_AT_L2]
     return last == w.CORES - 1 - core or (last == w.NONE and core == 0)

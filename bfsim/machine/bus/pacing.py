@@ -1,4 +1,4 @@
-"""A device that sets the pace, a camera or the SPI: when its elements are there, and what is lost when a DMA comes late."""
+"""A device that sets the pace, such as a camera or the SPI: when its elements are there, and what is lost if a DMA is late."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def aligned(tick: int, period: int) -> int:
 
 @native
 def arrival(state: State, transfer: int, ahead: int) -> int:
-    """Return when a device has the element `ahead` of the next one, or has sent it: the end of its time on the wire."""
+    """Return when a device has received or sent the element `ahead` elements after the next one: the end of its time on the wire."""
     place, began = state[transfer + w.PLACE] + ahead, state[transfer + w.LINE_BEGAN]
     while place >= state[transfer + w.LINE_ELEMENTS]:
         place -= state[transfer + w.LINE_ELEMENTS]
@@ -32,7 +32,7 @@ def arrival(state: State, transfer: int, ahead: int) -> int:
 
 @native
 def step_device(state: State, transfer: int, count: int) -> None:
-    """Go on by `count` elements of the device's line."""
+    """Advance by `count` elements of the device's line."""
     state[transfer + w.PLACE] += count
     if state[transfer + w.PLACE] == state[transfer + w.LINE_ELEMENTS]:
         state[transfer + w.PLACE] = 0
@@ -41,9 +41,9 @@ def step_device(state: State, transfer: int, count: int) -> None:
 
 @native
 def burst_of(state: State, transfer: int) -> int:
-    """How many elements a device's DMA moves at once: each as it comes in, but half a FIFO on its way out.
+    """Return how many elements a device's DMA moves at once: one on the way in, but half a FIFO on the way out.
 
-    So the other half is there while the DMA waits for the bus.
+    The other half is there while the DMA waits for the bus.
     """
     if state[transfer + w.MODE] == w.PACED_IN:
         return 1
@@ -55,7 +55,7 @@ def burst_of(state: State, transfer: int) -> int:
 
 @native
 def next_paced(state: State, master: int, transfer: int) -> None:
-    """Set when the device's next burst wants to move: when it is there, or when the FIFO has room for it."""
+    """Set when the device's next burst can move: when it is there, or when the FIFO has room for it."""
     burst, ready = burst_of(state, transfer), state[transfer + w.START]
     if state[transfer + w.MODE] == w.PACED_IN:
         ready = arrival(state, transfer, burst - 1)
@@ -66,9 +66,9 @@ def next_paced(state: State, master: int, transfer: int) -> None:
 
 @native
 def lose(state: State, memory: Memory, master: int, transfer: int, at: int) -> None:
-    """Drop the elements that came before tick `at` and found the FIFO full; the picture goes on without them.
+    """Drop the elements that came before tick `at` and found the FIFO full. The picture goes on without them.
 
-    Those in the FIFO take the places of the last ones dropped, where the device's memory is read next.
+    Elements in the FIFO take the places of the last dropped ones, where the device's memory is read next.
     """
     fifo, lost = state[master + w.FIFO], 0
     while state[transfer + w.LEFT] > fifo + lost and arrival(state, transfer, fifo + lost) < at:

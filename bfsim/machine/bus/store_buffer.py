@@ -1,4 +1,4 @@
-"""The store buffer of a core, compiled: a store goes in and waits only when it is full; it is written when its bus is free."""
+"""The store buffer of a core, compiled: a store goes in, waits only if the buffer is full, and is written when its bus is free."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_access, count_traffic
 
 WHAT_MASK = (1 << log.STAMP_BIT) - 1
-"""Of an entry of the log: kind and offset. In the store buffer the site takes the place of the stamp."""
+"""Kind and offset of an entry of the log. In the store buffer, the site replaces the stamp."""
 
 
 @native
@@ -54,7 +54,7 @@ def put_at(state: State, job: int, place: int, entry: int, site: int) -> None:
 
 @native
 def prepare_drain(state: State, core: int, at: int) -> None:
-    """Let the oldest store ask for its bus from tick `at` on."""
+    """Let the oldest store request its bus from tick `at` on."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     master = w.MASTERS_AT + w.STORES_A + core
     if state[job + w.STORES] == 0:
@@ -65,7 +65,7 @@ def prepare_drain(state: State, core: int, at: int) -> None:
 
 @native
 def take_out(state: State, core: int, at: int) -> None:
-    """Take the oldest store out of a core's buffer; the next one asks for its bus from tick `at` on."""
+    """Take the oldest store out of a core's buffer. The next one requests its bus from tick `at` on."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
     state[job + w.STORES] -= 1
@@ -74,7 +74,7 @@ def take_out(state: State, core: int, at: int) -> None:
 
 @native
 def serve_stores(state: State, core: int, at: int) -> int:
-    """Write the oldest store of a core's buffer, and let the core go on if it waited for that."""
+    """Write the oldest store of a core's buffer, and let the core go on if it waited for this."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]]
     offset, nbytes = entry & log.OFFSET_MASK, bytes_of(state, kind_of(entry))
@@ -101,13 +101,13 @@ def serve_stores(state: State, core: int, at: int) -> int:
 
 @native
 def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
-    """Whether the store buffer has anything of the `nbytes` (a power of two) at `offset`, or a line that holds them."""
+    """Whether the store buffer has any of the `nbytes` (a power of two) at `offset`, or a line that contains them."""
     return is_among(state, job, state[job + w.STORE_HEAD], state[job + w.STORES], offset, nbytes)
 
 
 @native
 def is_among(state: State, job: int, head: int, stores: int, offset: int, nbytes: int) -> bool:
-    """Whether so many stores from the place `head` of the buffer's ring on have anything of that."""
+    """Whether any of so many stores from place `head` of the buffer's ring on has any of these bytes."""
     for number in range(stores):
         entry = state[job + w.STORE_QUEUE + (head + number) % w.MAX_STORES]
         size = max(nbytes, bytes_of(state, kind_of(entry)))

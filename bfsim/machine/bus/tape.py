@@ -51,7 +51,7 @@ def note(state_at: Any, core: int, kind: int, one: int, two: int, three: int, fo
 def note_run(state_at: Any, core: int, work_at: Any, call: int) -> int:
     """Note a call that stays in L1, by the numbers of its `Work` and its own number. Return how many operations were noted before.
 
-    If there were none, the call is not noted. Unless the tape is told, consecutive calls are noted as one.
+    If there were none, the call is not noted. Unless the time of each operation is kept, consecutive calls are noted as one.
     """
     state: State = words_at(state_at)
     work: State = words_at(work_at)

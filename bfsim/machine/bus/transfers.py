@@ -1,4 +1,4 @@
-"""The transfers of each master, one after the other: posted, begun, moved on, ended."""
+"""The transfers of each master, one after the other: posted, begun, moved, ended."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.machine.bus.walk import move
 
 @native
 def accept(state: State) -> None:
-    """Put the transfers that were posted behind those of their masters; a master that has none begins at once."""
+    """Append the posted transfers to their masters' queues. A master that has none begins at once."""
     for post in range(state[w.POSTED]):
         master, place = w.MASTERS_AT + state[w.POSTS_AT + 2 * post], state[w.POSTS_AT + 2 * post + 1]
         if state[master + w.TRANSFER] == w.NONE:
@@ -52,7 +52,7 @@ def begin(state: State, master: int, transfer: int, at: int) -> None:
 
 @native
 def next_on_chip(state: State, master: int, transfer: int) -> None:
-    """Note when the next row between L1 and L2 is through."""
+    """Note when the next row between L1 and L2 is complete."""
     parts = (state[transfer + w.MOVED] + state[transfer + w.TO_X_LEFT]) * state[transfer + w.ELEMENT]
     state[master + w.READY] = (
         state[transfer + w.START] + (parts + state[transfer + w.PARTS] - 1) // state[transfer + w.PARTS]
@@ -61,7 +61,7 @@ def next_on_chip(state: State, master: int, transfer: int) -> None:
 
 @native
 def soonest_wake(state: State, master: int) -> int:
-    """Return a tick before which a master wakes nobody by the end of a transfer, or of a row of it: it moves an element a cycle at most."""
+    """Return a tick before which a master cannot wake a waiter at the end of a transfer or row: it moves at most one element per cycle."""
     if state[master + w.TRANSFER] == w.NONE:
         return w.NEVER
     transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
@@ -75,14 +75,14 @@ def soonest_wake(state: State, master: int) -> int:
 
 @native
 def moved(state: State, memory: Memory, transfer: int, count: int) -> None:
-    """Move the bytes of `count` elements, and count what goes to and from L1."""
+    """Move the bytes of `count` elements, and count traffic with L1."""
     count_in_l1(state, transfer, count)
     move(state, memory, transfer, count)
 
 
 @native
 def after_move(state: State, master: int, transfer: int, through: int) -> int:
-    """See whether the transfer is done, or a row of it, with the elements that just moved; return who is woken."""
+    """Check whether the elements just moved ended the transfer or a row of it. Return the number that is woken, or NONE."""
     if state[transfer + w.LEFT] == 0:
         return finish(state, master, transfer, through)
     if (
@@ -96,7 +96,7 @@ def after_move(state: State, master: int, transfer: int, through: int) -> int:
 
 @native
 def finish(state: State, master: int, transfer: int, at: int) -> int:
-    """End a transfer at tick `at` and begin the next one; return its number if it wakes somebody."""
+    """End a transfer at tick `at` and begin the next one. Return its number if it wakes a waiter, otherwise NONE."""
     number, wakes = state[transfer + w.IDENTITY], state[transfer + w.WAKE]
     state[w.ENDS_AT + number % w.ENDS] = at
     state[master + w.FREE_AT] = at

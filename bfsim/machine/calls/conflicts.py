@@ -134,7 +134,7 @@ class StageGroups:
         """Look up where the rows of new groups lie. Return the spread of all groups, and the earlier counts."""
         if self._new:
             joined = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
-            self._spread = np.ascontiguousarray(joined)  # after a single column, numpy lays out others by rows
+            self._spread = np.ascontiguousarray(joined)  # after a single column, numpy joins by rows
             self._before = np.pad(self._before, (0, self._spread.shape[1] - len(self._before)))
             self._addresses = self._spread.ctypes.data, self._before.ctypes.data
             self._events = ctypes.c_int64 * len(self._before)

@@ -121,7 +121,7 @@ class Core:
 
     def memory_dma(self, name: str) -> MemoryDma:
         """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to program its registers."""
-        self._parts.progress.stay_in_step()  # what it moves may be anybody's
+        self._parts.progress.stay_in_step()  # what it moves may belong to anyone
         return self._parts.dma.stream(name, self._parts.progress)
 
     # ---- pictures

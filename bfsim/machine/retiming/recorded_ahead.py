@@ -35,9 +35,7 @@ class RecordedAhead(Ahead):
 
     def _begin(self) -> None:
         super()._begin()
-        self._marks: list[
-            tuple[int, int, int]
-        ] = []  # after how many operations each is, its kind and number
+        self._marks: list[tuple[int, int, int]] = []  # after how many operations each is, its kind and number
 
     def mark(self, kind: int = CALL, number: int = 0) -> None:
         """Note the place of a call of firmware, or of the beginning of a stage."""

@@ -72,7 +72,7 @@ class FrameAccounts:
         self._stages = stages
         self._begin_cclk = 0
         self._kernels: tuple[Owner, ...] = ()
-        self._owners: dict[tuple[tuple[str, str], ...], tuple[Owner, ...]] = {}  # with these kernels, by the other owners
+        self._owners: dict[tuple[tuple[str, str], ...], tuple[Owner, ...]] = {}  # these kernels and others
         self._open()
 
     def _open(self) -> None:

@@ -52,7 +52,7 @@ class Tasks:
         self._events = events
         self._asked = Asked(calls, progress.tape, handovers.turn_of(name), self._run)
         self._work: Work  # of the last call that was made here
-        self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that interrupted it
+        self._task: Generator[Any, Any, Any] | None = None  # the main loop, or a handler in between
         self.run: Run = self._asked.ask
         """Runs a kernel, now or once its result is yielded. The result must be yielded next."""
         self.frame_index: int | None = None
