@@ -88,7 +88,7 @@ class CoreTimeline:
         self.said: Place | None = None
         """What the core's work is about from now on, as its firmware said last."""
         self.place: Place | None = None
-        """What the work being told is about."""
+        """The place that goes into the spans being told."""
         self.when_said: Callable[[Place | None], bool] | None = None
         """For a core that runs ahead: notes a place for later, and returns whether anything will be told later."""
 

@@ -27,7 +27,7 @@ class Result(IntEnum):
 
 
 class Left(NamedTuple):
-    """What a call leaves: it returns `work`, with numbers at the address `cost` and `bits` of its return value, as a `result`, as `value`.
+    """What a call leaves: `work`, which it returns, numbers at the address `cost`, and in `work.value` a `result` of so many `bits`.
 
     `refuse` is called with the arguments if the call fails.
     """

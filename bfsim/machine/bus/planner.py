@@ -16,7 +16,7 @@ ONE_TICK = Fraction(1)
 
 
 class Planner:
-    """Plans the transfers of one board's DMAs. `owners` of its memories."""
+    """Plans the transfers of one board's DMAs. `owners` says who owns its memory."""
 
     def __init__(self, board: BoardSpec, memories: Memories, owners: MemoryOwners) -> None:
         self._chip = board.chip

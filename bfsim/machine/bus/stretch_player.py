@@ -42,7 +42,7 @@ class StretchPlayer:
         self._plans = 0
 
     def play(self, core: int, clock_cclk: int, accounts: int, end: int, first: int = 0) -> simpy.Event:
-        """Let a core do its operations from `first` to before `end`, with its clock at `clock_cclk`. Return the event at the end.
+        """Let a core do its operations from `first` to before `end`, with its clock at `clock_cclk`. Return the event at their end.
 
         They use at most `accounts` accounts. The accesses of their calls are in the core's log.
         """

@@ -36,7 +36,7 @@ class Pace:
 class TransferPlan:
     """A transfer of one master, ready to be posted as often as needed: `count` elements, which take `setup` ticks to start.
 
-    `mode` is one of `bus.state`. `owners` of the memory where it begins to read and to write. `name` says what is moved, for people.
+    `mode` is one of `bus.state`. `owners` own the memory where it begins to read and to write. `name` says what is moved, for people.
     Raises FirmwareError if the lines of a side are not whole.
     """
 

@@ -39,7 +39,7 @@ class GroupSite(NamedTuple):
 class CallGroup:
     """Calls of one kernel in one stage with its arrays in the same buffers.
 
-    `owners` of each array's memory. `fetched` are routines with code outside L1, and `fetches` fetches it. `totals` are the events of
+    `owners` own each array's memory. `fetched` are routines with code outside L1, and `fetches` fetches it. `totals` are the events of
     each counter. In the core, they are numbered from `first_event` on, and the sites from `first_site` on.
     `subbanks` are the sub-banks of L1 in which the rows of each array have been.
     """

@@ -43,7 +43,7 @@ class Ppi:
         outside: int,
         interrupt: Callable[[str], None],
     ) -> None:
-        """`size` of the recorded pictures. `number` is 0 or 1. `outside` is where in the arena two pictures are while they come in.
+        """`size` is that of the recorded pictures, `number` 0 or 1, and `outside` where in the arena two pictures are as they come in.
 
         It is two because the next picture may begin before the bus has taken the last words of the previous one. `interrupt` is
         called with PPI0_DMA at the end of each picture of PPI0, and then also with PPI0_ERROR if a bit of its status is set.

@@ -37,7 +37,7 @@ from bfsim.seen import Seen
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AroundCores:
-    """What a board has for its cores. `stages` of its firmware; `ahead` is the progress of cores that may run ahead.
+    """What a board has for its cores. `stages` are its firmware's; `ahead` is the progress of cores that may run ahead.
 
     `on_finished` is called when a core ends a frame. `view` reads out what was seen, if anyone wants to know.
     """

@@ -42,7 +42,7 @@ def never() -> bool:
 
 @dataclass(eq=False, slots=True)
 class Request:
-    """A transaction that a master requests. `owner` of the memory. `granted` happens with a Grant when it gets the bus."""
+    """A transaction that a master requests. `owner` owns the memory. `granted` happens with a Grant when it gets the bus."""
 
     granted: simpy.Event
     master: int

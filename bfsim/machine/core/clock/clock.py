@@ -81,7 +81,7 @@ class CoreClock:
             account.stall(reason, cclk)
 
     def stretch(self, played: Played, owners: Sequence[str]) -> None:
-        """Charge the cycles of a stretch that the bus has played. `owners` of its accounts are by number."""
+        """Charge the cycles of a stretch that the bus has played. `owners` own its accounts, by number."""
         self.cclk = played.clock_cclk
         now = self.accounts.now
         row = now.kernels.row

@@ -53,7 +53,7 @@ class ToldAhead:
         return True
 
     def begin(self, first: int, clock_cclk: int, owners: Sequence[str]) -> None:
-        """Take note that the bus plays operations from `first` on, with the core's clock at `clock_cclk`; `owners` of its accounts."""
+        """Note that the bus plays operations from `first` on, with the core's clock at `clock_cclk`. `owners` own its accounts."""
         self._first, self._clock_cclk, self._owners = first, clock_cclk, owners
 
     def clear(self) -> None:

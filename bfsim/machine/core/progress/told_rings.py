@@ -26,7 +26,7 @@ class ToldRings:
         self._outputs: dict[str, _Output] = defaultdict(_Output)
 
     def send(self, owner: str, copied: int, cclk: int) -> None:
-        """Take note that an output ring sent a line at a cycle; `copied` is the number of its copy."""
+        """Note that an output ring sent a line at a cycle. `copied` is the number of its copy."""
         self._outputs[owner].sent.append((copied, cclk))
 
     def ask(self, owner: str, *, is_there: bool, cclk: int) -> None:
