@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from math import ceil
 
 import numpy as np
 import simpy
@@ -80,7 +81,7 @@ class Ppi:
         mode = self._sensor.mode(size.width_px, size.height_px)
         require_pace(mode, size, self._clocks.sclk_hz)
         self._oscillator = Oscillator(self._clocks, mode, self._camera)
-        ppi_clk_ticks = self._clocks.tick_hz / self._oscillator.ppi_clk_hz
+        ppi_clk_ticks = countable(self._clocks.tick_hz / self._oscillator.ppi_clk_hz, mode.frame_clocks)
         self._word_ticks = ppi_clk_ticks * self._word_bytes
         self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks
         lines = PeriodicEdges(self._line_ticks)
@@ -186,6 +187,14 @@ class Ppi:
                 timeline.cclk(begin + sent),
                 nbytes,
             )
+
+
+def countable(cycle_ticks: Fraction, cycles: int) -> Fraction:
+    """Return the ticks of a cycle, in parts of a tick of which so many cycles have fewer than 2**62.
+
+    The bus counts in 64 bits. What common clocks come to is that already; others are rounded by less than a part a cycle.
+    """
+    return cycle_ticks.limit_denominator(max(1, 2**62 // ceil(cycles * cycle_ticks)))
 
 
 def require_pace(mode: SensorMode, size: FrameSize, sclk_hz: Fraction) -> None:

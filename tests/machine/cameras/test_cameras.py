@@ -112,6 +112,24 @@ def test_cameras_do_not_wait_for_slow_firmware() -> None:
     assert taken == sorted(taken)
 
 
+@pytest.mark.parametrize("ppi_clk_hz", [12_000_001, 53_333_333])
+def test_a_camera_of_an_odd_clock_loses_no_words(ppi_clk_hz: int) -> None:
+    """The ticks of its words are fractions of large numbers: a picture has more of their parts than 64 bits count."""
+    size = FrameSize(64, 60)
+    mode = SensorMode(
+        width_px=64,
+        height_px=60,
+        ppi_clk_hz=Fraction(ppi_clk_hz),
+        line_clocks=8000,
+        frame_lines=80,
+        lines_before=10,
+    )
+    spec = replace(CM_BF561, sensor=SensorSpec(name="odd", modes=(mode,)))
+    outcome = play(see_all, feed=Feed.CAMERAS, frames=3, size=size, spec=spec)
+    assert outcome.frames
+    assert not any(lost_of(outcome) + lost_of(outcome, "B"))
+
+
 @pytest.mark.parametrize("feed", [Feed.CAMERAS, Feed.RECORDED])
 def test_pictures_that_overlap_those_of_the_other_camera_are_whole(feed: Feed) -> None:
     """The left camera begins its next picture while the right one is at its last lines."""
