@@ -110,6 +110,7 @@ def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]
 
 def _once(config: pytest.Config, *recording: Any, **what: Any) -> Result:
     """Run firmware, or return the run of the same configuration that this session has done."""
+    __tracebackhide__ = True
     from bfsim.errors import ConfigError
 
     runs = config.stash[_RUNS]
@@ -123,6 +124,7 @@ def _once(config: pytest.Config, *recording: Any, **what: Any) -> Result:
 
 def _result(*recording: Any, on_seen: Callable[[SeenFrame], None] | None = None, **what: Any) -> Result:
     """Run firmware, and note the names of what it sees."""
+    __tracebackhide__ = True
     from bfsim.report.results.result import result_of
     from bfsim.run import simulate
 

@@ -86,6 +86,9 @@ def test_firmware_that_fails(bfsim):
 def test_no_frames(bfsim):
     bfsim(frames=0)
 
+def test_no_such_argument(bfsim):
+    bfsim(frame=1)
+
 def test_no_baseline(bfsim_check):
     bfsim_check("limits.toml")
 
@@ -131,7 +134,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "10 failed, 5 passed, 5 errors" in told
+    assert "11 failed, 5 passed, 5 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -159,6 +162,10 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     assert told.count('>       bfsim(firmware="failing.py", frames=1)\n') == 1
     assert (
         ">       bfsim(frames=0)\nE       bfsim.errors.ConfigError: frames must be at least 1, not 0\n"
+        in told
+    )
+    assert (
+        ">       bfsim(frame=1)\nE       TypeError: simulate() got an unexpected keyword argument 'frame'\n"
         in told
     )
     assert not re.search(r"/bfsim/\w+\.py:\d+: ", told)
