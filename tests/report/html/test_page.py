@@ -184,6 +184,22 @@ def test_sources_add_up_over_the_cores() -> None:
     assert (working.share, working.cost.stalled_cclk) == (0.4, 0)
 
 
+def test_a_kernel_that_was_never_called_is_told_as_inlined() -> None:
+    """Its lines ran where the compiler has put them."""
+    line = LineCost(line=11, executions=5, issue_cclk=30, stall_cclk={})
+    run = replace(
+        run_of([frame(0, core_frame("A", 0, cost(REST, 1)))]),
+        kernels=(
+            kernel("Edge detection", "called", line),
+            kernel("Edge detection", "put_in", line, calls=0),
+        ),
+    )
+    with Pictures() as pictures:
+        page = page_of(run, pictures)
+    assert "edges.py:10 · Edge detection · 1 call<" in page
+    assert "edges.py:10 · Edge detection · inlined<" in page
+
+
 def noise(width: int = 1980, height: int = 810) -> Image.Image:
     """The worst that can be asked of a codec."""
     return Image.fromarray(np.random.default_rng(1).integers(0, 255, (height, width, 3), np.uint8))
