@@ -72,6 +72,21 @@ def test_built_in_firmware_is_known_by_its_name() -> None:
     assert (given.files, given.digest) == (named.files, named.digest)
 
 
+def test_a_device_of_a_module_that_python_does_not_keep(folder: Path) -> None:
+    """As where a file of firmware is imported by hand: its class is found by its methods."""
+    device = (
+        "from bfsim.api import SpiDevice\nclass Quiet(SpiDevice):\n"
+        "    def __init__(self, script):\n        pass\n"
+        "    def requests(self, now_ns):\n        return False\n"
+    )
+    (folder / "fw_by_hand.py").write_text(
+        device + FIRMWARE.replace('camera="camera"', 'camera="camera", spi=Quiet')
+    )
+    eyes = imported("fw_by_hand")
+    del sys.modules["fw_by_hand"]
+    assert list(given_firmware(eyes).files) == ["fw_by_hand.py"]
+
+
 def test_all_that_it_imports_of_its_package_is_in_the_digest(folder: Path) -> None:
     """A module that gives a number only, too; not one that nobody imports."""
     files = ["fw_pack/__init__.py", "fw_pack/more.py", "fw_pack/parts.py", "fw_pack/sizes.py"]

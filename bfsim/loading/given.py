@@ -65,11 +65,15 @@ def _unbound(part: Any) -> Any:
 
 
 def _namespace(part: Any) -> Namespace:
-    """Return what the module of a function, a method, a class or an object of it holds."""
+    """Return what the module of a function, a method, a class or an object of it holds, also where Python does not keep that module."""
     function = getattr(part, "__func__", part)
     if isinstance(function, FunctionType):
         return function.__globals__
-    return vars(sys.modules[getattr(part, "__module__", None) or type(part).__module__])
+    kind = part if isinstance(part, type) else type(part)
+    for method in vars(kind).values():
+        if isinstance(method, FunctionType) and method.__module__ == kind.__module__:
+            return method.__globals__
+    return vars(sys.modules[getattr(part, "__module__", None) or kind.__module__])
 
 
 def _home(firmware: Firmware, first: Namespace) -> tuple[Namespace, str]:
