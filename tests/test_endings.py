@@ -168,6 +168,16 @@ def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     assert "fault of bfsim" in done.stderr
 
 
+def test_ctrl_c_is_heard_before_anything_of_bfsim_is_imported() -> None:
+    """What comes before the handler is Python's own start, which tells of Ctrl-C by a traceback."""
+    program = "import signal, sys\nfrom bfsim.__main__ import main\n"
+    program += "assert {each for each in sys.modules if 'bfsim' in each} == {'bfsim', 'bfsim.__main__'}\n"
+    program += "class Early:\n def find_spec(self, name, *_):\n  signal.raise_signal(signal.SIGINT)\n"
+    program += "sys.meta_path.insert(0, Early())\nmain()"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False, text=True)
+    assert (done.returncode, done.stderr) == (130, "bfsim: interrupted\n")
+
+
 @pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("number", "code"),

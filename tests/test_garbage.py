@@ -39,8 +39,8 @@ def test_a_command_ends_without_a_look(
     """Whatever it was asked for."""
     looked = []
     monkeypatch.setattr("sys.argv", ["bfsim", "--version"])
-    monkeypatch.setattr("bfsim.__main__.collect_no_more", lambda: looked.append(False))
-    monkeypatch.setattr("bfsim.__main__.hear_signals", lambda: None)
+    monkeypatch.setattr("bfsim.process.garbage.collect_no_more", lambda: looked.append(False))
+    monkeypatch.setattr("bfsim.process.signals.hear_signals", lambda: None)
     with rarely_collected(), pytest.raises(SystemExit):
         main()
     assert looked == [False]
