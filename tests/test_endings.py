@@ -168,6 +168,24 @@ def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     assert "fault of bfsim" in done.stderr
 
 
+def test_a_name_that_the_system_cannot_write_is_no_fault(tmp_path: Path) -> None:
+    """As one from a file, in UTF-8, where names of files are ASCII; one of the command line comes as the shell has it."""
+    (tmp_path / "budget.toml").write_text(
+        '[[run]]\nname = "a"\nrecording = "é.mcap"\nrequire = ["missed == 0"]\n'
+    )
+    ascii_alone = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    done = subprocess.run(
+        [sys.executable, "-m", "bfsim", "check", "--baseline", "budget.toml"],
+        cwd=tmp_path,
+        env=ascii_alone,
+        capture_output=True,
+        check=False,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert ".mcap must be a name in this system's encoding, ascii; LC_ALL=C.UTF-8" in done.stderr
+
+
 def test_ctrl_c_is_heard_before_anything_of_bfsim_is_imported() -> None:
     """What comes before the handler is Python's own start, which tells of Ctrl-C by a traceback."""
     program = "import signal, sys\nfrom bfsim.__main__ import main\n"

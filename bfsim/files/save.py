@@ -99,11 +99,11 @@ def writing(path: Path) -> Iterator[None]:
 def _resolved(path: Path) -> Path:
     """Return where a path leads. Raises ConfigError for links in a circle and for invalid names.
 
-    Raises FileNotFoundError if the current folder was removed.
+    Raises FileNotFoundError if the current folder was removed, and UnicodeEncodeError for a name that the system's encoding has not.
     """
     try:
         return path.resolve()
-    except FileNotFoundError:
+    except (FileNotFoundError, UnicodeEncodeError):
         raise
     except (OSError, RuntimeError, ValueError):
         raise ConfigError(f"{path} must lead to a place, not in a circle of links") from None

@@ -68,8 +68,8 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
         return error.exit_code
     except BfsimError as error:
         return _mistake(str(error))
-    except OSError as error:
-        return _mistake(f"{_subject_of(error)}: {error.strerror or error}")
+    except (OSError, UnicodeEncodeError) as error:
+        return _mistake(_refusal(error))
     except (KeyboardInterrupt, click.Abort) as error:  # it may say where
         click.echo(f"bfsim: interrupted{error}", err=True)
         return interrupted_code()
@@ -79,13 +79,16 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
     return code if isinstance(code, int) else 0
 
 
-def _subject_of(error: OSError) -> str:
+def _refusal(error: OSError | UnicodeEncodeError) -> str:
     """Say what must change after the system has refused something."""
+    if isinstance(error, UnicodeEncodeError):  # a file name: text is printed in look-alikes instead
+        return f"{error.object} must be a name in this system's encoding, {error.encoding}; LC_ALL=C.UTF-8 has all characters"
+    subject = "the system must allow what bfsim asks of it"
     if error.filename:
-        return f"{error.filename} must be accessible"
-    if error.errno == ENOENT:  # only a request for the current folder names no file
-        return "the current folder must be there, but was removed; `cd` to another one"
-    return "the system must allow what bfsim asks of it"
+        subject = f"{error.filename} must be accessible"
+    elif error.errno == ENOENT:  # only a request for the current folder names no file
+        subject = "the current folder must be there, but was removed; `cd` to another one"
+    return f"{subject}: {error.strerror or error}"
 
 
 def _warn(message: Warning | str, category: type[Warning], *_place: Any) -> None:
