@@ -141,6 +141,15 @@ def test_a_video_that_was_cut_off_is_told(tmp_path: Path) -> None:
     assert cut.notes[0].endswith(", as if the file were cut off there")
 
 
+def test_a_video_may_have_a_title_in_any_encoding(tmp_path: Path) -> None:
+    """Cameras and old programs write Latin-1: that ended in a traceback."""
+    video(tmp_path / "a.mkv", [0, 33])
+    octets = (tmp_path / "a.mkv").read_bytes()
+    assert b"Lavf" in octets
+    (tmp_path / "a.mkv").write_bytes(octets.replace(b"Lavf", b"L\xe4vf"))
+    assert import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True).frame_count == 2
+
+
 @pytest.mark.parametrize("name", ["cam.h264", "cam.265", "CAM.HEVC", "cam.m2v", "phone.3gp", "handycam.MTS"])
 def test_videos_of_cameras_are_told_by_their_names(name: str) -> None:
     """Those of a Raspberry Pi, which are codec alone, needed `--format video`."""

@@ -119,7 +119,7 @@ def _stream_of(source: str) -> Iterator[tuple[Any, Any]]:
             f'{source}: reading video needs the package PyAV; install it with: pip install "bfsim[video]"'
         ) from None
     try:
-        with av.open(source) as container:
+        with av.open(source, metadata_errors="replace") as container:  # a title, in whatever encoding
             if not container.streams.video:
                 kinds = ", ".join(sorted({each.type for each in container.streams})) or "none at all"
                 raise RecordingError(f"{source}: file must be whole and have a video stream, not {kinds}")
