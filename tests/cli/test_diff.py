@@ -84,7 +84,7 @@ def test_the_json_has_the_whole_tree(home: Path) -> None:
     keep("before.json", "--firmware", "slow.py:firmware")
     keep("after.json", "--firmware", "fast.py:firmware", "--ldf", "l2")
     found = json.loads(bfsim("diff", "before.json", "after.json", "--json").output)
-    assert found["schema"] == "bfsim.diff/1"
+    assert found["schema"] == "bfsim.diff/2"
     assert found["cclk"] == found["after_cclk"] - found["before_cclk"]
     levels, parts = 0, [(found["cclk"], found["stages"])]
     while parts:

@@ -7,7 +7,7 @@ from typing import Any
 from bfsim.report.diff.difference import Difference
 from bfsim.report.jsonable import json_text, jsonable
 
-SCHEMA = "bfsim.diff/1"
+SCHEMA = "bfsim.diff/2"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 

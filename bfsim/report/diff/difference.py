@@ -79,7 +79,7 @@ class Difference:
 
     The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and last the waits (FOLLOWS). They
     have source lines only where both runs have the same frames (`has_lines`), since lines are counted over a whole run.
-    `before_ms` and `after_ms` are of a frame on average, at the core clocks `before_hz` and `after_hz`. `results` are
+    `before_ms` and `after_ms` are of a frame on average, at the core clocks `before_cclk_hz` and `after_cclk_hz`. `results` are
     the firmware's published numbers, summed over the frames.
     """
 
@@ -89,8 +89,8 @@ class Difference:
     has_lines: bool
     before_ms: float
     after_ms: float
-    before_hz: float
-    after_hz: float
+    before_cclk_hz: float
+    after_cclk_hz: float
     before_cclk: int
     after_cclk: int
     stages: tuple[Contribution, ...]

@@ -34,7 +34,7 @@ def why(difference: Difference) -> Iterator[str]:
 
 def clock(difference: Difference) -> str:
     """Say what another core clock makes of the difference; nothing where the clock is the same."""
-    before, after = difference.before_hz, difference.after_hz
+    before, after = difference.before_cclk_hz, difference.after_cclk_hz
     if before == after:
         return ""
     alone_ms = difference.before_ms * (before / after - 1)
@@ -63,8 +63,8 @@ def work(difference: Difference) -> str:
     before, after = (
         (cclk - (waited or 0)) * 1000 / (hz * frames)
         for cclk, waited, hz in (
-            (difference.before_cclk, waits.before_cclk, difference.before_hz),
-            (difference.after_cclk, waits.after_cclk, difference.after_hz),
+            (difference.before_cclk, waits.before_cclk, difference.before_cclk_hz),
+            (difference.after_cclk, waits.after_cclk, difference.after_cclk_hz),
         )
     )
     if f"{before:.2f}" == f"{after:.2f}":

@@ -56,8 +56,8 @@ class DiffPage:
                 "cells": cells,
                 "half": lambda cclk: f"{50 * abs(cclk) / largest_cclk:.2f}" if largest_cclk else "0",
                 "frames": difference.changed_frames[:FRAMES],
-                "before_ms": lambda cclk: milliseconds(cclk, difference.before_hz),
-                "after_ms": lambda cclk: milliseconds(cclk, difference.after_hz),
+                "before_ms": lambda cclk: milliseconds(cclk, difference.before_cclk_hz),
+                "after_ms": lambda cclk: milliseconds(cclk, difference.after_cclk_hz),
                 "seen": list(seen_lines(difference)),
             },
         )

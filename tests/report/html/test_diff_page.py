@@ -54,8 +54,8 @@ DIFFERENCE = Difference(
     has_lines=True,
     before_ms=10.0,
     after_ms=10.5,
-    before_hz=1e6,
-    after_hz=2e6,
+    before_cclk_hz=1e6,
+    after_cclk_hz=2e6,
     before_cclk=2000,
     after_cclk=2350,
     stages=STAGES,
@@ -121,7 +121,7 @@ def test_the_frames_that_changed_most_have_the_pictures_that_there_are(
 def test_what_is_not_there_has_no_part_of_the_page() -> None:
     """Two runs that are the same: a sentence, and nothing to click."""
     same = replace(
-        DIFFERENCE, configuration=(), after_hz=1e6, after_ms=10.0, after_cclk=2000,
+        DIFFERENCE, configuration=(), after_cclk_hz=1e6, after_ms=10.0, after_cclk=2000,
         stages=(), changed_frames=(), results=(), seen=(),
     )  # fmt: skip
     found = page(same)
