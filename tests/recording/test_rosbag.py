@@ -207,3 +207,11 @@ def test_another_size_is_refused_unless_pictures_are_fitted(tmp_path: Path) -> N
     ):
         imported(path)
     assert len(imported(path, resize=(8, 4))) == 2
+
+
+def test_a_size_that_no_recording_has_is_told_with_the_bag(tmp_path: Path) -> None:
+    """Its topic alone may be in many bags."""
+    ros = Ros("ros1")
+    path = ros.write(tmp_path, grey_pair(ros, [0], size=(7, 4)))
+    with pytest.raises(RecordingError, match=f"{path}: {LEFT}: image width must be even .* not 7"):
+        imported(path)

@@ -169,7 +169,7 @@ def _source(
     if first is None:
         raise RecordingError(f"{bag.path}: {topic.name}: {reason}, and no picture is left")
     return PictureSource(
-        name=topic.name,
+        name=f"{bag.path}: {topic.name}",
         size=first,
         count=len(wanted),
         fps=fps,
