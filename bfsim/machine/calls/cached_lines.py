@@ -48,21 +48,32 @@ class CachedOutput:
     def __init__(self, image: Sequence[Row]) -> None:
         self._image = image
         self._sent = 0
+        self._given = -1  # the last line whose row was given
 
     def row(self) -> Generator[Any, Any, Row]:
         """Return the row of the next line, at once."""
+        self._check_sent()
         if self._sent == len(self._image):
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was asked for"
             )
+        self._given = self._sent
         return self._image[self._sent]
         yield  # makes this a generator, like the row of a ring
+
+    def _check_sent(self) -> None:
+        """Raise FirmwareError if the row of the next line was given already: without caches nothing of it would arrive."""
+        if self._given == self._sent:
+            raise FirmwareError(
+                f"line {self._sent} of {self._image[0].buffer} must be sent when it is written: `ring.send()`"
+            )
 
     def send(self) -> None:
         """Go on to the next line. The cache writes this one when it has to."""
         self._sent += 1
 
     def flush(self) -> Generator[Any, Any, None]:
-        """Do nothing: the lines are already in place."""
+        """Check that the last line was sent. The lines are already in place."""
+        self._check_sent()
         return
         yield

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import OrderedDict
 from collections.abc import Sequence
 from typing import Any
@@ -225,10 +226,12 @@ def test_rings_become_the_image_s_rows() -> None:
         ("line", "camera has no line 8: the picture has 8"),
         ("item", "line 3 of camera was not taken yet, but 1 lines"),
         ("row", "the picture image has 8 lines; one more was asked for"),
+        ("unsent", "line 0 of image must be sent when it is written: `ring.send()`"),
+        ("unsent last", "line 1 of image must be sent when it is written: `ring.send()`"),
     ],
 )
 def test_cached_lines_are_as_strict_as_rings(way: str, message: str) -> None:
-    """A line too many, or one that was not taken, is told."""
+    """A line too many, or one that was not taken or sent, is told."""
 
     def work(core: Core, frame: Frame) -> Play:
         ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
@@ -236,14 +239,21 @@ def test_cached_lines_are_as_strict_as_rings(way: str, message: str) -> None:
         if way == "item":
             _ = ring[3]
         for _ in range(8):
-            if way == "line":
+            if way == "unsent":
+                yield from out.row()
+            elif way == "unsent last":
+                yield from out.row()
+                out.send()
+                yield from out.row()
+                yield from out.flush()
+            elif way == "line":
                 yield from ring.line()
             else:
                 yield from out.row()
                 out.send()
         yield from out.row()
 
-    with pytest.raises(FirmwareError, match=f"{message} .*test_caches.py:"):
+    with pytest.raises(FirmwareError, match=f"{re.escape(message)} .*test_caches.py:"):
         play(every_frame(work), ldf=shipped("cache.ldf"))
 
 
