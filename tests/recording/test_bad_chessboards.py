@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import RecordingError
+from bfsim.recording.calibrating.boards import find_views
 from bfsim.recording.calibrating.calibration import calibrate
 from tests.recording.chessboards import CORNERS, SIZE, SQUARE_MM
 
@@ -133,3 +134,22 @@ def test_names_say_which_camera(tmp_path: Path, names: str) -> None:
 def test_a_board_has_at_least_3x3_corners(pictures: Path) -> None:
     """Fewer tell nothing of a lens."""
     assert "at least 3x3 inner corners" in refusal(pictures, (2, 5))
+
+
+def test_it_tells_how_far_it_is(tmp_path: Path) -> None:
+    """Large pictures take a second each."""
+    cv2 = pytest.importorskip("cv2")
+    for name in "abc":
+        Image.new("L", SIZE, 80).save(tmp_path / f"{name}.png")
+    told: list[tuple[int, int]] = []
+    find_views(
+        cv2,
+        tmp_path,
+        SIZE,
+        CORNERS,
+        mono=True,
+        resize=False,
+        bits=None,
+        progress=lambda done, total: told.append((done, total)),
+    )
+    assert told == [(0, 3), (1, 3), (2, 3)]

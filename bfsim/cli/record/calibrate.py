@@ -8,6 +8,7 @@ import click
 
 from bfsim.cli.options.sizes import Size
 from bfsim.cli.record.recorded import view_text, views_text
+from bfsim.process.terminal import progress_bar
 
 
 @click.command(name="calibrate", short_help="Make rectification tables and geometry from chessboards.")
@@ -67,19 +68,21 @@ def calibrate_command(
     from bfsim.recording import RecordingReader
     from bfsim.recording.calibrating.calibration import calibrate_recording
 
-    found = calibrate_recording(
-        chessboards,
-        path,
-        output,
-        corners=corners,
-        square_mm=square,
-        height_mm=height,
-        tilt_deg=tilt,
-        lens="fisheye" if fisheye else "pinhole",
-        mono=mono,
-        resize=resize,
-        bits=bits,
-    )
+    with progress_bar("Looking for boards", with_time=False) as progress:
+        found = calibrate_recording(
+            chessboards,
+            path,
+            output,
+            corners=corners,
+            square_mm=square,
+            height_mm=height,
+            tilt_deg=tilt,
+            lens="fisheye" if fisheye else "pinhole",
+            mono=mono,
+            resize=resize,
+            bits=bits,
+            progress=progress,
+        )
     with RecordingReader(output or path) as reader:
         geometry = reader.geometry
     report = found.report

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -41,17 +41,21 @@ def find_views(
     mono: bool,
     resize: bool,
     bits: int | None,
+    progress: Callable[[int, int], None] | None,
 ) -> tuple[list[BoardView], list[Skipped]]:
     """Return the boards seen in the pictures of `size` (width, height) of a folder, and the pictures that show none.
 
     With `mono` every picture is one of the only camera. Without, pictures whose names say left and right (or those of the
     folders whose names do) go together by the rest of their names, or by their order if the names have nothing in common.
     With `resize`, corners of pictures of other sizes are found there, where they are sharpest, and are brought to where an
-    import that scales the pictures has them. `bits`: how many the cameras use of pixels that have 16. Raises RecordingError.
+    import that scales the pictures has them. `bits`: how many the cameras use of pixels that have 16. `progress`: called with the views that were looked at, and how many
+    there are. Raises RecordingError.
     """
     sets, skipped = _together(folder, mono=mono)
     views = []
-    for paths in sets:
+    for number, paths in enumerate(sets):
+        if progress:
+            progress(number, len(sets))
         found = []
         for path in paths:
             try:

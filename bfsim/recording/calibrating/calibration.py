@@ -6,7 +6,7 @@ OpenCV finds the corners and fits the cameras. Loaded only here; the optional ex
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -67,6 +67,7 @@ def calibrate_recording(
     mono: bool = False,
     resize: bool = False,
     bits: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> StereoCalibration:
     """Write `recording` with the rectification tables and the geometry of its cameras to `output`, or in its own place.
 
@@ -92,6 +93,7 @@ def calibrate_recording(
         mono=mono,
         resize=resize,
         bits=bits,
+        progress=progress,
     )
     report = calibration.report
     writer = RecordingWriter(
@@ -129,6 +131,7 @@ def calibrate(
     mono: bool = False,
     resize: bool = False,
     bits: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> StereoCalibration:
     """Calibrate cameras with pictures of `size` (width, height) of a board with `corners` (across, down) inner corners.
 
@@ -136,8 +139,8 @@ def calibrate(
     rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
     board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of
     another size are scaled as an import with `--resize` scales them; of pixels that have 16 bits, the cameras use so many
-    `bits`. `focal_px` is the focal length to rectify to;
-    without it, the mean of the left camera's. Raises RecordingError.
+    `bits`. `focal_px` is the focal length to rectify to; without it, the mean of the left camera's. `progress` is called
+    with the views that were looked at, and how many there are. Raises RecordingError.
     """
     model = _MODELS[lens]()
     if min(corners) < 3 or square_mm <= 0:
@@ -146,7 +149,9 @@ def calibrate(
             f"and {square_mm:g} mm"
         )
     folder = Path(chessboards)
-    views, skipped = find_views(model.cv2, folder, size, corners, mono=mono, resize=resize, bits=bits)
+    views, skipped = find_views(
+        model.cv2, folder, size, corners, mono=mono, resize=resize, bits=bits, progress=progress
+    )
     if len(views) < FEWEST_VIEWS:
         raise _too_few(folder, views, skipped, mono=mono)
     board = np.zeros((corners[0] * corners[1], 3))
