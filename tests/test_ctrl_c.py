@@ -265,3 +265,45 @@ def test_native_code_that_nobody_cancels_returns() -> None:
     assert cancellable(lambda: 5, lambda: None) == 5
     with pytest.raises(ZeroDivisionError):
         cancellable(lambda: 1 // 0, lambda: None)
+
+
+IMPORTED = """
+import importlib, os, signal
+from threading import Event, Thread
+from bfsim.process.signals import hear_signals
+from bfsim.recording.scenes import renderer
+
+importing = Event()
+
+def press():
+    importing.wait()
+    os.kill(os.getpid(), signal.SIGINT)  # heard by this thread, as by that which draws a bar
+
+class Renderer:
+    def set_variant(self, name):
+        print(name)
+
+def imported(name):
+    importing.set()
+    thread.join()
+    try:
+        sum(range(100_000))
+    except BaseException:  # as drjit's import does
+        raise NameError(name) from None
+    return Renderer()
+
+thread = Thread(target=press)
+thread.start()
+hear_signals()
+importlib.import_module = imported
+try:
+    renderer._load_mitsuba()
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_ctrl_c_waits_for_the_import_of_the_renderer() -> None:
+    """A thread of ours may hear it where the main one does not: drjit takes the exception for a part that is not there."""
+    done = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("scalar_rgb\ninterrupted\n", "")

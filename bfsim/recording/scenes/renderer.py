@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.process.signals import cancellable, held_back
+from bfsim.process.signals import cancellable, held_back, uninterrupted
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
 from bfsim.recording.scenes.shapes import Shape
 
@@ -103,7 +103,8 @@ class Renderer:
 
 
 def _load_mitsuba() -> Any:
-    with held_back():  # it starts the threads that render
+    # It starts the threads that render; and where one of ours hears a signal, its import takes Ctrl-C for a part that is not there.
+    with uninterrupted(), held_back():
         try:
             mitsuba = importlib.import_module("mitsuba")
         except ImportError as error:
