@@ -19,7 +19,7 @@ def main() -> None:
     if hear is signal.default_int_handler:  # otherwise Ctrl-C is ignored: in the background of a shell
         signal.signal(signal.SIGINT, _leave)
     from bfsim.process.garbage import collect_no_more, collect_rarely
-    from bfsim.process.signals import hear_signals
+    from bfsim.process.signals import hear_signals, interrupted_code
 
     collect_rarely()
     # numpy's library has a thread for each processor otherwise, a quarter of its start; nothing here multiplies large matrices
@@ -27,10 +27,13 @@ def main() -> None:
     from bfsim.cli.main import main as command
     from bfsim.process.endings import fault
 
-    signal.signal(signal.SIGINT, hear)
-    hear_signals()
     try:
+        signal.signal(signal.SIGINT, hear)
+        hear_signals()
         command(prog_name="bfsim")
+    except KeyboardInterrupt:  # a moment before the command hears it, or behind its end
+        sys.stderr.write("bfsim: interrupted\n")
+        sys.exit(interrupted_code())
     except Exception:  # noqa: BLE001 - whatever comes as far as this
         sys.exit(fault())
     finally:

@@ -186,6 +186,15 @@ def test_a_name_that_the_system_cannot_write_is_no_fault(tmp_path: Path) -> None
     assert ".mcap must be a name in this system's encoding, ascii; LC_ALL=C.UTF-8" in done.stderr
 
 
+@pytest.mark.parametrize("moment", ["bfsim.process.signals.hear_signals", "bfsim.cli.main.main"])
+def test_ctrl_c_beside_the_command_is_no_traceback(moment: str) -> None:
+    """A moment before the command hears it, or behind its end."""
+    program = "from unittest.mock import patch; from bfsim.__main__ import main\n"
+    program += f"with patch({moment!r}, side_effect=KeyboardInterrupt): main()"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False, text=True)
+    assert (done.returncode, done.stderr) == (130, "bfsim: interrupted\n")
+
+
 def test_ctrl_c_is_heard_before_anything_of_bfsim_is_imported() -> None:
     """What comes before the handler is Python's own start, which tells of Ctrl-C by a traceback."""
     program = "import signal, sys\nfrom bfsim.__main__ import main\n"

@@ -13,6 +13,7 @@ from click.core import ParameterSource
 from bfsim.cli.options.json_file import STDOUT, json_option, require_json_place, tell
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run
 from bfsim.errors import ConfigError
+from bfsim.process.signals import uninterrupted
 from bfsim.process.terminal import print_report
 
 if TYPE_CHECKING:
@@ -55,8 +56,10 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
       bfsim ldf placed.ldf --picture placed.png
     """
     from bfsim.files.save import require_apart, require_place, write_text
-    from bfsim.placing.search import place as found_by
-    from bfsim.placing.tables import placed_json, placed_report
+
+    with uninterrupted():  # SciPy and NumPy take Ctrl-C for a part of theirs that is not there
+        from bfsim.placing.search import place as found_by
+        from bfsim.placing.tables import placed_json, placed_report
     from bfsim.running.inputs import files_of_run
 
     if output:
