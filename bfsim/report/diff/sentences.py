@@ -33,12 +33,13 @@ def why(difference: Difference) -> Iterator[str]:
 
 
 def clock(difference: Difference) -> str:
-    """Say what another core clock makes of the difference; nothing where the clock is the same."""
+    """Say what another core clock makes of equal work; nothing where the clock is the same. Waits for pictures do not change with it."""
     before, after = difference.before_cclk_hz, difference.after_cclk_hz
     if before == after:
         return ""
-    alone_ms = difference.before_ms * (before / after - 1)
-    return f"The core clock went from {mhz(before)} to {mhz(after)}, which alone makes {alone_ms:+.2f} ms a frame."
+    change = 100 * (before / after - 1)
+    told = f"{abs(change):.1f} % {'longer' if change > 0 else 'less time'}"
+    return f"The core clock went from {mhz(before)} to {mhz(after)}: the same cycles take {told}."
 
 
 def code(difference: Difference) -> str:

@@ -81,7 +81,10 @@ def test_another_clock_is_told_apart_from_cycles() -> None:
     slower = result_of(replace(one.run, identity=replace(IDENTITY, cclk_hz=IDENTITY.cclk_hz / 2)), one.seen)
     found = difference_of(one, slower)
     assert found.cclk == 0
-    assert clock(found) == ("The core clock went from 1 MHz to 0.5 MHz, which alone makes +1.00 ms a frame.")
+    assert clock(found) == "The core clock went from 1 MHz to 0.5 MHz: the same cycles take 100.0 % longer."
+    assert clock(difference_of(slower, one)).endswith(
+        "0.5 MHz to 1 MHz: the same cycles take 50.0 % less time."
+    )
     assert clock(difference_of(one, one)) == ""
 
 
