@@ -1,1 +1,1 @@
-"""How control goes through code: blocks, loops, calls, and where pointers come to."""
+"""How control goes through code: blocks, loops, calls, and where pointers lead."""

@@ -12,28 +12,28 @@ Fetch = Callable[[int], bytes]
 """Returns the 8 bytes of code at an address, or as many as there are."""
 
 DIRECT = {"jump", "call", "branch", "branch_predicted"}
-"""What these do is go to their operand t."""
+"""These go to their operand t."""
 COMPUTED = {"jump_to", "jump_relative", "call_to", "call_relative", "return_"}
 CALLS = {"call", "call_to", "call_relative"}
 BRANCHES = {"branch", "branch_predicted"}
 ASSERTIONS = {"assert_low", "assert_high"}
-"""What these do ends a program, if it does anything."""
+"""These end a program, if they do anything."""
 EVENTS = {
     *("return_from_interrupt", "return_from_exception", "return_from_nmi", "return_from_emulation"),
     *("raise_interrupt", "exception", "emulation_exception", "idle"),
     *("output", "output_register", "halt", "abort", "debug"),
     *ASSERTIONS,
 }
-"""What these do may leave native code, which goes on with what follows."""
+"""These may leave native code, which goes on with what follows."""
 STOPS = {"halt", "abort"}
 NEVER_ON = (DIRECT | COMPUTED | STOPS) - CALLS - BRANCHES
-"""Control never goes to what follows."""
+"""Control never goes from these to what follows."""
 NEVER_RESUMED = NEVER_ON | (EVENTS - ASSERTIONS)
-"""Nor behind these, where nobody goes on behind an event."""
+"""Nor from these, if nothing goes on after an event."""
 MOST_INSTRUCTIONS = 1 << 18
 """[ours] Two and a half times all of GCC's and newlib's libraries. A wild jump into memory that is zero meets millions of NOPs."""
 SAVED_RETS = 4
-"""[PRM] How far from FP LINK saves RETS."""
+"""[PRM] Where LINK saves RETS, relative to FP."""
 LOOP_ENDS = {"LB0": 0, "LB1": 1}
 """The registers that say where a hardware loop ends, with the numbers of their counters."""
 LOOP_BOUNDS = frozenset({*LOOP_ENDS, "LT0", "LT1"})
@@ -41,14 +41,14 @@ MEMORY = {
     *("load", "store", "load_half", "store_half", "load_indexed", "store_indexed"),
     *("push", "pop", "push_multiple", "pop_multiple", "link", "unlink", "test_and_set"),
 }
-"""What these do accesses memory."""
+"""These access memory."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
-"""An instruction with one of these begins a block: it must know the cycles of what was executed before it."""
+"""An instruction with one of these begins a block: it needs the cycles of everything executed before it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Instructions that are executed one behind the other. `refused`: why there is no instruction behind the last one."""
+    """Instructions that are executed one after the other. `refused`: why there is no instruction after the last one."""
 
     start: int
     instructions: tuple[Instruction, ...]
@@ -56,12 +56,12 @@ class Block:
 
     @property
     def end(self) -> int:
-        """The address behind the last instruction."""
+        """The address after the last instruction."""
         return self.instructions[-1].end if self.instructions else self.start
 
     @property
     def returns(self) -> bool:
-        """Whether it ends with a return: RTS, or a jump to what LINK has saved of RETS, as VisualDSP++ has it before UNLINK."""
+        """Whether it ends with a return: RTS, or a jump to the RETS that LINK has saved, as by VisualDSP++ before UNLINK."""
         last = self.instructions[-1] if self.instructions else None
         if last is None or does(last) != "jump_to":
             return last is not None and does(last) == "return_"
@@ -76,7 +76,7 @@ class Block:
 
     @property
     def calls(self) -> tuple[int, ...]:
-        """Where the function begins that it ends with a call of, if the call names it."""
+        """The address of the function that it calls at its end, if the call names it."""
         last = self.instructions[-1] if self.instructions else None
         if last is None or does(last) not in CALLS & DIRECT:
             return ()
@@ -97,10 +97,10 @@ class Block:
 class Code:
     """The code that can be reached from `entries`, which are also addresses that a computed jump may lead to.
 
-    `resumes`: whether it may go on behind an event that leaves native code. `callees`: entries that are functions which are called by
-    their addresses. `blocks`: by their addresses. `resumed`: where calls, and such events, come back to. `loop_starts`: of each last
-    instruction of a hardware loop and the number of its counter, where its loops begin. Raises InstructionError where more than
-    `MOST_INSTRUCTIONS` can be reached.
+    `resumes`: whether it may go on after an event that leaves native code. `callees`: entries that are functions called
+    by address. `blocks`: by their addresses. `resumed`: where calls, and such events, come back to. `loop_starts`:
+    where the hardware loops begin, by the last instruction and the number of the counter. Raises InstructionError if
+    more than `MOST_INSTRUCTIONS` can be reached.
     """
 
     fetch: Fetch
@@ -173,7 +173,7 @@ class Code:
             return refused
 
     def _targets(self, instruction: Instruction) -> set[int]:
-        """Return where blocks begin because of an instruction; take note of loops and of where control comes back to."""
+        """Return where blocks begin because of an instruction; note loops and where control comes back to."""
         what, operands = does(instruction), instruction.operations[0].operands
         if what == "loop_setup":
             start, end, counter = int(operands["s"]), int(operands["e"]), int(operands["c"])
@@ -186,7 +186,7 @@ class Code:
 
     @property
     def _never_on(self) -> set[str]:
-        """What control never goes on behind."""
+        """Instructions after which control never goes on."""
         return NEVER_ON if self.resumes else NEVER_RESUMED
 
     def _block(self, start: int, leaders: set[int]) -> Block:
@@ -202,12 +202,12 @@ class Code:
 
 
 def does(instruction: Instruction) -> str:
-    """Return what an instruction does; of a bundle, what its DSP instruction does."""
+    """Return what an instruction does; for a bundle, what its DSP instruction does."""
     return instruction.operations[0].form.does
 
 
 def sets_up_loops(code: Code) -> bool:
-    """Whether LSETUP alone says where the loops of the hardware begin and end: nothing else names their registers."""
+    """Whether LSETUP alone says where hardware loops begin and end: nothing else names their registers."""
     return all(LOOP_BOUNDS.isdisjoint(map(str, each.operands.values())) for each in operations_of(code))
 
 
@@ -217,7 +217,7 @@ def operations_of(code: Code) -> Iterator[Operation]:
 
 
 def is_clocked(instruction: Instruction) -> bool:
-    """Whether an instruction must know the cycles of what was executed before it."""
+    """Whether an instruction needs the cycles of everything executed before it."""
     return not CLOCKED.isdisjoint(map(str, instruction.operations[0].operands.values()))
 
 

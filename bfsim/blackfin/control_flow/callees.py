@@ -1,4 +1,4 @@
-"""Functions that code calls by their addresses, as callbacks and tables of functions are."""
+"""Functions that code calls by address, such as callbacks and tables of functions."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from bfsim.blackfin.elf.image import Image
 
 
 def callees(code: Code, image: Image) -> set[int]:
-    """Return where functions of an image begin that computed calls and jumps of `code` may lead to.
+    """Return the beginnings of functions of an image that computed calls and jumps of `code` may lead to.
 
-    A label in code, of which an assembler was not told that it is a function, may begin one. Those are the ones whose address is in the
-    image's data, or is put together in `code` of two halves; none if nothing is called so.
+    A label in code may also begin a function, even if no assembler was told so. They are those whose address is in the
+    image's data, or is put together from two halves in `code`; none if `code` has no such calls and jumps.
     """
     ends = (each for each in code.blocks.values() if each.instructions)
     if not any(does(each.instructions[-1]) in COMPUTED and not each.returns for each in ends):

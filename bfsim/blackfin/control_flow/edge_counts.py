@@ -1,4 +1,4 @@
-"""How often control went each way, in terms of what is counted: blocks, and branches that were taken."""
+"""How often control took each edge, in terms of what is counted: blocks and taken branches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bfsim.blackfin.control_flow.flow import Edge, Way
 
 
 class CountedEvent(NamedTuple):
-    """The execution of the block at `block`, or, with `taken`, the branch at its end being taken, or, with `along`, its being entered so."""
+    """An execution of the block at `block`; with `taken`, by taking its branch, with `along`, entered by that edge."""
 
     block: int
     taken: bool = False
@@ -23,10 +23,10 @@ Sum = Tally[CountedEvent]
 
 
 def times_gone(code: Code, found: Sequence[Edge], edge: Edge) -> Sum:
-    """Return how often control went along `edge`, one of all that were `found` in the code.
+    """Return how often control took `edge`, one of all that were `found` in the code.
 
-    The hardware's loops repeat as often as their start is executed and control did not come from elsewhere. Of several ends of one
-    loop the first has all of its turns, and computed jumps count as never made.
+    A hardware loop repeats as often as its start is executed without control coming from elsewhere. If it has several
+    ends, the first gets all of its iterations. Computed jumps count as never made.
     """
     return _times(code, found, edge, frozenset())
 

@@ -15,15 +15,15 @@ class Way(Enum):
     FALLS = auto()
     """From the instruction before it, without a cycle in between."""
     REPEATS = auto()
-    """From the end of a hardware loop to its start, without one either."""
+    """From the end of a hardware loop to its start, without a cycle in between, too."""
     JUMPS = auto()
     RETURNS = auto()
-    """From a call that the block before it makes."""
+    """From a call at the end of the block before it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """One way from the block at `source` to that at `target`."""
+    """A way from the block at `source` to that at `target`."""
 
     source: int
     target: int
@@ -34,7 +34,7 @@ class Edge:
 class Loop:
     """Blocks, by their addresses, from which control comes back to the one at `head`. `is_hardware`: by LC, LT and LB.
 
-    `depth`: loops that it is in, itself included.
+    `depth`: the number of loops that it is in, itself included.
     """
 
     head: int
@@ -44,9 +44,10 @@ class Loop:
 
 
 def edges(code: Code, within: Iterable[int] | None = None) -> list[Edge]:
-    """Return the ways between the blocks of code, or between those `within` it.
+    """Return the edges between the blocks of code, or between those `within` it.
 
-    Calls go on behind themselves. A computed jump may lead to every block of `within` that one may lead to, but not to calls.
+    Control goes on after a call. A computed jump may lead to every target of computed jumps `within`, except where
+    calls return.
     """
     blocks = set(code.blocks if within is None else within)
     targets = [each for each in code.targets if each in blocks - code.resumed]
@@ -78,14 +79,14 @@ def _edges(code: Code, block: Block, targets: Sequence[int]) -> Iterator[Edge]:
 
 
 def is_closed(code: Code) -> bool:
-    """Whether control comes in at one entry alone, and goes nowhere that code computes but back from functions."""
+    """Whether control comes in at one entry alone, and goes to a computed address only to return from a function."""
     return len(code.entries) == 1 and all(
         each.returns or not each.is_computed for each in code.blocks.values()
     )
 
 
 def returns(code: Code) -> Mapping[int, frozenset[int]]:
-    """Return of each block that ends a function by a return where it goes: behind the calls of the function that are seen."""
+    """Return where each block that returns from a function goes: after the calls that name the function."""
     onward = _onward(edges(code))
     behind: dict[int, set[int]] = {}
     for block in code.blocks.values():
@@ -116,7 +117,7 @@ def loops(found: Sequence[Edge], entry: int) -> list[Loop]:
 
 
 def dominators(found: Sequence[Edge], entry: int) -> Mapping[int, frozenset[int]]:
-    """Return, of each block that can be reached, the blocks that control must have passed to come to its end."""
+    """Return for each block that can be reached the blocks that control must have passed to come to its end."""
     sources: dict[int, set[int]] = {}
     for each in found:
         sources.setdefault(each.target, set()).add(each.source)
@@ -133,7 +134,7 @@ def dominators(found: Sequence[Edge], entry: int) -> Mapping[int, frozenset[int]
 
 
 def _onward(found: Iterable[Edge]) -> dict[int, list[int]]:
-    """Where control goes from each block."""
+    """Return where control goes from each block."""
     onward: dict[int, list[int]] = {}
     for each in found:
         onward.setdefault(each.source, []).append(each.target)
@@ -151,7 +152,7 @@ def _reached(onward: Mapping[int, Iterable[int]], entry: int) -> set[int]:
 
 
 def _body(found: Sequence[Edge], back: Edge) -> set[int]:
-    """Blocks from which control can come to the source of a back edge without passing its target."""
+    """Return the blocks from which control can come to the source of a back edge without passing its target."""
     body, waiting = {back.target, back.source}, [back.source]
     while waiting:
         at = waiting.pop()

@@ -1,7 +1,7 @@
-"""Which accesses are to the stack frame of code that is called as one function, and to which of its bytes.
+"""The accesses to the stack frame of code that is called as one function, and the bytes that they go to.
 
-They are known where the stack pointer is as far from where it was at first on every way to an instruction, and where no other address in
-the frame is computed, or stored. What a compiler keeps on the stack may then be kept in registers of the host.
+They are known if the stack pointer has moved equally far on every path to an instruction, and if no other address in
+the frame is computed or stored. Then registers of the host can hold what a compiler keeps on the stack.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from bfsim.blackfin.instructions.decode import Instruction
 from bfsim.blackfin.instructions.origins import Origin, made_by
 
 Places = Mapping[int, tuple[int | None, ...]]
-"""Of each instruction with accesses, by its address: how far each of them is from the stack pointer of the entry; None elsewhere."""
+"""For each instruction with accesses, by address, how far each is from the entry's stack pointer; None outside the frame."""
 _State = dict[str, int | None]
-"""How far registers are from there, those that point into the frame; None if they may."""
+"""How far registers that point into the frame are from there; None if they may point into it."""
 SAVING = frozenset({"link", "push", "push_multiple"})
-"""What saves registers for a caller: who has saved an address does nothing with it."""
+"""Instructions that save registers for a caller: an address that is saved is not used meanwhile."""
 
 
 class _UnknownError(Exception):
@@ -28,7 +28,7 @@ class _UnknownError(Exception):
 
 
 def frame_places(code: Code, entry: int) -> Places:
-    """Return the accesses of the code of a function, and of those that it calls; none if it is not known which are to the frame."""
+    """Return the accesses of a function's code, callees included; none if it is not known which are to the frame."""
     try:
         return _Frames(code).followed(entry)
     except _UnknownError:
@@ -67,7 +67,7 @@ class _Frames:
         return self._found
 
     def _come(self, start: int, state: _State) -> None:
-        """Come to a block: a register that does not point to the same place on every way to it may do so."""
+        """Come to a block: a register that does not point to the same place on every path to it only may point there."""
         before = self._begins.get(start)
         if before is None:
             self._begins[start] = dict(state)
@@ -96,12 +96,12 @@ class _Frames:
 
 
 def _behind_call(state: _State) -> _State:
-    """Return what is known where a call comes back to: what was there and is not kept may be there yet (GCC's -fipa-ra)."""
+    """Return what is known after a call: a register that need not be kept may still hold its value (GCC's -fipa-ra)."""
     return {name: place if name in KEPT else None for name, place in state.items()}
 
 
 def _place(origin: Origin, state: _State) -> int | None:
-    """Return to which place in the frame a value points, if it does."""
+    """Return the place in the frame that a value points to, if it does."""
     place = state.get(origin.base)
     if place is not None:
         return place + origin.offset
@@ -110,7 +110,7 @@ def _place(origin: Origin, state: _State) -> int | None:
 
 
 def _refuse(origin: Origin, state: _State) -> None:
-    """Give up if a value may be made of a pointer into the frame."""
+    """Give up if a value may be computed from a pointer into the frame."""
     if not state.keys().isdisjoint((*origin.of, *origin.less)):
         _give_up()
 

@@ -1,4 +1,4 @@
-"""Addresses that code puts together of two halves, as `R0.L = place; R0.H = place;` does: nothing else in code holds an address whole."""
+"""Addresses that code puts together from two halves, as in `R0.L = place; R0.H = place;`: code holds them in no other way."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ HALVES = {"set_high", "set_low"}
 
 
 class PutTogether:
-    """The numbers of 32 bits whose halves are both in `instructions`, whichever register each is put into."""
+    """The 32-bit numbers whose halves are both in `instructions`, whichever registers they are put into."""
 
     def __init__(self, instructions: Iterable[Instruction]) -> None:
         found: dict[str, set[int]] = {each: set() for each in HALVES}

@@ -1,7 +1,7 @@
-"""Counts that need not be made: a block is executed as often as control goes all the ways that lead to it.
+"""Counts that need no counter: a block is executed as often as control takes all the edges that lead to it.
 
-They are worked out when the code is left, which takes less than to store one more count each time, and a short block without a store
-can become instructions without a branch around them.
+They are worked out when the code is left, which takes less time than storing another count at every execution. A short
+block without a store can also become instructions without a branch around them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from bfsim.blackfin.control_flow.flow import Edge, Way, edges
 
 
 class Into(NamedTuple):
-    """A way into a block, gone as often as the block `before` is executed; with `taken`, as the branch there is taken, or is not."""
+    """An edge into a block, taken as often as the block `before` is executed, or as its branch is `taken` or not taken."""
 
     before: int
     taken: bool | None = None
@@ -23,21 +23,21 @@ class Into(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Implied:
-    """The block at `block` is executed as often as control goes all of these ways."""
+    """The block at `block` is executed as often as control takes all of these edges together."""
 
     block: int
     ways: tuple[Into, ...]
 
     @property
     def needs(self) -> set[int]:
-        """The blocks whose own counts are needed. That of a branch that is taken is one of its own."""
+        """The blocks whose own counts are needed. A taken branch has a separate count."""
         return {each.before for each in self.ways if each.taken is not True}
 
 
 def implied(code: Code) -> list[Implied]:
-    """Return the blocks whose counts follow from others, behind all of them whose counts they need.
+    """Return the blocks whose counts follow from others, each after all those whose counts it needs.
 
-    There are none where code goes on behind an event or asks for its cycles: counts must be right in between there.
+    There are none if code goes on after an event or asks for its cycles: then counts must be right in between, too.
     """
     instructions = (each for block in code.blocks.values() for each in block.instructions)
     if code.resumes or any(map(is_clocked, instructions)):
@@ -58,7 +58,7 @@ def implied(code: Code) -> list[Implied]:
 
 
 def _is_alone(code: Code, edge: Edge) -> bool:
-    """Whether it is known how often control goes a way: not at the end of a hardware loop, nor behind a call or a computed jump."""
+    """Whether an edge's count is known: not at the end of a hardware loop, nor after a call or a computed jump."""
     last = code.blocks[edge.source].instructions[-1]
     return not code.is_loop_end(last.address) and (
         edge.way is Way.FALLS or (edge.way is Way.JUMPS and does(last) in DIRECT)
@@ -70,7 +70,7 @@ def _into(code: Code, edge: Edge) -> Into:
 
 
 def _ordered(found: Mapping[int, Implied]) -> list[Implied]:
-    """Put each behind those that it needs. Where they need each other in a circle, one of it is left out: it is counted."""
+    """Put each after those that it needs. If they need each other in a circle, one of it is left out: it is counted."""
     done: dict[int, Implied | None] = {}
     for start in found:
         path = {start: None}

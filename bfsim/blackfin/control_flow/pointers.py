@@ -1,7 +1,7 @@
-"""Which array an access is to: pointers are followed from the arguments of a function through registers and the stack.
+"""The array that an access is to: pointers are followed from the arguments of a function through registers and the stack.
 
-A value is known by the arrays that it may point into, and by its place in the stack frame if it is one. At a join it may be either;
-a function that is called is looked at once, with what all of its calls hand over.
+What is known of a value is the arrays that it may point into, and the place if it points into the stack frame. Where
+paths join, it may be either; a callee is looked at once, with what all of its calls pass.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from bfsim.blackfin.instructions.registers import WORD_BYTES
 
 @dataclass(frozen=True, slots=True)
 class Pointer:
-    """What is known of a value: `arrays` that it may point into, `less` those that a pointer into which was subtracted from it.
+    """What is known of a value: `arrays` that it may point into; `less`: arrays of which a pointer was subtracted from it.
 
     `frame`: how far it is from the SP of the function's entry, if known.
     """
@@ -40,7 +40,7 @@ class Pointer:
 
 NUMBER = Pointer()
 Accesses = tuple[tuple[bool, frozenset[str]], ...]
-"""Of an instruction: of each access whether it writes, and the arrays that it may be to."""
+"""For each access of an instruction, whether it writes, and the arrays that it may be to."""
 
 
 @dataclass(slots=True)
@@ -51,14 +51,14 @@ class _State:
     words: dict[int, Pointer] = field(default_factory=dict)
 
     def joined(self, other: _State) -> _State:
-        """What is known of one or the other; itself if the other one says nothing new."""
+        """Return what is known if either holds; itself if the other says nothing new."""
         registers, words = _joined(self.registers, other.registers), self._words_joined(other)
         if registers is self.registers and words is self.words:
             return self
         return _State(registers, words)
 
     def _words_joined(self, other: _State) -> dict[int, Pointer]:
-        """A word of the stack is known only where both know it."""
+        """Return the words of the stack that both know."""
         if self.words == other.words:
             return self.words
         both = self.words.keys() & other.words.keys()
@@ -66,11 +66,11 @@ class _State:
         return self.words if found == self.words else found
 
     def behind_call(self) -> _State:
-        """What is known where a call comes back to."""
+        """Return what is known after a call."""
         return _State({name: each for name, each in self.registers.items() if name in KEPT}, self.words)
 
     def in_call(self) -> _State:
-        """What a function that is called knows: places in the stack are counted from its own SP."""
+        """Return what a callee knows: places in the stack are counted from its own SP."""
         top = self.registers.get("SP", NUMBER).frame
         if top is None:
             registers = {name: replace(each, frame=None) for name, each in self.registers.items()}
@@ -85,7 +85,7 @@ class _State:
         )
 
     def execute(self, made: Made) -> Accesses:
-        """Change as an instruction does that has `made` this; return its accesses."""
+        """Apply what an instruction has `made`; return its accesses."""
         known = dict(self.registers) if made.accesses else self.registers  # with what is loaded
         found: list[tuple[bool, frozenset[str]]] = []
         stores: list[tuple[Pointer, int, Pointer]] = []
@@ -113,7 +113,7 @@ class _State:
 
 
 def _joined(one: dict[str, Pointer], two: dict[str, Pointer]) -> dict[str, Pointer]:
-    """What is known of registers, of those that are not named a number; the first if the second says nothing new."""
+    """Return what is known of registers, where those not named are numbers; the first if the second says nothing new."""
     found: dict[str, Pointer] = {}
     for name in one.keys() | two.keys():
         here, there = one.get(name, NUMBER), two.get(name, NUMBER)
@@ -149,7 +149,7 @@ def arrays_accessed(code: Code, entry: int, arguments: Sequence[str]) -> dict[in
     begins = {entry: _State({**registers, "SP": Pointer(frame=0)}, words)}
     ways = {source: list(each) for source, each in groupby(edges(code), lambda edge: edge.source)}
     made = cache(lambda start: [(each.address, made_by(each)) for each in code.blocks[start].instructions])
-    waiting = [entry]  # a heap: what comes first in the code most often comes first in time, too
+    waiting = [entry]  # a heap: what is earlier in the code is most often earlier in time, too
     found: dict[int, Accesses] = {}
     while waiting:
         start = heappop(waiting)

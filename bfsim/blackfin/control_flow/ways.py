@@ -1,4 +1,4 @@
-"""The ways that calls take through the code of a function, in words: which function calls which, in which source lines."""
+"""The paths of calls through the code of a function, in words: which function calls which, in which source lines."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from bfsim.blackfin.elf.lines import LineTable
 from bfsim.errors import cut, listed
 
 MOST_LINES, MOST_CALLS = 3, 4
-"""[ours] As many lines that call the same are listed, and as many calls of a way: the last ones."""
+"""[ours] The most lines with the same call that are listed, and the most calls of a path: the last ones."""
 CALLS, MAY_CALL = "calls", "may call by its address"
 
 
 @dataclass(frozen=True)
 class Ways:
-    """Those to all that the code of `entry`, a symbol, has or calls."""
+    """The paths to everything that the code of `entry`, a symbol, has or calls."""
 
     image: Image
     code: Code
@@ -28,7 +28,7 @@ class Ways:
 
     @cached_property
     def _sources(self) -> Mapping[int, list[int]]:
-        """Of each address the instructions that go straight there from another function."""
+        """For each address, the instructions that go straight there from another function."""
         found: dict[int, list[int]] = {}
         for block in self.code.blocks.values():
             last = block.instructions[-1] if block.instructions else None
@@ -40,7 +40,7 @@ class Ways:
 
     @cached_property
     def _computed(self) -> list[int]:
-        """The instructions that go to an address which the code computes."""
+        """The instructions that go to a computed address."""
         lasts = [
             each.instructions[-1]
             for each in self.code.blocks.values()
@@ -50,11 +50,11 @@ class Ways:
 
     @cached_property
     def _by_address(self) -> set[int]:
-        """Where functions begin that these may go to."""
+        """The beginnings of functions that these may go to."""
         return callees(self.code, self.image)
 
     def line_at(self, address: int) -> str:
-        """Return the source line of the code at an address, as `file:line`; nothing where the image does not tell."""
+        """Return the source line of the code at an address, as `file:line`; '' if the image does not tell."""
         found = self.lines.at(address)
         return f"{cut(found.file)}:{found.line}" if found and found.line else ""
 
@@ -73,14 +73,14 @@ class Ways:
         return self._sources.get(address, [])
 
     def _calling(self, address: int) -> tuple[list[int], str]:
-        """Return the instructions that go to a function, and whether they do: where none goes straight there, those that may."""
+        """Return the instructions that go straight to a function, or else those that may go there; and the verb for that."""
         straight = self.going_to(address)
         if straight or address not in self._by_address:
             return straight, CALLS
         return self._computed, MAY_CALL
 
     def callers(self, places: Iterable[int], verb: str = CALLS) -> str:
-        """Say who calls, or uses, something at places, and the shortest way there: `exit calls at exit.c:64, which f calls at f.c:3`."""
+        """Return who calls, or uses, something at places, by the shortest path: `exit calls at exit.c:64, which f calls at f.c:3`."""
         told = []
         for function, found, does_so in self._way(tuple(places), verb):
             named = list(dict.fromkeys(self.line_at(each) or f"0x{each:08X}" for each in found))
@@ -91,7 +91,7 @@ class Ways:
         return ", which ".join(told)
 
     def _way(self, places: tuple[int, ...], verb: str) -> list[tuple[str, list[int], str]]:
-        """Return the functions on the shortest way from places up to the entry, each with its places on it; only the first if there is none."""
+        """Return the functions on the shortest path from places to the entry, each with its places; the first if none."""
         first = [[(*each, verb)] for each in self._by_function(places).items()]
         waiting, seen = list(first), {each[-1][0] for each in first}
         for way in waiting:
@@ -112,7 +112,7 @@ class Ways:
         return found
 
     def _function(self, address: int) -> str:
-        """Return the symbol of the function that has the code at an address; of what is missing, or has no name, one of its own."""
+        """Return the symbol of the function that has the code at an address; a made-up one if it is missing or has no name."""
         routine = self.image.routine_at(address)
         return routine.name if routine else f"0x{address:08X}"
 

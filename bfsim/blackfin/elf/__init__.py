@@ -1,1 +1,1 @@
-"""ELF files: what lies where in the Blackfin's memory, and of which source line code is."""
+"""ELF files: what lies where in the Blackfin's memory, and which source lines code comes from."""

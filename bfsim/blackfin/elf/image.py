@@ -13,11 +13,12 @@ from functools import cached_property
 from bfsim.errors import KernelError, cut, listed
 
 MOST_NAMES = 5
-"""As many names are listed of what is missing."""
+"""The most names that an error lists."""
 LINKED_WITH = "bfin-elf-gcc -O2 -g -r -nostdlib -o whole.o FILES -lm -lc -lgcc"
-"""What makes one object file of several, in C or object code, and of the parts of the libraries that they call."""
+"""Makes one object file of several, in C or object code, and of the parts of the libraries that they call."""
 NOWHERE, REGISTERS = 0xFFB80000, 0xFFC00000
-"""[HRM] Reserved between the scratchpad and the memory-mapped registers: nothing is there, and nothing of a program; and where these begin."""
+"""[HRM] A reserved range between the scratchpad and the memory-mapped registers, which holds nothing, not even of a
+program; and where these registers begin."""
 NOWHERE_BYTES = 256
 """[ours] From one missing symbol to the next."""
 
@@ -41,13 +42,13 @@ class Segment:
 
     @property
     def end(self) -> int:
-        """The address behind it."""
+        """The address after it."""
         return self.address + len(self.octets)
 
 
 @dataclass(frozen=True, slots=True)
 class Routine:
-    """A function in an image: from its first address to the one behind it."""
+    """A function in an image: from its first address to the one after it."""
 
     name: str
     address: int
@@ -58,8 +59,9 @@ class Routine:
 class Image:
     """A program in memory: its segments, addresses by symbol, its functions in the order of their addresses.
 
-    `pointers`: addresses of code that its data holds, such as those of a switch; of a linked program all words that may be. `octets`: the file with
-    its relocations applied, for what reads debugging information. `missing`: symbols that it uses and does not have, by addresses where nothing is.
+    `pointers`: addresses of code that its data holds, such as those of a switch; for a linked program, all words that
+    may be such. `octets`: the file with its relocations applied, for readers of debugging information. `missing`:
+    symbols that it uses and does not have, by addresses where nothing is.
     """
 
     name: str
@@ -77,7 +79,7 @@ class Image:
 
     @cached_property
     def code_digest(self) -> str:
-        """SHA-256 of what lies in memory, by addresses: the same of files that were compiled in other folders, which they name."""
+        """SHA-256 of what lies in memory, by addresses: it does not depend on the folder where the file was compiled."""
         found = hashlib.sha256()
         for each in self.segments:
             found.update(f"{each.address} {len(each.octets)} {each.use}\n".encode())
@@ -96,13 +98,13 @@ class Image:
         return any(each.use is Use.CODE and each.address <= address < each.end for each in self.segments)
 
     def routine_at(self, address: int) -> Routine | None:
-        """Return the function that an address is in, or None outside of all."""
+        """Return the function that an address is in, or None outside all."""
         number = bisect_right(self.routines, address, key=lambda each: each.address)
         found = self.routines[number - 1] if number else None
         return found if found and address < found.end else None
 
     def missing_at(self, address: int) -> str | None:
-        """Return the missing symbol for which an address stands, or None for any other one."""
+        """Return the missing symbol that an address stands for, or None for any other address."""
         return self.missing.get(address - address % NOWHERE_BYTES)
 
     def address_of(self, symbol: str) -> int:
@@ -115,7 +117,7 @@ class Image:
 
 
 def packed(image: Image) -> bytes:
-    """Return an image as bytes: a line of JSON, and behind it the contents of its segments and the file."""
+    """Return an image as bytes: a line of JSON, then the contents of its segments and the file."""
     segments = [(each.address, len(each.octets), each.use) for each in image.segments]
     routines = [astuple(each) for each in image.routines]
     missing = sorted(image.missing.items())
@@ -124,7 +126,7 @@ def packed(image: Image) -> bytes:
 
 
 def unpacked(octets: bytes) -> Image:
-    """Return the image that `packed` has made bytes of."""
+    """Return the image that `packed` has turned into bytes."""
     head, _, rest = octets.partition(b"\n")
     name, rows, symbols, routines, pointers, missing = json.loads(head)
     segments = []

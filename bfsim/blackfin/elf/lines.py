@@ -15,14 +15,14 @@ from bfsim.blackfin.elf.units import Unit, read_units
 
 
 class Line(NamedTuple):
-    """A line of a source file, which is called as the compiler was told to; 0 where the compiler knows none."""
+    """A line of a source file, with the file's name as the compiler was given it; 0 if the compiler knows none."""
 
     file: str
     line: int
 
 
 class InlinedCall(NamedTuple):
-    """From `begin` up to `end` the code is that of what is called in `line`, in the place of the call."""
+    """From `begin` up to `end`, the code is that of a function called in `line`, in place of the call."""
 
     begin: int
     end: int
@@ -31,7 +31,7 @@ class InlinedCall(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """From `address` on, code is of `line`; of no line behind the end of a function."""
+    """From `address` on, code comes from `line`; from no line after the end of a function."""
 
     address: int
     line: Line | None
@@ -48,22 +48,22 @@ class LineTable:
         return [each.address for each in self.rows]
 
     def at(self, address: int) -> Line | None:
-        """Return the line of the code at an address, or None where nothing is known."""
+        """Return the line of the code at an address, or None if nothing is known."""
         number = bisect_right(self._addresses, address)
         return self.rows[number - 1].line if number else None
 
 
 def lines_of(image: Image) -> LineTable:
-    """Read the lines of an image. Raises KernelError where its debugging information is damaged."""
+    """Read the lines of an image. Raises KernelError if its debugging information is damaged."""
     found = sorted(read_units(image, _rows), key=lambda each: (each.address, each.line is not None))
     last = {each.address: each for each in found}
     return LineTable(tuple(last.values()))
 
 
 def calls_inlined_in(image: Image) -> tuple[InlinedCall, ...]:
-    """Return the calls in an image in whose place the compiler has put what is called, the innermost first.
+    """Return the calls in an image that the compiler has inlined, the innermost first.
 
-    Raises KernelError where its debugging information is damaged.
+    Raises KernelError if its debugging information is damaged.
     """
     return tuple(sorted(read_units(image, _inlined), key=lambda each: each.end - each.begin))
 
@@ -78,7 +78,7 @@ def _inlined(unit: Unit) -> Iterator[InlinedCall]:
 
 
 def _ranges(dwarf: Any, unit: Any, entry: Any, values: Mapping[str, int]) -> Iterator[tuple[int, int]]:
-    """Yield where the code of an entry is, from an address up to another one."""
+    """Yield the ranges of an entry's code, each from an address up to another one."""
     if "DW_AT_low_pc" in values:
         begin, length = values["DW_AT_low_pc"], values["DW_AT_high_pc"]
         yield begin, length if entry.attributes["DW_AT_high_pc"].form == "DW_FORM_addr" else begin + length

@@ -1,8 +1,8 @@
 """Object files → an image: what lies where in the Blackfin's memory, with every relocation applied.
 
-A program that is linked already keeps its addresses. Of an object file, code goes to L1 instruction memory and data to L1 data
-memory, or as far beyond as they reach, and to SDRAM if that is too far: nothing of the timing depends on it, for compilers' own
-tables are not traced.
+A program that is linked already keeps its addresses. The code of an object file goes to L1 instruction memory and its
+data to L1 data memory, or as far beyond as they reach, and to SDRAM if that is too far. No timing depends on this,
+since compilers' own tables are not traced.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ WORD_BYTES = 4
 def link(file: ObjectFile, *, is_whole: bool = True) -> Image:
     """Place an object file in memory and apply its relocations; a linked program is taken as it is.
 
-    What it does not define is an error if it must be whole, else it gets an address where nothing is: most of a C file, and of the
-    library that it drags in, such as `malloc`, may never run.
+    A symbol that it does not define is an error if it must be whole; otherwise the symbol gets an address where nothing
+    is: most of a C file, and of the library that it drags in, such as `malloc`, may never run.
 
-    Raises KernelError for symbols that are nowhere defined, for relocations that cannot be applied, and for sections that leave
-    the Blackfin's addresses or lie over each other.
+    Raises KernelError for undefined symbols, for relocations that cannot be applied, and for sections that leave the
+    Blackfin's addresses or overlap.
     """
     places = _places(file)
     contents = [bytearray(each.octets) for each in file.sections]
@@ -83,7 +83,7 @@ def link(file: ObjectFile, *, is_whole: bool = True) -> Image:
 
 
 def _places(file: ObjectFile) -> tuple[int, ...]:
-    """The address of each section."""
+    """Return the address of each section."""
     ends, places = dict(_bases(file)), []
     for each in file.sections:
         place = each.address
@@ -108,7 +108,10 @@ def _bases(file: ObjectFile) -> Mapping[Use, int]:
 
 
 def _missing(file: ObjectFile, *, is_whole: bool) -> dict[int, str]:
-    """Return what the file uses and does not define, by addresses where nothing is. Raises KernelError if it must be whole."""
+    """Return the symbols that the file uses but does not define, by addresses where nothing is.
+
+    Raises KernelError if there are any and the file must be whole.
+    """
     used = {each.symbol for each in file.relocations if file.sections[each.section].use is not Use.NOTES}
     if beyond := [each for each in used if each >= len(file.symbols)]:
         raise KernelError(f"{file.name} must have the symbol number {beyond[0]}, which it relocates by")
@@ -139,7 +142,7 @@ def _value(symbol: Symbol, file: ObjectFile, places: tuple[int, ...]) -> int:
 
 
 def _routines(file: ObjectFile, places: tuple[int, ...]) -> tuple[Routine, ...]:
-    """Functions. One whose size the assembler was not told ends where the next one begins, or its section ends."""
+    """Return the functions. One of unknown size ends where the next one begins, or its section ends."""
     found: dict[int, tuple[Symbol, int]] = {}
     for each in file.symbols:
         if each.is_function and each.section is not None and file.sections[each.section].use is Use.CODE:
@@ -158,7 +161,7 @@ def _routines(file: ObjectFile, places: tuple[int, ...]) -> tuple[Routine, ...]:
 
 
 def _pointers(file: ObjectFile, places: tuple[int, ...]) -> Iterator[int]:
-    """Yield what words of memory hold the addresses of code."""
+    """Yield the addresses of code that words of memory hold."""
     for each in file.relocations:
         if each.kind == RelocationKind.WORD and file.sections[each.section].use is not Use.NOTES:
             symbol = file.symbols[each.symbol]
@@ -167,7 +170,7 @@ def _pointers(file: ObjectFile, places: tuple[int, ...]) -> Iterator[int]:
 
 
 def _likely_pointers(segments: Iterable[Segment]) -> Iterator[int]:
-    """Yield the words that may be addresses of code, whose relocations are gone: of data, and of tables that stand in code."""
+    """Yield the words that may be addresses of code, whose relocations are gone: in data, and in tables within code."""
     segments = list(segments)
     code = [each for each in segments if each.use is Use.CODE]
     for segment in segments:
@@ -180,7 +183,7 @@ def _likely_pointers(segments: Iterable[Segment]) -> Iterator[int]:
 
 
 def _values(file: ObjectFile, places: tuple[int, ...]) -> Iterator[tuple[Relocation, int]]:
-    """Yield the relocations that write something, with what: the value of a symbol, or what those before have computed."""
+    """Yield the relocations that write something, with its value: that of a symbol, or what earlier ones have computed."""
     stack: list[int] = []
     for each in file.relocations:
         if each.kind in NOTHING or each.symbol >= len(file.symbols):
@@ -206,7 +209,7 @@ def _apply(
     kind = each.kind
     if kind not in set(RelocationKind):
         if section.use is Use.NOTES:
-            return  # what compilers of others note
+            return  # notes of other compilers
         what = (
             "are of position-independent code, as compilers for Linux make it: -mno-fdpic, and no -mid-shared-library, makes other"
             if kind in INDEPENDENT

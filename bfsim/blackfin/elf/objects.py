@@ -1,6 +1,7 @@
 """Blackfin ELF files: sections, symbols and relocations, as they stand in the file.
 
-Files come from users, so nothing in one is believed: whatever the reader makes of damaged bytes is one refusal.
+Files come from users, so nothing in them is trusted: whatever goes wrong while damaged bytes are read becomes one
+refusal.
 """
 
 from __future__ import annotations
@@ -25,21 +26,21 @@ VISUALDSP = 0x22
 """[seen] The machine of object files, not of programs, of VisualDSP++ 5."""
 MACHINES = ("EM_BLACKFIN", VISUALDSP)
 COMMON = "SHN_COMMON"
-"""[ELF] In place of its section's number: a variable without a value. GCC before 10 makes these, as ADI's own, and with -fcommon."""
+"""[ELF] Instead of a section's number: a variable without a value, from ADI's compiler, and from GCC before 10 or with -fcommon."""
 RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
 MOST_BYTES = 64 << 20
-"""[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
+"""[ours] The most bytes of a file, and of what it needs in memory: as much SDRAM as the largest board has."""
 LABELS = (".", "__BEGIN__.", "__END__.")
-"""[seen] How VisualDSP++ begins the names of labels in a function, which it says are functions, too."""
+"""[seen] The beginnings of VisualDSP++'s names for labels in a function, which it also marks as functions."""
 RELOCATION = struct.Struct("<IIi")
-"""[ELF] Of 32 bits, with an addend: its offset, the number of its symbol above the 8 bits of its kind, the addend."""
+"""[ELF] A relocation with an addend: its offset, the number of its symbol above the 8 bits of its kind, the addend."""
 FUNCTIONS = (("STT_NOTYPE", "STB_GLOBAL"), ("STT_NOTYPE", "STB_WEAK"))
-"""Of assembler without .type: names that other files see, if they are of code."""
+"""Functions in assembler without .type: names of code that other files see."""
 
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A section: `nbytes` from `address`, 0 before linking. `octets` are none where memory only has to be zero."""
+    """A section: `nbytes` from `address`, 0 before linking. `octets` is empty if memory only has to be zero."""
 
     name: str
     use: Use
@@ -55,7 +56,7 @@ class Section:
 class Symbol:
     """A name for `value`: an offset in section number `section`, before linking, or an address.
 
-    `section` is None for what is defined elsewhere, or has no place.
+    `section` is None for a symbol that is defined elsewhere, or has no place.
     """
 
     name: str
@@ -90,7 +91,7 @@ class ObjectFile:
 
 
 def read_object(octets: bytes, name: str) -> ObjectFile:
-    """Read an ELF file; `name` is what errors call it. Raises KernelError unless it is one for the Blackfin, and whole."""
+    """Read an ELF file; `name`: its name in errors. Raises KernelError unless it is one for the Blackfin, and whole."""
     if len(octets) > MOST_BYTES:
         raise KernelError(f"{name} must have at most {MOST_BYTES:,} bytes, not {len(octets):,}")
     if octets[:4] != b"\x7fELF":
@@ -170,12 +171,12 @@ def _section(part: ElfSection, octets: bytes, name: str) -> Section:
 
 
 def _common(entry: Any) -> Section:
-    """Return a place for a variable of C that has no value and no section: its symbol says how large it is, and how it is aligned."""
+    """Return a section for a variable of C that has no value and no section: its symbol has its size and alignment."""
     return Section(entry.name, Use.DATA, 0, entry["st_size"], max(1, entry["st_value"]), b"", 0)
 
 
 def _symbol(entry: Any, sections: int, own: int | None) -> Symbol:
-    """Return a symbol of a file with so many sections. `own`: the number of the section that was made for it, if one was."""
+    """Return a symbol of a file with `sections` sections. `own`: the number of the section that was made for it, if any."""
     place = entry["st_shndx"]
     return Symbol(
         name=entry.name,
@@ -194,10 +195,10 @@ def _symbol(entry: Any, sections: int, own: int | None) -> Symbol:
 def _relocations(
     part: RelocationSection, sections: tuple[Section, ...], name: str, ahead: int
 ) -> Iterator[Relocation]:
-    """Yield the relocations of a section. `ahead`: by how much those of second halves point to what is before these."""
+    """Yield the relocations of a section. `ahead`: how far those of second halves point before them."""
     target = part["sh_info"]
     if 0 < target < len(sections) and sections[target].use is Use.NOTES and not part.is_RELA():
-        return  # VisualDSP++ notes so what it assembles
+        return  # VisualDSP++ makes such notes when it assembles
     if not part.is_RELA() or not 0 < target < len(sections):
         raise KernelError(
             f"{name} must have relocations with addends, of its own sections ({cut(part.name)})"

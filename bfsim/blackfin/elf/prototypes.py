@@ -1,4 +1,4 @@
-"""What C says of a function: its parameters and its result, as DWARF has them."""
+"""What C says of a function: its parameters and its result, according to DWARF."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TRANSPARENT = {
 
 NUMBERS = {"base", "enumeration"}
 PREFIXES = {"structure": "struct", "union": "union", "enumeration": "enum"}
-"""What C writes before the name of a type that is of one of these kinds."""
+"""What C writes before the name of a type of one of these kinds."""
 
 FLOAT, SIGNED = 4, (5, 6)
 """[DWARF 5, table 7.11] DW_ATE_float; DW_ATE_signed and DW_ATE_signed_char."""
@@ -27,7 +27,7 @@ FLOAT, SIGNED = 4, (5, 6)
 
 @dataclass(frozen=True, slots=True)
 class CType:
-    """A type: as C writes it, of how many bytes; of a pointer, what it points to. Bytes are 0 for what is no number, and no pointer."""
+    """A type: its text in C, its bytes, and what a pointer points to. Bytes are 0 unless it is a number or a pointer."""
 
     text: str
     nbytes: int
@@ -53,7 +53,7 @@ def prototype_of(image: Image, name: str) -> CPrototype | None:
     """Return the prototype of the function that C calls `name`.
 
     None for code without debugging information, and for a function that takes any number of arguments. Raises
-    KernelError where the debugging information is damaged.
+    KernelError if the debugging information is damaged.
     """
 
     def read(unit: Unit) -> Iterator[CPrototype]:
@@ -90,7 +90,7 @@ def _name(entry: Any) -> str:
 
 
 def _type_of(entry: Any) -> CType:
-    """Return the type that an entry refers to: of a pointer to nothing said, `void *`."""
+    """Return the type that an entry refers to; `void` if it names none."""
     qualifiers, kind = "", entry
     while "DW_AT_type" in kind.attributes:
         kind = kind.get_DIE_from_attribute("DW_AT_type")

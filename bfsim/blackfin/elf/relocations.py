@@ -1,7 +1,7 @@
 """Relocations of Blackfin ELF files, as data: what a linker writes into code and data once addresses are known.
 
-Numbers and fields: [BFD] the ELF back end of binutils 2.40 for the Blackfin. Those of LSETUP, which binutils itself applies wrongly,
-are of VisualDSP++ alone: GNU's assembler knows both ends of a loop, which are in its own section.
+Numbers and fields: [BFD] the ELF back end of binutils 2.40 for the Blackfin. Only VisualDSP++ has those of LSETUP,
+which binutils itself applies wrongly: GNU's assembler knows both ends of a loop, which are in its own section.
 """
 
 from __future__ import annotations
@@ -37,28 +37,28 @@ class RelocationKind(IntEnum):
 SECOND_HALF = {
     RelocationKind.IMMEDIATE_16, RelocationKind.LOW_HALF, RelocationKind.HIGH_HALF, RelocationKind.JUMP_X, RelocationKind.CALL_OR_JUMP_24, RelocationKind.JUMP_L, RelocationKind.CALL_X,
 }  # fmt: skip
-"""Those that point to the second half of an instruction, or [seen] in object files of VisualDSP++ 5 to its first one."""
+"""Kinds that point to the second half of an instruction, or [seen] in object files of VisualDSP++ 5 to the first."""
 HALF_BYTES = 2
 INDEPENDENT = (*range(0x14, 0x22), 0x40, 0x41)
-"""[seen] Of position-independent code: those of FDPIC, and of shared libraries that have numbers."""
+"""[seen] Kinds of position-independent code: of FDPIC, and of shared libraries that have numbers."""
 NOTHING = (0x00, 0xD2)
-"""What writes nothing: R_BFIN_UNUSED0, and [seen] what VisualDSP++ has where code needs a symbol, for its linker to keep that."""
+"""Kinds that write nothing: R_BFIN_UNUSED0, and [seen] VisualDSP++'s, so that its linker keeps a symbol that code needs."""
 PUSH, PUSH_CONSTANT = 0xE0, 0xE1
-"""Put the value of a symbol, or an addend, on a stack: what is on its top at the next of the kinds above is the value of that."""
+"""Put the value of a symbol, or an addend, on a stack; the next relocation of the kinds above writes what is on its top."""
 OPERATIONS: dict[int, Callable[[int, int], int]] = {
     0xE2: operator.add, 0xE3: operator.sub, 0xE4: operator.mul, 0xE7: operator.lshift, 0xE8: operator.rshift,
     0xE9: operator.and_, 0xEA: operator.or_, 0xEB: operator.xor,
 }  # fmt: skip
-"""What takes two values from that stack and puts one there."""
+"""Kinds that take two values from that stack and put one there."""
 
 
 @dataclass(frozen=True, slots=True)
 class RelocatedField:
     """The `bits` lowest of a little-endian number of `nbytes`, `before` bytes ahead of where the relocation points.
 
-    They take the value shifted right by `shift`, from the instruction's address if it is `relative`. What does not fit is refused
-    unless the field takes a part of the value, as halves of an address do. `forward`: it cannot be negative. `over`: how many of the
-    lowest bits are not the field's.
+    They take the value shifted right by `shift`, counted from the instruction's address if it is `relative`. A value
+    that does not fit is refused unless the field takes a part of it (`is_part`), such as half of an address. `forward`:
+    it cannot be negative. `over`: how many of the lowest bits are not the field's.
     """
 
     nbytes: int

@@ -13,13 +13,13 @@ from bfsim.blackfin.elf.image import Image
 from bfsim.blackfin.elf.objects import damaged
 
 FIRST_VERSION_FROM_0 = 5
-"""[DWARF 5] Of line tables: in older ones the first file has the number 1."""
+"""[DWARF 5] The first version of line tables whose files are numbered from 0; in older ones they begin with 1."""
 
 Found = TypeVar("Found")
 
 
 class Unit(NamedTuple):
-    """A file that was compiled: its debugging information, its unit there, its line table and the files of that by their numbers."""
+    """A compiled file: its debugging information, its unit there, its line table, and the table's files by number."""
 
     dwarf: Any
     unit: Any
@@ -28,9 +28,9 @@ class Unit(NamedTuple):
 
 
 def read_units(image: Image, read: Callable[[Unit], Iterator[Found]]) -> list[Found]:
-    """Return what is read of each unit of an image's debugging information, which may have none.
+    """Return what is read from each unit of an image's debugging information, if it has any.
 
-    Raises KernelError where it is damaged.
+    Raises KernelError if it is damaged.
     """
     try:
         elf = ELFFile(io.BytesIO(image.octets))
@@ -42,7 +42,7 @@ def read_units(image: Image, read: Callable[[Unit], Iterator[Found]]) -> list[Fo
 
 
 def _is_compressed(section: Any) -> bool:
-    """What is small in the file may be of any size: it is left alone."""
+    """Whether a section is compressed: it is then left alone, since it may expand to any size."""
     return bool(section["sh_flags"] & SH_FLAGS.SHF_COMPRESSED) or section.name.startswith(".zdebug")
 
 

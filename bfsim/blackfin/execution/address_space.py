@@ -1,6 +1,6 @@
 """The Blackfin's address space of 4 GB, in this process: memories where it has some, and nothing elsewhere.
 
-A memory is one of its own, or a window: memory that others have, too, such as that of a simulated board.
+A memory is its own, or a window on memory that others have, too, such as that of a simulated board.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from bfsim.errors import ConfigError
 
 SPAN_BYTES = 1 << 32
 NO_ACCESS = 0
-"""Of the host's pages: an access is a fault."""
+"""Protection of the host's pages: any access is a fault."""
 WINDOWS = 0x20000000
-"""[HRM] Asynchronous memory, which programs are not linked to: where windows are, and behind it if that is full."""
+"""[HRM] Asynchronous memory, where no program is linked: windows are here, and after it if it is full."""
 MAP_FIXED, MREMAP_MAYMOVE, MREMAP_FIXED = 0x10, 1, 2
-"""Linux: pages are laid at an address, whatever is there."""
+"""Linux: pages are mapped at an address, whatever is there."""
 FAILED = ctypes.c_void_p(-1).value
 
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """A memory at an address; its size is in whole pages of the host. `shared`: what it is a window on, for as long as that is there."""
+    """A memory at an address; its size is in whole pages of the host. `shared`: what it is a window on, while that exists."""
 
     base: int
     octets: NDArray[np.uint8]
@@ -36,7 +36,7 @@ class Memory:
 
     @property
     def end(self) -> int:
-        """The address behind it."""
+        """The address after it."""
         return self.base + len(self.octets)
 
 
@@ -55,9 +55,10 @@ class _Pages:
 
 @dataclass(slots=True)
 class AddressSpace:
-    """A reservation of 4 GB and a page of the host's addresses, of which only the memories are backed.
+    """A reservation of 4 GB and a page of the host's addresses, in which only the memories are backed.
 
-    `origin`: the host's address of address 0. Raises ConfigError where the host refuses, as under a limit of addresses.
+    `origin`: the host's address of address 0. Raises ConfigError if the host refuses, for example under a limit of
+    addresses.
     """
 
     memories: list[Memory] = field(default_factory=list)
@@ -77,7 +78,7 @@ class AddressSpace:
         self.origin = np.frombuffer(self._map, np.uint8).ctypes.data
 
     def add(self, base: int, nbytes: int) -> Memory:
-        """Have a memory of zeros at an address, rounded outwards to pages of the host. Raises ConfigError if one is there already."""
+        """Add a memory of zeros at an address, rounded outwards to pages of the host. Raises ConfigError if one is there."""
         start = base & -mmap.PAGESIZE
         end = -(-(base + nbytes) // mmap.PAGESIZE) * mmap.PAGESIZE
         for each in self.memories:
@@ -92,7 +93,7 @@ class AddressSpace:
         return self.memories[-1]
 
     def window(self, shared: NDArray[np.uint8]) -> int:
-        """Return the address at which the space has memory of the host, the same bytes: whole pages that may be `shared`."""
+        """Return the address of a window on memory of the host, the same bytes: whole pages of a shared mapping."""
         for each in self.memories:
             if each.shared and each.shared() is shared:
                 return each.base
@@ -114,7 +115,7 @@ class AddressSpace:
         self.memories = kept
 
     def _gap(self, nbytes: int) -> int:
-        """Return the first address for a window of so many bytes. Raises ConfigError where there is none."""
+        """Return the first address for a window of `nbytes` bytes. Raises ConfigError if there is none."""
         start = WINDOWS
         for each in sorted(self.memories, key=lambda each: each.base):
             if each.base < start + nbytes and start < each.end:
@@ -126,7 +127,7 @@ class AddressSpace:
         return start
 
     def at(self, address: int, nbytes: int) -> NDArray[np.uint8]:
-        """Return the bytes at an address, to read and to write. Raises ConfigError where there is no memory."""
+        """Return the bytes at an address, to read and to write. Raises ConfigError if there is no memory."""
         for each in self.memories:
             if each.base <= address and address + nbytes <= each.end:
                 return each.octets[address - each.base : address - each.base + nbytes]
@@ -147,13 +148,13 @@ def _protect(address: int, nbytes: int, access: int) -> None:
 
 
 def _reserve(address: int, nbytes: int) -> None:
-    """Have nothing at addresses that stay reserved."""
+    """Unmap addresses, and keep them reserved."""
     flags = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | MAP_FIXED
     _host("mmap", address, nbytes, NO_ACCESS, flags, -1, 0)
 
 
 def _lay(source: int, nbytes: int, target: int) -> None:
-    """Have the pages of a shared mapping at a second address: Linux does so if it is to move the first 0 bytes of them."""
+    """Map the pages of a shared mapping at a second address, too: Linux does so when asked to move 0 bytes of them."""
     _host("mremap", source, 0, nbytes, MREMAP_MAYMOVE | MREMAP_FIXED, target)
 
 

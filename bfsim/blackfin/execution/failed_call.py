@@ -1,4 +1,4 @@
-"""What is told of a call of a function that did not return: what ended it, at which instruction and source line."""
+"""The report on a call that did not return: what ended it, at which instruction and source line."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from bfsim.blackfin.instructions.event import ENDS, Event
 from bfsim.errors import cut
 
 STACK_OVERRUN_BYTES = 1 << 18
-"""[ours] An access so far below the stack is one of local variables: nothing else is there."""
+"""[ours] An access up to this far below the stack is to local variables: nothing else is there."""
 MOST_PLACES = 3
-"""[ours] As many are told where one of them is meant."""
+"""[ours] At most this many are listed if one of them is meant."""
 SYSTEM = {
     "_exit", "_close", "_environ", "_execve", "_fork", "_fstat", "_getpid", "_gettimeofday", "_isatty", "_kill", "_link", "_lseek", "_open",
     "_read", "_sbrk", "_stat", "_times", "_unlink", "_wait", "_write",
@@ -26,7 +26,7 @@ SYSTEM = {
 
 
 class FailedCall:
-    """A call of the function `symbol` of an image that an event has ended; the registers of the processor are as they were then."""
+    """A call of the function `symbol` of an image that an event ended; the processor's registers are as they were then."""
 
     def __init__(self, image: Image, processor: Processor, symbol: str, event: Event) -> None:
         self._image, self._processor, self._symbol, self._event = image, processor, symbol, event
@@ -38,7 +38,7 @@ class FailedCall:
         return Ways(self._image, counted.code, lines_of(self._image), self._symbol)
 
     def told(self) -> str:
-        """Say what has happened."""
+        """Return what happened, in words."""
         if self._event is Event.FAULT:
             return self._accesses(runner().fault.value)
         if missing := self._image.missing_at(self._address):
@@ -62,7 +62,7 @@ class FailedCall:
         return f"{self._ways.place(self._address - nbytes)} there is {told}"
 
     def _accesses(self, accessed: int) -> str:
-        """Tell an access where there is no memory."""
+        """Describe an access where there is no memory."""
         places = self._processor.faulted_at()
         if missing := self._image.missing_at(accessed):
             return self._lacks(missing, self._ways.callers(places, "uses"))
@@ -74,14 +74,14 @@ class FailedCall:
         return f"{self._one_of(places)}it accesses 0x{accessed:08X}, {what}"
 
     def _one_of(self, places: Sequence[int]) -> str:
-        """Say which place it is, or which few lines it may be; nothing where these are many."""
+        """Return the place in words, or the few lines that it may be; '' if there are many."""
         lines = dict.fromkeys(self._ways.line_at(each) or f"0x{each:08X}" for each in places)
         if len(places) == 1:
             return f"{self._ways.place(places[0])} "
         return f"at {' or '.join(lines)} " if 0 < len(lines) <= MOST_PLACES else ""
 
     def _lacks(self, symbol: str, users: str) -> str:
-        """Tell what is nowhere defined, and who uses it."""
+        """Describe a symbol that is not defined, and who uses it."""
         name, file = cut(symbol.removeprefix("_")), self._image.name
         advice = (
             f"C's library asks an operating system for it, and a kernel has none: do without what leads there, or define {name} in {file}"
@@ -91,7 +91,7 @@ class FailedCall:
         return f"it comes to {name}, which {file} does not define{users and f' and {users}'}; {advice}"
 
     def _goes(self, source: int) -> str:
-        """Tell a jump, or a call, to where there is no code."""
+        """Describe a jump or a call to where there is no code."""
         where = f"{self._ways.place(source)} " if source else ""
         return (
             f"{where}it goes to 0x{self._address:08X}, an address that neither its code nor its data names; a pointer to a function must be "

@@ -1,8 +1,8 @@
 """Native code that touches an address without memory: it ends there, and the process goes on.
 
-While it runs, faults in the reservation of its address space are caught by a signal handler, which is machine code and leaves the native
-code by `siglongjmp`; what is in its registers is lost. Other faults go to whoever has had the signal before. The signal is taken for one
-run, or once for all that follow (`catch_always`).
+While it runs, a signal handler catches faults in the reservation of its address space. The handler is machine code and
+leaves the native code by `siglongjmp`; the contents of its registers are lost. Other faults go to the previous handler.
+The signal is taken for one run, or once for all that follow (`catch_always`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from bfsim.machine_code.native_code import native_code
 from bfsim.machine_code.signal_action import SA_NODEFER, SA_SIGINFO, SignalAction
 
 COUNTER_AT = {"x86_64": 168, "aarch64": 440}.get(platform.machine(), 0)
-"""Where the program counter is in Linux's `ucontext_t`; on other processors what is read there is no place in native code."""
+"""Where the program counter is in Linux's `ucontext_t`; on other processors, what is read is not a place in native code."""
 RUNNER = f"""
 @bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16
 @bfsim_run_origin = internal global i64 0
@@ -103,7 +103,8 @@ define i32 @bfsim_run(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
 class Runner:
     """`run(code, memory, state, counts)`: calls native code and returns its event.
 
-    `fault`: the address of the last fault, and `place` that of the native code which has made it. `guarded`: the address of what does the same where faults are caught always, not while it runs alone.
+    `fault`: the address of the last fault; `place`: that of the native code that made it. `guarded`: the address of a
+    function that does the same if faults are always caught.
     """
 
     run: Callable[[int, int, int, int], int]
@@ -114,7 +115,7 @@ class Runner:
 
 @cache
 def runner() -> Runner:
-    """Return what runs native code."""
+    """Return the functions that run native code."""
     machine_code.add(native_code(RUNNER))
     for each in ("run", "always"):
         action = SignalAction.from_address(machine_code.address_of(f"bfsim_{each}_action"))
@@ -131,9 +132,9 @@ def runner() -> Runner:
 
 @cache
 def catch_always() -> None:
-    """Catch faults from now on: to take the signal for each call takes longer than a short call.
+    """Catch faults from now on: taking the signal for each call takes longer than a short call.
 
-    Whoever takes it later must hand it on.
+    A handler that is installed later must pass the signal on.
     """
     runner()
     ctypes.CFUNCTYPE(ctypes.c_int32)(machine_code.address_of("bfsim_always"))()

@@ -1,6 +1,6 @@
-"""The native function that runs a subroutine for `caller`: arguments are handed over, memory is copied in and out.
+"""The native function that runs a subroutine for `caller`: it passes arguments, and copies memory in and out.
 
-It is told all that it needs in words of 64 bits: HEAD of them, and then PART_WORDS of each part of memory that is copied.
+It gets all that it needs in 64-bit words: HEAD of them, and then PART_WORDS for each part of memory that is copied.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from bfsim.machine_code.native_code import native_code
 
 (
     RUN, CODE, MEMORY, STATE, TOTALS,  # what runs native code, the code, its memory and registers, and where its counts are added
-    ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of its stack; numbers of its arguments, and of copied parts
-    TRACE,  # where accesses are reported to (`tracing`)
+    ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of the top of its stack; numbers of its arguments, and of copied parts
+    TRACE,  # the block through which accesses are reported (`tracing`)
 ) = range(10)  # fmt: skip
 HEAD = 10
 PART_WORDS = 4
-"""Its address here, that of its copy, how many bytes, and how many of them are copied back."""
+"""Its address here, that of its copy, its bytes, and how many of them are copied back."""
 ENTRY = "bfsim_run_object"
 SYSCFG = 0x32
 """[newlib] As `basiccrt.S` leaves it before a program's `main`: CYCLES counts."""
@@ -38,7 +38,7 @@ def _set(register: str, value: str) -> str:
 
 
 def _copy(name: str, *, back: bool) -> str:
-    """Return what copies part number `%NAME`."""
+    """Return the rows that copy part number `%NAME`."""
     rows = f"  %{name}.first = mul i64 %{name}, {PART_WORDS}\n  %{name}.part = getelementptr i64, ptr %copied, i64 %{name}.first\n"
     for word, (each, kind) in enumerate((("here", "ptr"), ("there", "ptr"), ("in", "i64"), ("out", "i64"))):
         rows += f"  %{name}.{each}.at = getelementptr i64, ptr %{name}.part, i64 {word}\n"
@@ -48,7 +48,7 @@ def _copy(name: str, *, back: bool) -> str:
 
 
 def _registers() -> str:
-    """Return what puts the first arguments into registers."""
+    """Return the rows that put the first arguments into registers."""
     rows = ""
     for number, each in enumerate(REGISTERS):
         rows += f"  %{each}.at = getelementptr i32, ptr %stack, i64 {number}\n  %{each} = load i32, ptr %{each}.at\n"
@@ -57,7 +57,7 @@ def _registers() -> str:
 
 
 def _changed() -> str:
-    """Return what finds in `%changed` whether a register is not as it was: the top of the stack in SP, and 0 in the others."""
+    """Return the rows that set `%changed` if a register is not as before: the top of the stack in SP, 0 in the others."""
     rows = "  %changed.0 = load i64, ptr %set.SP\n  %changed.1 = xor i64 %changed.0, %top\n"
     for number, each in enumerate(KEPT[:-1], 1):
         rows += f"  %is.{each}.at = getelementptr i64, ptr %state, i64 {SLOTS[each]}\n  %is.{each} = load i64, ptr %is.{each}.at\n"

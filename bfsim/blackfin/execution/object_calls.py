@@ -30,11 +30,11 @@ def subroutine_call(
     log: Log | None = None,
     kept: object = None,
 ) -> Callable[..., Any]:
-    """Return a subroutine bound to its memory, to be called with `given` arguments of Python's. Its counts are added to `totals`.
+    """Return a subroutine bound to its memory, to be called with `given` arguments in Python. It adds its counts to `totals`.
 
-    `arguments`: what it takes in 32 bits each: what is always the same, or is taken. `trace`: the address of the block that accesses are
-    reported through, if they are, and `log` where they are logged. `kept`: what else must live as long as it does, such as the memory of
-    its arrays.
+    `arguments`: what it takes, in 32 bits each: the same for all calls, or taken from the call. `trace`: the address of
+    the block through which accesses are reported, if they are; `log`: where they are logged. `kept`: what else must
+    live as long as it does, such as the memory of its arrays.
     """
     translated, state = subroutine.translated, subroutine.processor.state
     handed = [*arguments, *([0] * (len(REGISTERS) - len(arguments)))]

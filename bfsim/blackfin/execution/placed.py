@@ -13,16 +13,16 @@ from bfsim.blackfin.execution.address_space import AddressSpace
 from bfsim.errors import KernelError
 
 ARRAYS, ARRAYS_BYTES = 0x20000000, 64 << 20
-"""[HRM] Asynchronous memory, which programs are not linked to: where arrays are laid."""
+"""[HRM] Asynchronous memory, where no program is linked: the place of arrays."""
 ARRAY_ALIGN = 16
-"""As numpy's own arrays are aligned on the host, so that where they lie there does not matter."""
+"""As numpy aligns its own arrays on the host, so that their place there does not matter."""
 
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """Memory at an address of the host that has a copy at another one, in the Blackfin's, while a function runs.
+    """Memory at an address of the host that has a copy in the Blackfin's memory while a function runs.
 
-    What is not written is not copied back.
+    `copy`: the host's address of the copy. It is copied back only if it is written.
     """
 
     address: int
@@ -34,12 +34,12 @@ class Placed:
 def placed(
     arrays: Sequence[NDArray[Any]], written: Sequence[bool], space: AddressSpace
 ) -> tuple[list[Placed], list[int]]:
-    """Give arrays places in the Blackfin's memory; return those and the address of each array. What overlaps here does so there.
+    """Give arrays places in the Blackfin's memory; return these and the address of each array. They overlap there as here.
 
     `written`: whether an array may be stored into.
 
-    They lie there in the order of the arguments, wherever they are here: code may compare addresses, and its cycles must not depend
-    on the host's. Raises KernelError if there is no room for them.
+    They lie there in the order of the arguments, wherever they are here: code may compare addresses, and its cycles
+    must not depend on the host's addresses. Raises KernelError if there is no room for them.
     """
     ranges = [(first := each.ctypes.data, first + each.nbytes) for each in arrays]
     joined = list(joined_ranges(ranges))
@@ -64,7 +64,7 @@ def placed(
 
 
 def joined_ranges(ranges: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Ranges in their order, those that overlap or meet as one."""
+    """Yield ranges in their order, those that overlap or meet as one."""
     first, end = None, 0
     for low, high in sorted(ranges):
         if first is not None and low <= end:

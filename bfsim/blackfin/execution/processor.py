@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from bfsim.blackfin.translation.counters import Counted
 
 NAME = "blackfin"
-"""What native code is called; what is kept is called by this and its own name."""
+"""The name of native code; kept code has this and its own name."""
 OUTSIDE = 0xFFFFFFFE
-"""[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
+"""[ours] The return address of a subroutine that is called from outside: no memory is there, and no code can be."""
 
 COUNT_BYTES = 4
-"""Of the number of counters before machine code that is kept."""
+"""Size of the number of counters, which stands before kept machine code."""
 
 
 class AccessError(BfsimError, LookupError):
@@ -72,7 +72,7 @@ class State:
 class Translated:
     """Code in this process. `counts`: how often each of its counters has counted since it was translated. `explore`: finds the code.
 
-    `octets`: its object file. `native` has the code where it ends with this.
+    `octets`: its object file. `native` owns the code if it lives only as long as this.
     """
 
     entry: int
@@ -83,12 +83,12 @@ class Translated:
 
     @cached_property
     def counted(self) -> Counted:
-        """The code that it was made of, and what is counted, in the order of the counts."""
+        """The code that it was made from, and its counters, in the order of the counts."""
         return self.explore()
 
     @property
     def code(self) -> Code:
-        """The code that it was made of."""
+        """The code that it was made from."""
         return self.counted.code
 
 
@@ -96,11 +96,12 @@ class Translated:
 class Processor:
     """A core, its registers and its address space.
 
-    `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
-    code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `effort`: of LLVM, if
-    not by the code's size. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
-    `tracing`: how accesses to memory are reported. `explore`: finds the code that can be reached from entries, if not from them alone.
-    `contract`: of code that is called as one function, from its first address.
+    `entries`: addresses at which it can be started or that its code computes; others are found when control comes
+    there, and the code is translated anew with them. `fuel`: the most blocks that a call of `run` may run, if that is
+    limited. `effort`: LLVM's, if it does not depend on the code's size. `name`: the first native code is kept under it,
+    so that it need not be made again. `tracing`: how accesses to memory are reported. `explore`: finds the code that
+    can be reached from entries, if more than they are needed for that. `contract`: of code that is called as one
+    function, from its first address.
     """
 
     space: AddressSpace
@@ -128,10 +129,10 @@ class Processor:
         return self.run()
 
     def run(self) -> Event:
-        """Go on at PC until an event that is not a jump to code; code with a contract is left at that, too.
+        """Go on at PC until an event that is not a jump to code; code with a contract is left at such jumps, too.
 
-        Raises InstructionError where control comes to what is no instruction, and AccessError for an access where there is no memory;
-        what the registers were by then is not known.
+        Raises InstructionError if control comes to something that is not an instruction, and AccessError for an access
+        where there is no memory; the registers are then unknown.
         """
         if self.fuel is not None:
             self.state["FUEL"] = self.fuel
@@ -172,7 +173,7 @@ class Processor:
         return Translated(native.get_function_address(NAME), octets, native, counts, lambda: found)
 
     def _kept(self, name: str) -> Translated:
-        """Return the native code that is kept under a name, or made now; a process has it once."""
+        """Return the native code that is kept under a name, or make it now; a process loads it once."""
         symbol, kept = f"{NAME}_{name}", store.load(name)
         if kept is None:
             found = self.counted()
@@ -186,7 +187,7 @@ class Processor:
         return Translated(machine_code.address_of(symbol), octets, None, counts, self.counted)
 
     def _module(self, found: Counted, symbol: str) -> tuple[str, Effort]:
-        """Return the LLVM module of code, whose function is called `symbol`, and how much LLVM is to do for it."""
+        """Return the LLVM module of code, whose function is called `symbol`, and LLVM's effort for it."""
         from bfsim.blackfin.translation.translate import (  # most starts find all native code
             is_large,
             is_small,
@@ -207,7 +208,7 @@ class Processor:
         return text, Effort.SOME if is_small(found.code) else Effort.SELECTION
 
     def faulted_at(self) -> list[int]:
-        """Return the addresses of the instructions of which one has made the access that was the last fault; most often that is known."""
+        """Return the addresses of the instructions one of which made the last fault; most often there is only one."""
         from bfsim.blackfin.control_flow.blocks import accesses_memory  # few calls fail
         from bfsim.blackfin.translation.host_places import instructions_at
 

@@ -1,6 +1,6 @@
 """Functions of an image, called as GCC's code calls them (`convention`).
 
-All functions of an image share its memory: what one leaves in its static variables another one finds.
+All functions of an image share its memory: one finds what another has left in static variables.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class LoadedImage:
             self.space.at(each.address, len(each.octets))[:] = np.frombuffer(each.octets, np.uint8)
 
     def anew(self) -> LoadedImage:
-        """Return the image in another address space, with its variables as they are at first."""
+        """Return the image in another address space, with its variables at their first values."""
         return LoadedImage(self.image, _codes=self._codes, _counted=self._counted)
 
     def subroutine(
@@ -56,7 +56,7 @@ class LoadedImage:
     ) -> Subroutine:
         """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none.
 
-        `is_checked`: it is refused an access that is not aligned, and must leave its caller's registers as they were.
+        `is_checked`: misaligned accesses are refused, and it must leave its caller's registers as they were.
         """
         address = self.image.address_of(symbol)
         processor = Processor(
@@ -70,14 +70,14 @@ class LoadedImage:
         return Subroutine(symbol, address, processor, self.image)
 
     def explored(self, *first: int) -> Code:
-        """Return the code that is entered at `first`; it is looked for once."""
+        """Return the code that is entered at `first`, which is explored once."""
         key = frozenset(first)
         if key not in self._codes:
             self._codes[key] = self._explored(key)
         return self._codes[key]
 
     def _explored(self, first: frozenset[int]) -> Code:
-        """Find code that is entered at `first`, where its switches lead to, and at functions that are called by their addresses."""
+        """Find the code that is entered at `first`, at targets of its switches, and at functions called by address."""
         from bfsim.blackfin.control_flow.blocks import Code  # most starts explore no code
         from bfsim.blackfin.control_flow.callees import callees
 
@@ -92,7 +92,7 @@ class LoadedImage:
             entries, called = entries | labels | found, found
 
     def _counted_from(self, timing: Timing, first: frozenset[int]) -> Counted:
-        """Return that with its counters, which are the same with and without reports of accesses."""
+        """Return the code that is entered at `first` with its counters, which reports of accesses do not change."""
         key = first, timing.digest
         if key not in self._counted:
             from bfsim.blackfin.translation.counters import Counted
@@ -116,7 +116,7 @@ class Subroutine:
         return self.processor.prepared()
 
     def refuse(self, event: Event) -> NoReturn:
-        """Raise KernelError for an event for which a call was left without returning. The next call begins anew."""
+        """Raise KernelError for an event that ended a call before it returned. The next call begins anew."""
         from bfsim.blackfin.execution.failed_call import FailedCall  # few calls fail
 
         what = FailedCall(self.image, self.processor, self.symbol, event).told()

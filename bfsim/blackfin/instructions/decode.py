@@ -12,17 +12,17 @@ from bfsim.blackfin.instructions.operands import Operand
 from bfsim.errors import BfsimError
 
 BUNDLE = 0x0800
-"""The bit of the first halfword of a DSP instruction that says that two 16-bit instructions follow, to be issued with it."""
+"""The bit in the first halfword of a DSP instruction: two 16-bit instructions follow, which are issued with it."""
 LONGEST_BYTES = 8
 
 
 class InstructionError(BfsimError, ValueError):
-    """Raised for bytes that are no instruction, or none that the processor has."""
+    """Raised for bytes that are not an instruction, or not one that the processor has."""
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """What one form of instruction is asked to do: alone, or as one of three that are issued together."""
+    """A form of instruction with its operands: alone, or as one of three that are issued together."""
 
     form: Form
     operands: Mapping[str, Operand]
@@ -43,9 +43,9 @@ class Instruction:
 
 
 def decode(code: bytes, address: int) -> Instruction:
-    """Return the instruction that `code` begins with; of `code` the first 8 bytes count, fewer are fewer.
+    """Return the instruction that `code` begins with; only the first 8 bytes count, and there may be fewer.
 
-    Raises InstructionError where the bytes are none of the table's forms.
+    Raises InstructionError if the bytes fit none of the table's forms.
     """
     operation = _operation(code, address, 0 if _is_bundle(code) else None)
     if operation is None:
@@ -59,7 +59,7 @@ def decode(code: bytes, address: int) -> Instruction:
 
 
 def disassemble(code: bytes, address: int) -> Iterator[Instruction]:
-    """Yield the instructions of `code`, one behind the other. Raises InstructionError as `decode` does."""
+    """Yield the instructions of `code`, one after the other. Raises InstructionError as `decode` does."""
     start = 0
     while start < len(code):
         instruction = decode(code[start : start + LONGEST_BYTES], address + start)
@@ -68,7 +68,7 @@ def disassemble(code: bytes, address: int) -> Iterator[Instruction]:
 
 
 def _is_bundle(code: bytes) -> bool:
-    """Whether three are issued at once: the bit is one of the DSP instructions only, which begin with 110."""
+    """Whether three are issued at once: only DSP instructions, which begin with 110, have the bit."""
     first = int.from_bytes(code[:2], "little")
     return first & 0xE000 == 0xC000 and bool(first & BUNDLE)
 

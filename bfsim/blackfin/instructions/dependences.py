@@ -1,7 +1,7 @@
-"""Which registers an instruction reads and writes, as its semantics say it.
+"""The registers that an instruction reads and writes, according to its semantics.
 
-The semantics are called once with `Effects` that take note. Flags count as registers of one bit, but for the sticky ones, which no
-instruction waits for.
+The semantics are called once with `Effects` that take note. Flags count as registers of one bit, except sticky ones,
+which no instruction waits for.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ VISIBLE = frozenset(STATE) - UNSEEN
 
 @dataclass(frozen=True, slots=True)
 class Registers:
-    """What an instruction does to registers. `loaded`: those of `writes` that get a word of memory as it is. `does`: what its forms do."""
+    """An instruction's effect on registers. `loaded`: those of `writes` that get an unchanged word. `does`: of its forms."""
 
     reads: frozenset[str]
     writes: frozenset[str]
@@ -35,7 +35,7 @@ class Registers:
 
 @dataclass(slots=True)
 class _Noting(Effects):
-    """Effects that keep the words that were loaded."""
+    """Effects that remember the words that were loaded."""
 
     words: list[ir.Value] = field(default_factory=list)
 
@@ -49,7 +49,7 @@ _known: dict[tuple[object, ...], Registers] = {}
 
 
 def registers_of(instruction: Instruction) -> Registers:
-    """Return the registers of an instruction; of a bundle those of all of it."""
+    """Return the registers of an instruction; for a bundle, those of all its parts."""
     key = tuple((id(each.form), *each.operands.values()) for each in instruction.operations)
     if key not in _known:
         _known[key] = _noted(instruction)

@@ -1,7 +1,8 @@
-"""What an instruction does, as its semantics say it: reads see the state before the whole bundle, writes take effect behind it.
+"""What an instruction does, by its semantics: reads see the state before the whole bundle, writes take effect after it.
 
-Semantics are functions of an `Effects` and the operands of a form. They read registers, compute `Value`s and write; stores to memory
-are made in the order of the operations. Where control goes is said by one call of `jump`, `branch`, `jump_to` or `leave`.
+Semantics are functions of an `Effects` and the operands of a form. They read registers, compute `Value`s and write;
+stores to memory are made in the order of the operations. One call of `jump`, `branch`, `jump_to` or `leave` says where
+control goes.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ POINTER = ir.PointerType()
 
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """Where control goes behind an instruction, if not to what follows.
+    """Where control goes after an instruction, if not to what follows.
 
-    `condition`: goes there only if it is set. `target`: an address, or a computed one. `event`: native code is left with PC there.
+    `condition`: control goes there only if it is set. `target`: an address, or a computed one. `event`: native code is
+    left with PC there.
     """
 
     target: int | Value
@@ -34,18 +36,19 @@ class Flow:
 
 
 class Report(Protocol):
-    """Is told of each access to memory, before it is made."""
+    """Called for each access to memory, before it is made."""
 
     def __call__(self, address: Value, nbytes: int, *, writes: bool) -> None:
-        """Tell an access of so many bytes."""
+        """Report an access of `nbytes` bytes."""
 
 
 @dataclass(slots=True)
 class Effects:
     """The effects of the instruction at `address`.
 
-    `fetch`: returns what a register is before it. `memory`: the host's address of the Blackfin's address 0. `clock`: adds up
-    the cycles of all that was executed before this block. `following`: the address of what is executed next if nothing jumps.
+    `fetch`: returns the value of a register before it. `memory`: the host's address of the Blackfin's address 0.
+    `clock`: adds up the cycles of everything executed before this block. `following`: the address of what is executed
+    next if nothing jumps.
     """
 
     builder: ir.IRBuilder
@@ -58,9 +61,9 @@ class Effects:
     flow: Flow | None = None
     report: Report | None = None
     frame: Callable[[], ir.Value | None] | None = None
-    """Returns where the next access goes in place of memory, if it is to a stack frame that is kept elsewhere."""
+    """Returns where the next access goes instead of memory, if it is to a stack frame that is kept elsewhere."""
     mark: Any = None
-    """What the host's accesses to memory are marked with, if they are."""
+    """The mark of the host's accesses to memory, if they have one."""
     aligns: bool = False
     """Whether words that are loaded through index registers in this bundle are those at the next lower multiple of 4 (its DSP
     instruction says so: DISALGNEXCPT, and the video instructions)."""
@@ -83,9 +86,9 @@ class Effects:
         return self._fetched(register)
 
     def write(self, register: str, value: Value | int) -> None:
-        """Have a register changed behind the instruction. Of an accumulator the lowest 40 bits are kept, sign-extended.
+        """Change a register after the instruction. An accumulator keeps its lowest 40 bits, sign-extended.
 
-        A write of AC0 or V also writes its copy, and one of SEQSTAT nothing. The last write of a register counts.
+        A write of AC0 or V also writes its copy, and one of SEQSTAT does nothing. The last write of a register counts.
         """
         if register == "SEQSTAT":
             return
@@ -128,7 +131,7 @@ class Effects:
             self.write(name, value)
 
     def set_sticky(self, flag: str, value: Value) -> None:
-        """Set a flag where `value` is set; it stays where it is not."""
+        """Set a flag if `value` is set; otherwise it stays as it is."""
         self.write(flag, self._newest(flag) | value)
 
     def load(self, address: Value, nbytes: int) -> Value:
@@ -173,7 +176,7 @@ class Effects:
         return _counts(self.read("SYSCFG")).choose(self.clock() + offset, offset)
 
     def _write_clocked(self, register: str, value: Value) -> None:
-        """Keep CYCLES what it is meant to be: on from here if it counts, or as it is."""
+        """Write CYCLES or its switch: CYCLES goes on from there if it counts, or stays as it is."""
         now = self.cycles()
         if register == "SYSCFG":
             self.pending[register] = value
@@ -222,10 +225,10 @@ class Effects:
 
 
 def _frozen(builder: ir.IRBuilder, loaded: ir.Value) -> ir.Value:
-    """Return what was loaded, so that LLVM does not load it where ways meet, from an address that is chosen by the way.
+    """Return what was loaded, so that LLVM does not load it where paths meet, from an address that depends on the path.
 
-    From neighbouring addresses several turns of a loop are loaded at once, of bytes and half-words, whatever way each of them goes; from
-    chosen ones they are not.
+    LLVM loads bytes and half-words for several iterations of a loop at once from neighbouring addresses, whatever path
+    each takes, but not from chosen ones.
     """
     frozen = ir.Instruction(builder.block, loaded.type, "freeze", [loaded])
     builder.block.instructions.append(frozen)

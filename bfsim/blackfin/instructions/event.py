@@ -9,9 +9,9 @@ class Event(IntEnum):
     """Why native code was left."""
 
     UNKNOWN_TARGET = 0
-    """PC is an address that it does not have as the start of a block; also where a caller of it returns to."""
+    """PC is an address where no block of the code starts, such as the return address of its caller."""
     ILLEGAL = 1
-    """At PC is no instruction."""
+    """There is no instruction at PC."""
     EXCEPTION = 2
     """EXCPT: its number is ARGUMENT."""
     OUTPUT = 3
@@ -27,9 +27,9 @@ class Event(IntEnum):
     FAULT = 9
     """An access to an address where there is no memory. Registers are lost."""
     MISALIGNED = 10
-    """An access in the block at PC is to an address that is no multiple of its size, which code was to be held to."""
+    """An instruction at PC accesses an address that is no multiple of its size, in code whose accesses must be aligned."""
     NOT_KEPT = 11
-    """Not of the code itself: it has returned, but has changed registers of its caller."""
+    """Not from the code itself: it has returned, but has changed registers of its caller."""
 
 
 ENDS = {
@@ -47,4 +47,4 @@ ENDS = {
     (Event.OUTPUT, Event.HALT, Event.ABORT),
     (2, "an instruction for simulators (OUTC, HLT or ABORT), which the Blackfin has not"),
 )
-"""Instructions at which code ends: how many bytes PC is behind one, and what it is."""
+"""Instructions at which code ends: how many bytes PC is past one, and what it is."""

@@ -47,7 +47,7 @@ class Form:
     match: int = field(init=False)
     """An encoding is of this form if its bits in `mask` are those of `match`."""
     fields: Mapping[str, tuple[int, ...]] = field(init=False)
-    """Of each letter the places of its bits, most significant first; place 0 is the least significant of the encoding."""
+    """The places of each letter's bits, most significant first; place 0 is the least significant of the encoding."""
     kinds: Mapping[str, OperandKind] = field(init=False)
 
     def __post_init__(self) -> None:

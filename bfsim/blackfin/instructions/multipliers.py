@@ -1,4 +1,4 @@
 """What each of the two multipliers may do in one instruction."""
 
 RESTS, ADDS, EXTRACTS, MOVES, MULTIPLIES = "rests", "adds", "extracts", "moves", "multiplies"
-"""Nothing; change its accumulator; that, and write it to a register; only write it; write a product."""
+"""Does nothing; changes its accumulator; also writes it to a register; only writes it; writes a product."""

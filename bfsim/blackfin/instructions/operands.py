@@ -18,7 +18,7 @@ def number_text(value: Operand) -> str:
 
 @dataclass(frozen=True, slots=True)
 class OperandKind:
-    """`value`: of the bits of a field, in an instruction at an address; None where they mean nothing. `text`: of the value."""
+    """`value`: what the bits of a field mean in an instruction at an address, or None. `text`: how that is printed."""
 
     value: Callable[[int, int], Operand | None]
     text: Callable[[Operand], str] = number_text
@@ -55,12 +55,12 @@ def target(bits: int, *, forward: bool = False) -> OperandKind:
 
 
 def option(*texts: str) -> OperandKind:
-    """Return the kind of a number that is printed as one of `texts`; there is none for more."""
+    """Return the kind of a number that is printed as one of `texts`; larger numbers mean nothing."""
     return OperandKind(lambda raw, _: raw if raw < len(texts) else None, lambda value: texts[int(value)])
 
 
 def shift(*, right: bool) -> OperandKind:
-    """Return the kind of a shift of six bits, positive to the left, of which objdump prints the other sign if it is to the right."""
+    """Return the kind of a six-bit shift count, positive to the left; for shifts to the right, objdump prints it negated."""
     return OperandKind(
         lambda raw, _: _signed(raw, 6), lambda count: number_text((-int(count) if right else int(count)) & 63)
     )
@@ -77,7 +77,7 @@ def mode(*left_out: str, mixed: str = "") -> OperandKind:
 
 
 def crossing(scale: str = "") -> OperandKind:
-    """Return the kind of the options of a vector sum: 1 exchanges its halves, 2 saturates; `scale` is printed behind."""
+    """Return the kind of the options of a vector sum: 1 exchanges its halves, 2 saturates; `scale` is printed after them."""
     names = (", ".join(filter(None, (each, scale))) for each in ("", "CO", "S", "SCO"))
     return option(*(f" ({each})" if each else "" for each in names))
 
@@ -147,4 +147,4 @@ KINDS = {
     "wide_product_mode": mode("W32", "T", "TFU", "IH", "IU"),
     "mixed_wide_product_mode": mode("W32", "T", "TFU", "IH", "IU", mixed="M"),
 }
-"""By the names that forms call them. The numbers in them are bits, and bytes behind an x."""
+"""Kinds by their names in forms. Numbers in a name are bits, or bytes after an x."""

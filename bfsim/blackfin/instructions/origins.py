@@ -1,4 +1,4 @@
-"""What an instruction makes of pointers: from which registers the values that it writes, and the addresses that it accesses, come.
+"""What an instruction does with pointers: the registers from which its results and the addresses of its accesses come.
 
 The semantics are called once, with values that know their origins instead of numbers.
 """
@@ -24,8 +24,8 @@ NOWHERE = frozenset[str]()
 class Origin:
     """Where a value comes from: registers, by their names, and words that the instruction has loaded, as "load 0", "load 1" ...
 
-    `less`: what was subtracted from it: a pointer less a pointer into the same array is a number. `base`: what it is, but for the
-    constant `offset`.
+    `less`: what was subtracted from it: a pointer less a pointer into the same array is a number. `base`: what it is,
+    apart from the constant `offset`.
     """
 
     of: frozenset[str] = NOWHERE
@@ -53,7 +53,7 @@ class Made:
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """A value in the place of one of LLVM's."""
+    """A value in place of one of LLVM's."""
 
     type: ir.IntType
     origin: Origin
@@ -93,7 +93,7 @@ class _Builder:
 
 
 def _converted(*operands: Any) -> _Known:
-    """An operation on some values, perhaps to another type."""
+    """Return the result of an operation on some values, perhaps of another type."""
     kinds = [each for each in operands if isinstance(each, ir.IntType)]
     values = [each for each in operands if not isinstance(each, ir.IntType)]
     return _mixed(kinds[0] if kinds else values[0].type, *values)
@@ -137,7 +137,7 @@ _known: dict[tuple[object, ...], Made] = {}
 
 
 def made_by(instruction: Instruction) -> Made:
-    """Return what an instruction makes; of a bundle, what all of it does."""
+    """Return what an instruction makes; for a bundle, what all of it makes."""
     key = tuple((id(each.form), *each.operands.values()) for each in instruction.operations)
     if key not in _known:
         builder: Any = _Builder()

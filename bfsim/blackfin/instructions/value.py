@@ -1,8 +1,8 @@
 """Values in code that is being made: LLVM IR written as sums and comparisons.
 
-`a + b` adds the instruction that adds, and is the value that it makes. Numbers of Python may stand on the right. Order is signed with
-`<`; unsigned with `below`. Shifts say what comes in: `shift_left`, `shift_right` (zeros), `shift_right_signed`. The amount of a shift
-must be less than the width.
+`a + b` emits the instruction that adds, and is its result. Python's numbers may stand on the right. `<` compares
+signed, `below` unsigned. Shifts say what comes in: `shift_left`, `shift_right` (zeros), `shift_right_signed`. The
+amount of a shift must be less than the width.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from llvmlite import ir
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Value:
-    """A value of so many bits, and the builder that adds to the block where it is used."""
+    """A value, and the builder that adds to the block where it is used."""
 
     builder: ir.IRBuilder
     ir: Any
 
     @property
     def bits(self) -> int:
-        """How wide it is."""
+        """Its width."""
         return int(self.ir.type.width)
 
     def constant(self, number: int, bits: int | None = None) -> Value:
@@ -99,27 +99,27 @@ class Value:
         return self < 0
 
     def choose(self, yes: Value, no: Value | int) -> Value:
-        """Return `yes` where this bit is set, else `no`."""
+        """Return `yes` if this bit is set, else `no`."""
         return Value(self.builder, self.builder.select(self.ir, yes.ir, yes._as(no).ir))
 
     def smaller(self, other: Value | int) -> Value:
-        """Return the lesser of two signed numbers."""
+        """Return the smaller of two signed numbers."""
         return (self < other).choose(self, other)
 
     def larger(self, other: Value | int) -> Value:
-        """Return the greater of two signed numbers."""
+        """Return the larger of two signed numbers."""
         return (self > other).choose(self, other)
 
     def leading_zeros(self) -> Value:
-        """Return how many zeros are above the highest one, in as many bits: all if there is no one."""
+        """Return how many zeros are above the highest 1, in a value of the same width; the width if there is none."""
         return Value(self.builder, self.builder.ctlz(self.ir, ir.Constant(ir.IntType(1), 0)))
 
     def ones(self) -> Value:
-        """Return how many bits are set, in as many bits."""
+        """Return how many bits are set, in a value of the same width."""
         return Value(self.builder, self.builder.ctpop(self.ir))
 
     def low(self, bits: int) -> Value:
-        """Return the lowest bits, as a value of so many."""
+        """Return the lowest `bits` bits."""
         return (
             self if bits == self.bits else Value(self.builder, self.builder.trunc(self.ir, ir.IntType(bits)))
         )

@@ -1,1 +1,1 @@
-"""What code costs: instructions, waits between them, turns of loops."""
+"""What code costs: instructions, waits between them, iterations of loops."""

@@ -1,7 +1,8 @@
-"""Interlocks: an instruction waits until a register that it reads is there.
+"""Interlocks: an instruction waits until a register that it reads is ready.
 
-Each cycle in between hides one of the wait, whether an instruction is issued in it, another one waits, or the code is fetched anew
-behind a jump. An instruction in between hides one however many cycles it takes, as the notes of VisualDSP++ have it [VANN].
+Each cycle in between hides one of the wait, whether an instruction is issued in it, another one waits, or the code is
+fetched anew after a jump. An instruction in between hides one however many cycles it takes, according to VisualDSP++'s
+notes [VANN].
 """
 
 from __future__ import annotations
@@ -15,17 +16,17 @@ from bfsim.blackfin.instructions.dependences import Registers, registers_of
 from bfsim.blackfin.timing.tables import Interlock
 
 PARTLY = {"set_low", "set_high"}
-"""What these do to a register leaves the other half as it is, but waits for nothing."""
+"""These leave the other half of a register as it is, but wait for nothing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """How long what is issued next would have to wait for registers, by interlock."""
+    """How long the next instruction would have to wait for registers, by interlock."""
 
     cclk: Mapping[tuple[str, Interlock], int]
 
     def later(self, cclk: int) -> Waiting:
-        """Return it some cycles later."""
+        """Return the waits some cycles later."""
         return Waiting({key: left - cclk for key, left in self.cclk.items() if left > cclk})
 
     def worst(self, other: Waiting) -> Waiting:
@@ -49,7 +50,7 @@ NO_WAIT = Wait()
 
 
 def made_by(interlock: Interlock, writer: Registers) -> frozenset[str]:
-    """Return the registers of an interlock that are not there at once behind an instruction."""
+    """Return the registers of an interlock that are not ready right after an instruction."""
     if (interlock.by and interlock.by.isdisjoint(writer.does)) or (
         interlock.moved_from and interlock.moved_from.isdisjoint(writer.reads)
     ):
@@ -66,14 +67,14 @@ def holds(interlock: Interlock, reader: Registers) -> bool:
 
 @cache
 def _made(writer: Registers, interlocks: tuple[Interlock, ...]) -> Waiting:
-    """Return what is waited for behind an instruction because of it: few make anything be waited for."""
+    """Return the waits that an instruction causes after it: few cause any."""
     return Waiting({(register, each): each.cclk for each in interlocks for register in made_by(each, writer)})
 
 
 def issued(
     instruction: Instruction, before: Waiting, interlocks: tuple[Interlock, ...]
 ) -> tuple[Wait, Waiting]:
-    """Return how long an instruction waits, and what is waited for behind it."""
+    """Return how long an instruction waits, and the waits left after it."""
     found = registers_of(instruction)
     made = _made(found, interlocks)
     if not before.cclk:
@@ -91,7 +92,7 @@ def issued(
 def issued_in_turn(
     instructions: Iterable[Instruction], before: Waiting, interlocks: tuple[Interlock, ...]
 ) -> tuple[tuple[Wait, ...], Waiting]:
-    """Return how long each instruction of a sequence waits, and what is waited for behind the last one."""
+    """Return how long each instruction of a sequence waits, and the waits left after the last one."""
     waits = []
     for each in instructions:
         wait, before = issued(each, before, interlocks)

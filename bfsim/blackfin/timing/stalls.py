@@ -1,8 +1,8 @@
 """How long the instructions of each block wait, by how control comes to it.
 
-Behind a jump or a call nothing waits: to fetch the code there takes longer than any interlock. Behind the instruction before it, and
-behind the last one of a hardware loop, a block waits for what these have left. What they have left themselves from before them is the
-worst of what may have come there.
+After a jump or a call nothing waits: fetching the code there takes longer than any interlock. After the instruction
+before it, and after the last one of a hardware loop, a block waits for what these have left. What these have left from
+earlier blocks is the worst of all that may have come to them.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from bfsim.blackfin.timing.interlocks import NOTHING, Wait, Waiting, issued_in_t
 from bfsim.blackfin.timing.tables import Timing
 
 Waits = tuple[Wait, ...]
-"""Of each instruction of a block."""
+"""The wait of each instruction of a block."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stalls:
-    """`jumped`: of each block, by its address, the waits behind a jump. `carried`: behind other blocks, where there are more."""
+    """`jumped`: the waits of each block after a jump, by address. `carried`: those after other blocks, if they differ."""
 
     jumped: Mapping[int, Waits]
     carried: Mapping[Edge, Waits]
@@ -56,7 +56,7 @@ def stalls(code: Code, timing: Timing) -> Stalls:
 def _left(
     code: Code, alone: Mapping[int, Waiting], carrying: Sequence[Edge], timing: Timing
 ) -> dict[int, Waiting]:
-    """What is waited for at the end of each block, at the worst; `alone`: where nothing is waited for at its begin."""
+    """Return the worst waits left at the end of each block; `alone`: those left if there are none at its beginning."""
     left = dict(alone)
     behind: dict[int, list[Edge]] = {}
     for each in carrying:
@@ -75,7 +75,7 @@ def _left(
 
 
 def fetched_anew(block: Block, way: Way, timing: Timing) -> int:
-    """Return how many cycles behind a block pass until the first instruction that follows, which hide a wait."""
+    """Return how many cycles pass after a block until the next instruction; they hide a wait."""
     last = block.instructions[-1] if block.instructions else None
     if last is None:
         return 0

@@ -1,8 +1,9 @@
 """What instructions cost: a table for each way to count, by what an instruction does.
 
-`GNU` is how the GNU simulator counts (sim/bfin in GDB 13.1, CYCLE_DELAY): an instruction or a bundle takes a cycle, these take more.
-`ADI` is how Analog Devices documents the pipeline, as far as its documents could be read: the same cycles, which are those of [EE-197],
-but a push or pop of several registers takes one for each [EE-171], and instructions wait for registers.
+`GNU` counts as the GNU simulator does (sim/bfin in GDB 13.1, CYCLE_DELAY): an instruction or a bundle takes a cycle,
+those in its table take more. `ADI` counts as Analog Devices documents the pipeline, as far as its documents could be
+read: the same cycles, which are those of [EE-197], but a push or pop of several registers takes one for each [EE-171],
+and instructions wait for registers.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 MOVE_SEVERAL = frozenset({"push_multiple", "pop_multiple"})
 RANGES = {"d": 8, "p": 6}
-"""[PRM] Their operands: the first of the registers R0 to R7 and P0 to P5 that are moved, of which these are the numbers behind the last."""
+"""[PRM] Their operands: the first register that moves, up to R7 and up to P5; these are the numbers after the last ones."""
 
 
 class Whole(NamedTuple):
@@ -35,10 +36,10 @@ class Whole(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Interlock:
-    """An instruction that reads one of `registers` at once waits `cclk` behind one that has written it, in one of these ways.
+    """An instruction that reads one of `registers` right after it was written in one of these ways waits `cclk` cycles.
 
-    `by`: what that does. `loaded`: a word of memory came as it is. `moved_from`: it read one of these registers. `used_by`: what
-    waits, if not all. `source`: who says so.
+    `by`: what the writing instruction does. `loaded`: it loaded a word of memory unchanged. `moved_from`: it read one
+    of these registers. `used_by`: what the waiting instruction does, if not all wait. `source`: who says so.
     """
 
     about: str
@@ -53,11 +54,11 @@ class Interlock:
 
 @dataclass(frozen=True)
 class Timing:
-    """Core clock cycles of instructions. `cclk`: by what they do, where it is not 1; of a branch, if it is not taken.
+    """Core clock cycles of instructions. `cclk`: by what they do, if not 1; for a branch, those if it is not taken.
 
-    `about`: how it counts, in words. `taken_cclk`: of branches that are taken. `each_register`: what these do takes a cycle for each
-    register. `interlocks`: what else instructions wait for. `routines`: cycles of whole functions by their symbols, from the first
-    instruction to the return, without those that they call; `wholes`: where these are in an image.
+    `about`: how it counts, in words. `taken_cclk`: of branches that are taken. `each_register`: what takes a cycle for
+    each register. `interlocks`: what else instructions wait for. `routines`: cycles of whole functions by their
+    symbols, from the first instruction to the return, without callees; `wholes`: where these are in an image.
     """
 
     name: str
@@ -81,7 +82,7 @@ class Timing:
         return next((each for each in self.wholes if each.first <= address < each.end), None)
 
     def of(self, instruction: Instruction) -> int:
-        """Return the cycles of an instruction; if it is a branch, where it is not taken."""
+        """Return the cycles of an instruction; for a branch, those if it is not taken."""
         if whole := self.whole_at(instruction.address):
             return whole.cclk if instruction.address == whole.first else 0
         return max(map(self._of, instruction.operations))
@@ -135,7 +136,7 @@ GNU = Timing(
 
 
 ADDRESSES = frozenset((*POINTERS, *DAG))
-"""[GCC] ADDRESS_REGNO_P: what addresses are made of."""
+"""[GCC] ADDRESS_REGNO_P: the registers that addresses are made of."""
 ADI = Timing(
     "adi",
     "as Analog Devices documents the pipeline: interlocks, no memories",

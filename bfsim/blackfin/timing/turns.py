@@ -1,4 +1,4 @@
-"""A turn of a loop: the cheapest and the dearest way through it, and what bounds it."""
+"""An iteration of a loop: the cheapest and the dearest path through it, and what bounds it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CONTROL = DIRECT | COMPUTED | CALLS | BRANCHES
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Registers each of which an instruction makes of the one before, the first one of the last: `cclk` a turn at least."""
+    """Registers each of which is computed from the one before, the first from the last: at least `cclk` an iteration."""
 
     cclk: Fraction
     registers: tuple[str, ...]
@@ -28,7 +28,7 @@ class Chain:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """One turn of a loop on one way, inner loops once: cycles of its instructions, of its jumps beyond the first of each, of waits."""
+    """An iteration on one path, inner loops once: cycles of instructions, of jumps beyond the first of each, of waits."""
 
     instructions: tuple[Instruction, ...]
     issue_cclk: int
@@ -37,12 +37,12 @@ class Turn:
 
     @property
     def cclk(self) -> int:
-        """All cycles of the turn, but for those of what it calls."""
+        """All cycles of the iteration, without callees."""
         return self.issue_cclk + self.jump_cclk + self.stall_cclk
 
 
 def turns(code: Code, loop: Loop, found: Sequence[Edge], timing: Timing) -> tuple[Turn, Turn]:
-    """Return the cheapest and the dearest turn of a loop; waits are counted on these two ways, not compared between others."""
+    """Return the cheapest and the dearest iteration of a loop; waits are counted on these two paths, but choose neither."""
     inside = [each for each in found if each.source in loop.blocks and each.target in loop.blocks]
     before = dominators(inside, loop.head)
     onward = [each for each in inside if each.target not in before.get(each.source, ())]
@@ -56,13 +56,13 @@ def turns(code: Code, loop: Loop, found: Sequence[Edge], timing: Timing) -> tupl
 def _way(
     code: Code, head: int, onward: Sequence[Edge], ends: Sequence[Edge], timing: Timing, sign: int
 ) -> list[Edge]:
-    """The least (or, with `sign` -1, the greatest) way through a loop and back to its head; `onward` are edges without cycles."""
+    """Return the cheapest (with `sign` -1, the dearest) path through a loop to its head; `onward`: edges without cycles."""
     cclk = {head: 0}
     by: dict[int, Edge] = {}
     waiting = Tally(each.target for each in onward)
     done: set[int] = set()
     while open_ := cclk.keys() - done:
-        at = min(open_, key=lambda each: (waiting[each], each))  # 0, but where loops have two entries
+        at = min(open_, key=lambda each: (waiting[each], each))  # 0, unless loops have two entries
         done.add(at)
         for each in (each for each in onward if each.source == at and each.target not in done):
             found = cclk[at] + _cclk(code, each, timing)
@@ -77,7 +77,7 @@ def _way(
 
 
 def _cclk(code: Code, edge: Edge, timing: Timing) -> int:
-    """Cycles of a block that is left by an edge."""
+    """Return the cycles of a block that is left by an edge."""
     block = code.blocks[edge.source]
     cclk = sum(map(timing.of, block.instructions))
     if block.branches and edge.way is Way.JUMPS:
@@ -86,7 +86,7 @@ def _cclk(code: Code, edge: Edge, timing: Timing) -> int:
 
 
 def _turn(code: Code, way: Sequence[Edge], timing: Timing) -> Turn:
-    """The turn along edges. Waits are those of a turn behind one of the same way."""
+    """Return the iteration along edges. Its waits are those after another iteration on the same path."""
     instructions = tuple(one for each in way for one in code.blocks[each.source].instructions)
     control = sum(does(each) in CONTROL for each in instructions)
     plain = sum(timing.of(each) for each in instructions if does(each) not in CONTROL)
@@ -103,9 +103,9 @@ def _turn(code: Code, way: Sequence[Edge], timing: Timing) -> Turn:
 
 
 def longest_chain(turn: Turn, timing: Timing) -> Chain:
-    """Return the chain of registers, from turn to turn, that takes longest: the loop cannot be faster, however much is issued at once.
+    """Return the chain of registers, from iteration to iteration, that takes longest.
 
-    Dependences by way of memory are not seen.
+    The loop cannot be faster, however much is issued at once. Dependences through memory are not seen.
     """
     last = {name: each for each in turn.instructions for name in registers_of(each).writes}
     carried = sorted(last)
@@ -119,7 +119,7 @@ def longest_chain(turn: Turn, timing: Timing) -> Chain:
 def _arrivals(
     register: str, writer: Instruction, instructions: Sequence[Instruction], timing: Timing
 ) -> Iterator[tuple[str, int]]:
-    """Yield what depends on the value that a register has at the start of a turn, and how many cycles after that it is there."""
+    """Yield what depends on a register's value at the start of an iteration, and after how many cycles it is ready."""
     there: dict[str, tuple[int, Instruction]] = {register: (0, writer)}
     for each in instructions:
         found = registers_of(each)
@@ -144,7 +144,7 @@ def _wait(writer: Instruction, register: str, reader: Instruction, timing: Timin
 
 
 def _heaviest_cycle(weights: Mapping[str, Mapping[str, int]]) -> Chain:
-    """The cycle of the greatest mean weight (R. M. Karp, 1978), none if there is no cycle."""
+    """Return the cycle of the greatest mean weight (R. M. Karp, 1978), an empty one if there is no cycle."""
     names = sorted(weights)
     walks: list[dict[str, int]] = [dict.fromkeys(names, 0)]
     before: list[dict[str, str]] = [{}]
@@ -168,7 +168,7 @@ def _heaviest_cycle(weights: Mapping[str, Mapping[str, int]]) -> Chain:
 
 
 def _cycles(walk: Sequence[str], weights: Mapping[str, Mapping[str, int]]) -> Iterator[Chain]:
-    """The simple cycles in a walk."""
+    """Yield the simple cycles in a walk."""
     path: list[str] = []
     for name in walk:
         if name in path:

@@ -1,4 +1,4 @@
-"""Code that is held to be aligned: it is left at an access to an address that is no multiple of its size, as the Blackfin does."""
+"""Code whose accesses must be aligned: it is left at an access to no multiple of its size, as on the Blackfin."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from bfsim.blackfin.translation.native_function import NativeFunction
 
 
 class Alignment:
-    """Takes note of the accesses of a block; all of them are tested at once, at its end, by the bits of their addresses that must be 0."""
+    """Notes the accesses of a block and tests all of them at its end, by the bits of their addresses that must be 0."""
 
     def __init__(self, function: NativeFunction) -> None:
         self._function = function
         self._accesses: list[tuple[ir.Value, int]] = []
-        """What is not 0 if an access is not aligned, and the address of its instruction."""
+        """For each access a value that is not 0 if it is misaligned, and the address of its instruction."""
 
     def note(self, builder: ir.IRBuilder, address: Value, nbytes: int, instruction: int) -> None:
-        """Take note of an access by the instruction at an address."""
+        """Note an access by the instruction at an address."""
         if nbytes > 1:
             self._accesses.append((builder.and_(address.ir, I32(nbytes - 1)), instruction))
 
     def hold(self, builder: ir.IRBuilder) -> None:
-        """Leave native code if one of the accesses of the block is not aligned: with PC at the first of these."""
+        """Leave native code if an access of the block is misaligned, with PC at the first one."""
         if not self._accesses:
             return
         misaligned = reduce(builder.or_, [off for off, _ in self._accesses])

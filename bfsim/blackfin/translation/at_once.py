@@ -1,6 +1,6 @@
-"""Loops of the hardware whose turns, all but the last, are made at once by one operation of the host: a division, a root.
+"""Hardware loops whose iterations, all but the last, are made at once by one operation of the host: a division, a root.
 
-The last turn is made as it is written, so that every register and flag is left as by the loop.
+The last iteration runs as written, so it leaves every register and flag as the loop does.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Registers = Mapping[str, Value]
 
 @dataclass(frozen=True, slots=True)
 class HardwareLoop:
-    """A loop from the block at `head` to the instruction at `last`, by the registers LC, LT and LB with the number `counter`."""
+    """A loop from the block at `head` to the instruction at `last`, with LC, LT and LB of the number `counter`."""
 
     head: int
     last: int
@@ -26,7 +26,7 @@ class HardwareLoop:
 
     @property
     def count(self) -> str:
-        """The register that counts its turns down."""
+        """The register that counts its iterations down."""
         return f"LC{self.counter}"
 
     @property
@@ -35,13 +35,13 @@ class HardwareLoop:
         return self.count, f"LT{self.counter}", f"LB{self.counter}"
 
     def has_turns(self, registers: Registers, turns: int) -> Value:
-        """Return whether it has so many turns to go."""
+        """Return whether it has `turns` iterations to go."""
         count, top, bottom = (registers[each] for each in self.registers)
         return count.equals(turns) & top.equals(self.head) & bottom.equals(self.last)
 
 
 class AtOnce(Protocol):
-    """A loop that can be made at once. All methods are given registers as they are at its head."""
+    """A loop that can be made at once. All methods take registers as they are at its head."""
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -49,13 +49,13 @@ class AtOnce(Protocol):
 
     @property
     def registers(self) -> tuple[str, ...]:
-        """What must be given."""
+        """The registers that the methods need."""
 
     def can_be_made(self, registers: Registers) -> Value:
-        """Return whether all is as at the loop's beginning, with numbers for which the operation of the host is the same."""
+        """Return whether the loop is at its beginning, with numbers for which the host's operation gives the same."""
 
     def before_last_turn(self, registers: Registers) -> dict[str, Value]:
-        """Return registers as they are before the last turn."""
+        """Return registers as they are before the last iteration."""
 
     def times(self, registers: Registers) -> dict[CountedEvent, Value]:
-        """Return how often control went each way in the turns that are made at once."""
+        """Return how often each event happens in the iterations that are made at once."""

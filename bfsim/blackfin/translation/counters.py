@@ -1,4 +1,4 @@
-"""What translated code counts, so that its cycles are known: executions of blocks, branches that are taken, ways with other waits."""
+"""What translated code counts, so that its cycles are known: executed blocks, taken branches, edges with other waits."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from bfsim.blackfin.timing.tables import Timing
 
 @dataclass(frozen=True, slots=True)
 class Counter:
-    """How often a block was executed, with `taken` left by its branch, or with `along` entered that way.
+    """Counts executions of a block; with `taken`, how often its branch is taken, with `along`, how often it is entered so.
 
-    `cclk`: the cycles that each time adds, without waits; `waits`: of each instruction of the block the wait that each time adds, and
-    of those along an edge the ones in place of which they are.
+    `cclk`: the cycles that each time adds, without waits. `waits`: the wait that each time adds, for each instruction
+    of the block. `instead`: for an edge, the waits that these replace.
     """
 
     block: Block
@@ -34,14 +34,14 @@ class Counter:
 
 @dataclass(frozen=True)
 class Counted:
-    """Code, and what is counted of it with a timing."""
+    """Code, and its counters with a timing."""
 
     code: Code
     timing: Timing
 
     @cached_property
     def counters(self) -> list[Counter]:
-        """What is counted, in the order of the counts."""
+        """The counters, in the order of the counts."""
         return _counters(self.code, self.timing)
 
 

@@ -1,7 +1,8 @@
-"""What native code counts while it runs, and the cycles that this makes.
+"""What native code counts while it runs, and the cycles that follow from it.
 
-The counts lie in memory (`counts`); some follow from others, and are worked out when the function is left. Behind them are the cycles and
-the waits that they made then (SUMS words): what has passed since is that of the next call, whose counts need not be looked at twice.
+The counts lie in memory (`counts`); some follow from others and are worked out when the function is left. After them
+stand the cycles and waits that they added up to then (SUMS words): the next call takes the difference, and so looks at
+the counts only once.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from bfsim.blackfin.translation.room import SUMS
 
 
 class Counting:
-    """Adds to the counts of a function. With `reports`, cycles pass for them as well."""
+    """Adds to the counts of a function. With `reports`, it advances their clock as well."""
 
     def __init__(
         self, function: NativeFunction, counted: Counted, implied: Iterable[Implied], reports: Reports | None
@@ -51,7 +52,7 @@ class Counting:
         return self._counters[self._numbers[start, False, None]].waits
 
     def executed(self, builder: ir.IRBuilder, start: int, cclk: int) -> None:
-        """Count an execution of a block, which takes so many cycles."""
+        """Count an execution of a block, which takes `cclk` cycles."""
         if start not in self._implied:
             self._add(builder, self._numbers[start, False, None], I64(1))
         self.let_pass(builder, I64(cclk))
@@ -63,13 +64,13 @@ class Counting:
         self.let_pass(builder, builder.mul(taken, I64(self._counters[number].cclk)))
 
     def went(self, builder: ir.IRBuilder, edge: Edge) -> None:
-        """Count a way from one block to another, if it makes other waits there."""
+        """Count an edge from one block to another, if it causes other waits there."""
         if (number := self._numbers.get((edge.target, False, edge))) is not None:
             self._add(builder, number, I64(1))
             self.let_pass(builder, I64(self._counters[number].stall_cclk))
 
     def happened(self, builder: ir.IRBuilder, event: CountedEvent, times: ir.Value) -> None:
-        """Count what has happened so many times, if it is counted and does not follow from other counts."""
+        """Count an event `times` times, if it is counted and does not follow from other counts."""
         if (number := self._numbers.get(event)) is None:
             return
         counter = self._counters[number]
@@ -78,22 +79,22 @@ class Counting:
         self.let_pass(builder, builder.mul(times, I64(counter.cclk + counter.stall_cclk)))
 
     def let_pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
-        """Let cycles pass for what is reported."""
+        """Advance the clock of the reports."""
         if self._reports:
             self._reports.go_on(builder, cclk)
 
     def clock(self, builder: ir.IRBuilder) -> Value:
-        """Add up the cycles of all that was executed: those before this call, and those of the counts; a function adds up these."""
+        """Add up all cycles so far: those before this call, and those of the counts, which a function adds up."""
         counted = builder.call(self._clock, [self._address])
         return Value(builder, builder.add(builder.load(self._cclk_before), counted))
 
     def begin(self, builder: ir.IRBuilder, clock: ir.Value) -> None:
-        """Take note of the cycles before this call, less those of earlier counts."""
+        """Note the cycles before this call, less those of earlier counts."""
         before = self._counts.read(builder, len(self._counters))
         builder.store(builder.sub(clock, before), self._cclk_before)
 
     def end(self, builder: ir.IRBuilder) -> tuple[ir.Value, ir.Value]:
-        """Store the counts that follow from others, and the sums; return the cycles of all that was executed, and the waits in this call."""
+        """Store the counts that follow from others, and the sums; return all cycles so far, and the waits in this call."""
         self._counts.work_out(builder, self._implied.values(), self._numbers)
         cclk = builder.call(self._clock, [self._address])
         waited = builder.call(self._waited, [self._address])

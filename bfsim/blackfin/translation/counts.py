@@ -12,20 +12,23 @@ from bfsim.blackfin.instructions.effects import I8, I64, POINTER
 
 COUNT_BYTES = 8
 Numbers = Mapping[tuple[int, bool, Edge | None], int]
-"""Of counters, by the address of the block, whether its branch is taken, and the way along which it is entered."""
+"""Numbers of counters, by the address of the block, whether its branch is taken, and the edge by which it is entered."""
 
 
 class Counts:
-    """The counts at an address. Where each of them is, is said once, in the block `entry`: LLVM looks at what is used often less closely."""
+    """The counts at an address.
+
+    The address of each is computed once, in the block `entry`: LLVM looks less closely at a value that is used often.
+    """
 
     def __init__(self, entry: ir.Block, address: ir.Value) -> None:
         self._entry, self._address = entry, address
         self._places: dict[int, ir.Value] = {}
 
     def make_writable(self, number: int) -> None:
-        """Tell LLVM that so many words may be stored to at any time, so that it can keep those of a loop in registers meanwhile.
+        """Tell LLVM that `number` words may be stored to at any time, so that it can keep those of a loop in registers.
 
-        Then a short block in the loop need not be branched around for its count's sake.
+        Then no branch around a short block in the loop is needed only for its count.
         """
         attributes = self._address.attributes
         attributes.align = COUNT_BYTES
@@ -70,7 +73,7 @@ class Counts:
 
 
 def terms(implied: Implied, numbers: Numbers) -> Iterator[tuple[int, int]]:
-    """Yield of which counts a count is the sum, by their numbers, and times what: 1 or -1."""
+    """Yield the counts whose sum a count is: their numbers and factors, 1 or -1."""
     for each in implied.ways:
         yield numbers[each.before, each.taken is True, None], 1
         if each.taken is False:
@@ -78,7 +81,7 @@ def terms(implied: Implied, numbers: Numbers) -> Iterator[tuple[int, int]]:
 
 
 def without(implied: Iterable[Implied], numbers: Numbers, factors: Iterable[int]) -> list[int]:
-    """Return factors of counts, for the same sum without those that follow from others, which need not be there yet."""
+    """Return factors for the same sum without the counts that follow from others, which may not be worked out yet."""
     found = list(factors)
     for each in reversed(list(implied)):
         own = numbers[each.block, False, None]

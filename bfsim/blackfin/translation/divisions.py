@@ -1,7 +1,7 @@
-"""The loop of libgcc's unsigned division: all of its turns but the last are one division of the host.
+"""The loop of libgcc's unsigned division: all of its iterations but the last are one division of the host.
 
-Nearly every division of object code is this loop (`__udivsi3`, which `__divsi3`, `__modsi3` and `__umodsi3` call), of 32 turns with a
-bit of the quotient each.
+Nearly every division of object code is this loop (`__udivsi3`, which `__divsi3`, `__modsi3` and `__umodsi3` call). Each
+of its 32 iterations finds a bit of the quotient.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ LOOP = (
     "CC = R3 < R1 (IU)",
     "IF !CC R3 = R2",
 )
-"""[GCC] Bits of R0 go up into the remainder, R3; those of the quotient, each inverted, come in at the other end, through CC."""
+"""[GCC] Bits of R0 move up into the remainder, R3; bits of the quotient, inverted, come in at the other end through CC."""
 DIVIDING = ("R0", "R1", "R3", "CC")
-"""The registers that say what it does."""
+"""The registers that decide what it does."""
 TURNS = 32
 AHEAD = TURNS - 1
-"""How many turns are made at once."""
+"""How many iterations are made at once."""
 LARGEST_DIVISOR = 1 << 30
-"""With a larger one, or none, a difference may overflow, which the flag VS remembers."""
+"""With a larger divisor, or 0, a difference may overflow, which the flag VS remembers."""
 
 
 def division(block: Block, *, keeps_overflow: bool) -> Division | None:
-    """Return the division that a block is all turns of, if it is one."""
+    """Return the division whose loop is a block, if it is one."""
     if len(block.instructions) != len(LOOP) or tuple(map(text, block.instructions)) != LOOP:
         return None
     loop = HardwareLoop(block.start, block.instructions[-1].address, 0)
@@ -42,7 +42,7 @@ def division(block: Block, *, keeps_overflow: bool) -> Division | None:
 
 @dataclass(frozen=True, slots=True)
 class Division:
-    """The loop of a division (`AtOnce`). `keeps_overflow`: its turns are made one by one where VS might be set."""
+    """The loop of a division (`AtOnce`). `keeps_overflow`: its iterations run one by one if VS might be set."""
 
     loop: HardwareLoop
     blocks: tuple[Block, ...]
@@ -50,21 +50,21 @@ class Division:
 
     @property
     def registers(self) -> tuple[str, ...]:
-        """What must be given."""
+        """The registers that the methods need."""
         return *DIVIDING, *self.loop.registers
 
     def can_be_made(self, registers: Registers) -> Value:
-        """Return whether registers are as at the loop's beginning, with a divisor that is neither 0 nor too large for VS."""
+        """Return whether the loop is at its beginning and, if VS is kept, the divisor neither 0 nor too large."""
         is_first = self.loop.has_turns(registers, TURNS) & registers["R3"].equals(0)
         return is_first & (registers["R1"] - 1).below(LARGEST_DIVISOR) if self.keeps_overflow else is_first
 
     def before_last_turn(self, registers: Registers) -> dict[str, Value]:
-        """Return registers as they are before the loop's last turn, made of those at its beginning.
+        """Return registers before the loop's last iteration, computed from those at its beginning.
 
-        Nothing is below a divisor of 0: all bits of the quotient are 1 then.
+        Nothing is below a divisor of 0: then all bits of the quotient are 1.
         """
         divisor = registers["R1"]
-        upper = registers["R0"].shift_right(1)  # the lowest bit comes down in the last turn
+        upper = registers["R0"].shift_right(1)  # the lowest bit comes down in the last iteration
         is_none = divisor.equals(0)
         some = is_none.choose(divisor.constant(1), divisor)
         divided = Value(upper.builder, upper.builder.udiv(upper.ir, some.ir))
@@ -81,7 +81,7 @@ class Division:
         }
 
     def times(self, registers: Registers) -> dict[CountedEvent, Value]:
-        """Return how often control went each way."""
+        """Return how often each event happens."""
         head, ahead = self.loop.head, registers["R0"].constant(AHEAD, 64)
         return {
             CountedEvent(head): ahead,

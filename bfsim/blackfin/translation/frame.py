@@ -13,7 +13,7 @@ from bfsim.blackfin.translation.native_function import NativeFunction
 
 
 class Frame:
-    """The words round the stack pointer of the entry of which some byte is accessed, at known `places`."""
+    """The words around the entry's stack pointer that are accessed, at known `places`."""
 
     def __init__(self, function: NativeFunction, places: Places) -> None:
         self._function, self._places = function, places
@@ -26,12 +26,12 @@ class Frame:
             self._kept.align, self._kept.type = WORD_BYTES, POINTER
 
     def places_of(self, builder: ir.IRBuilder, instruction: int) -> Callable[[], ir.Value | None] | None:
-        """Return what says of each access of an instruction where it goes, if it is to the frame."""
+        """Return a function that gives the place of each access of an instruction in turn, if it is to the frame."""
         places = iter(self._places.get(instruction, ()))
         return (lambda: self._at(builder, next(places))) if self._kept else None
 
     def begin(self, builder: ir.IRBuilder) -> None:
-        """Fetch what the caller has left on the stack; the rest is 0."""
+        """Fetch what the caller left on the stack; the rest is 0."""
         if not self._kept:
             return
         builder.store(ir.Constant(self._kept.allocated_type, None), self._kept)

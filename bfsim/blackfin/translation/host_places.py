@@ -1,6 +1,6 @@
-"""Which instruction of the Blackfin an access in native code is of: that has a table of lines, whose lines are the Blackfin's addresses.
+"""The instruction of the Blackfin behind an access in native code, by a table of lines: each line is a Blackfin address.
 
-So a fault, at which native code is left without a word, is told with the instruction that has made it, and nothing is slower for that.
+A fault leaves native code without a word; the table still tells which instruction made it, and slows nothing down.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from llvmlite import ir
 
 
 class HostPlaces:
-    """The table of lines of a function while it is made."""
+    """The table of lines of a function that is being made."""
 
     def __init__(self, module: ir.Module, function: ir.Function) -> None:
         file = module.add_debug_info("DIFile", {"filename": "blackfin", "directory": ""})
@@ -42,18 +42,18 @@ class HostPlaces:
         module.add_named_metadata("llvm.dbg.cu", unit)
 
     def of(self, address: int) -> Any:
-        """Return what an access by the instruction at an address is marked with."""
+        """Return the mark of an access by the instruction at an address."""
         return self._module.add_debug_info("DILocation", {"line": address, "scope": self._scope})
 
 
 def instructions_at(code: bytes, offset: int, accessing: Collection[int]) -> list[int]:
-    """Return the addresses of the instructions of which one has made the access that native code makes so far behind its beginning.
+    """Return the addresses of the instructions one of which made the access at `offset` in native code.
 
-    `code`: the object file of the host. `accessing`: all that access memory. What LLVM has moved, or made of several, is of one of those
-    that have no place of their own. Of code without such a table none is returned.
+    `code`: the object file of the host. `accessing`: all that access memory. An access that LLVM has moved or merged
+    belongs to one of those that have no place of their own. There are none for code without such a table.
     """
     file = ELFFile(io.BytesIO(code))
-    if file.get_section_by_name(".debug_line") is None:  # of code that is not held to be right
+    if file.get_section_by_name(".debug_line") is None:  # trusted code has none
         return []
     tables = file.get_dwarf_info(relocate_dwarf_sections=False)
     programs = [tables.line_program_for_CU(unit) for unit in tables.iter_CUs()]

@@ -1,8 +1,8 @@
-"""Where native code goes behind a block: on, along a branch or a jump, or back to the start of a loop.
+"""Where native code goes after a block: on, along a branch or a jump, or back to the start of a loop.
 
-Jumps whose target is computed go through one switch over all addresses that they may lead to; another address is an event. The
-hardware's loops are checked for behind each instruction with which one ends, as the hardware does: by the registers LC, LT and LB, so
-that code may also leave, save and restore them.
+Computed jumps go through one switch over all addresses that they may lead to; any other address is an event. Hardware
+loops are tested for after each instruction that ends one, by the registers LC, LT and LB as in hardware. So code may
+also leave, save and restore them.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ Blocks = Mapping[int, ir.Block]
 class Jumps:
     """Ends the native code of blocks.
 
-    `returns`: of a block that returns, where it most likely goes. `is_closed`: a computed address is one that is likely, or not of the
-    code: control comes to no other block from elsewhere, so that LLVM sees loops as loops. `at_once`: loops that are made at once, by
-    their heads. `says_from`: FROM says which instruction has made a jump to a computed address.
+    `returns`: where a block that returns most likely goes. `is_closed`: a computed address is a likely one, or is not
+    in the code: control comes to no other block from elsewhere, so LLVM sees loops as loops. `at_once`: loops that are
+    made at once, by their heads. `says_from`: FROM says which instruction jumped to a computed address.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Jumps:
         self._is_closed, self._unknown = is_closed, function.new_block("unknown")
         self.at: Blocks = {start: function.new_block(f"at_{start:08x}") for start in code.blocks}
         self.last_turns: list[Blocks] = []
-        """Of each loop that is made at once the copies of its blocks, for the last turn."""
+        """For each loop that is made at once, copies of its blocks for the last iteration."""
 
     def end(self, builder: ir.IRBuilder, block: Block, flow: Flow | None) -> None:
         """Go where the last instruction of a block says, through the end of a loop if there is one."""
@@ -76,7 +76,7 @@ class Jumps:
             builder.branch(self.at[flow.target])
 
     def dispatch(self) -> None:
-        """Go from anywhere, or from outside alone, to the address in PC."""
+        """Go to the address in PC, from anywhere or from outside alone."""
         builder = ir.IRBuilder(self._function.dispatch)
         choice = builder.switch(self._function.read(builder, "PC"), self._unknown)
         for each in self._code.entries if self._is_closed else self._code.targets:
@@ -97,12 +97,12 @@ class Jumps:
             choice.add_case(I32(address), likely[address])
 
     def _fall(self, builder: ir.IRBuilder, block: Block) -> None:
-        """Go on behind a block, or back to the start of a loop that ends with it."""
+        """Go on after a block, or back to the start of a loop that ends with it."""
         self._loops(builder, block)
         self._go_along(builder, Edge(block.start, block.end, Way.FALLS))
 
     def _go_along(self, builder: ir.IRBuilder, edge: Edge) -> None:
-        """Go from one block to another, and count the waits that this makes there; into a loop that can be made at once, behind that."""
+        """Go from one block to another and count the waits that this causes there; make a loop at once that begins there."""
         self._counting.went(builder, edge)
         if edge.way is Way.FALLS and edge.target in self._at_once:
             self._make_at_once(builder, self._at_once[edge.target])
@@ -148,7 +148,7 @@ class Jumps:
             self._go_along(ir.IRBuilder(way), Edge(source.start, each, Way.REPEATS))
 
     def _make_at_once(self, builder: ir.IRBuilder, loop: AtOnce) -> None:
-        """Make all turns of a loop but the last at once, where it begins; the last one is made by a copy of its blocks."""
+        """Make all iterations of a loop but the last at once, where it begins; a copy of its blocks makes the last."""
         function = self._function
         registers = {name: Value(builder, function.read(builder, name)) for name in loop.registers}
         at_once, turns = function.new_block("at_once"), function.new_block("turns")

@@ -1,4 +1,4 @@
-"""Which loops of code are made at once."""
+"""The loops of code that are made at once."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from bfsim.blackfin.translation.divisions import division
 from bfsim.blackfin.translation.roots import root
 
 OVERFLOW = "VS"
-"""The flag that remembers that a difference has overflowed, in the turns that are made at once, too."""
+"""The flag that remembers an overflow of a difference, in the iterations that are made at once, too."""
 
 
 def loops_at_once(code: Code, *, is_asked: bool) -> dict[int, AtOnce]:
     """Return the loops that can be made at once, by the addresses of their heads.
 
-    `is_asked`: whether somebody looks at the flag OVERFLOW when the code is left.
+    `is_asked`: whether the flag OVERFLOW is read after the code is left.
     """
     keeps_overflow = is_asked or asks_for_overflow(code)
     found: dict[int, AtOnce] = {}

@@ -1,6 +1,7 @@
 """The native function of code while it is made: its arguments, its registers, and how it is left.
 
-Registers are slots on its stack, which LLVM turns into its own; in a large program they stay in the state.
+Registers are slots on its stack, which LLVM turns into registers of the host; in a large program they stay in the
+state.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from bfsim.blackfin.instructions.registers import SLOTS, width
 
 
 class NativeFunction:
-    """`int(memory, state, counts)`, of which blocks are made."""
+    """The function `int(memory, state, counts)`, whose blocks are being made."""
 
     def __init__(self, symbol: str, *, keeps_state: bool) -> None:
-        """Registers are read from the state and written to it at once if it `keeps_state`."""
+        """If it `keeps_state`, registers are read from the state and written to it at once."""
         self.module = ir.Module(symbol)
         self.function = ir.Function(self.module, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), symbol)
         self.memory, self.state, self.counts = self.function.args
@@ -35,7 +36,7 @@ class NativeFunction:
         return self.function.append_basic_block(name)
 
     def read(self, builder: ir.IRBuilder, register: str) -> ir.Value:
-        """Return what a register is."""
+        """Return the value of a register."""
         return builder.load(self._slot(register), typ=ir.IntType(width(register)))
 
     def write(self, builder: ir.IRBuilder, register: str, value: ir.Value) -> None:
@@ -43,18 +44,18 @@ class NativeFunction:
         builder.store(value, self._slot(register))
 
     def place(self, builder: ir.IRBuilder, register: str) -> ir.Value:
-        """Return where the state has a register."""
+        """Return the address of a register in the state."""
         return builder.gep(self.state, [I64(8 * SLOTS[register])], source_etype=I8)
 
     def leave_for(self, builder: ir.IRBuilder, event: Event, pc: ir.Value | None = None) -> None:
-        """Leave native code, with `pc` in PC unless that is there."""
+        """Leave native code, with `pc` in PC if it is given."""
         if pc is not None:
             self.write(builder, "PC", pc)
         builder.store(I32(event), self.event)
         builder.branch(self.leave)
 
     def fetch_registers(self, builder: ir.IRBuilder, given: Container[str]) -> None:
-        """Fetch the registers that the code touches, those that are `given`: others are 0, so that LLVM need not care for what they hold."""
+        """Fetch those registers that the code touches and that are `given`; others are 0, so LLVM need not keep them."""
         for name, slot in self._copied():
             kind = ir.IntType(width(name))
             if name not in given:
@@ -64,7 +65,7 @@ class NativeFunction:
             builder.store(value if kind == I64 else builder.trunc(value, kind), slot)
 
     def give_registers_back(self, builder: ir.IRBuilder, read: Container[str]) -> None:
-        """Give back the registers that are `read`: LLVM need not keep what others hold, most of the flags."""
+        """Give back the registers that are `read`: LLVM need not keep the others, such as most flags."""
         for name, slot in self._copied():
             if name not in read:
                 continue
@@ -73,7 +74,7 @@ class NativeFunction:
             builder.store(whole, self.place(builder, name), align=8)
 
     def _slot(self, register: str) -> ir.Instruction:
-        """Return where code has a register."""
+        """Return the place where code keeps a register."""
         if register not in self._slots:
             entry = ir.IRBuilder(self.entry)
             self._slots[register] = (

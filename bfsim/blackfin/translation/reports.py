@@ -1,4 +1,4 @@
-"""Reports of accesses, in code that is being made: who is told, and of which addresses (`tracing`)."""
+"""Reports of accesses, in code that is being made: who gets them, and about which addresses (`tracing`)."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 
 
 class Reports(NamedTuple):
-    """The block that reports go through, the function that is told, from which address on how many bytes are followed, and where the cycle stands.
+    """The block that reports go through, the function that gets them, the span that is followed, and the slot of the cycle.
 
-    `asks`: whether it is asked first if an address may be of memory that is followed: most are not, and that is soon seen.
+    `lowest` and `span`: first address and bytes of that span. `asks`: whether code first tests if an address may be
+    followed: most are not, and the test is short.
     """
 
     block: ir.Value
@@ -25,7 +26,7 @@ class Reports(NamedTuple):
     asks: bool
 
     def report(self, builder: ir.IRBuilder, address: ir.Value, access: int, cclk: int, site: int) -> None:
-        """Report an access of a kind, so many cycles after its block has begun, by a site."""
+        """Report an access of a kind by a site, `cclk` cycles after its block began."""
         if not self.asks:
             self._tell(builder, address, access, cclk, site)
             return
@@ -37,12 +38,12 @@ class Reports(NamedTuple):
         builder.call(self.tracer, [self.block, address, I64(access), stamp, I64(site)])
 
     def go_on(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
-        """Let cycles pass."""
+        """Advance the cycle."""
         builder.store(builder.add(builder.load(self.stamp), cclk), self.stamp)
 
 
 def reports_of(builder: ir.IRBuilder, block: ir.Value, *, asks: bool) -> Reports:
-    """Return what stands in a block for reports, read once, at cycle 0."""
+    """Return the reports that go through a block, whose words are read once, at cycle 0."""
 
     def word(number: int, kind: ir.Type) -> ir.Value:
         return builder.load(builder.gep(block, [I64(number)], source_etype=I64), typ=kind)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SUMS = 2
-"""Words behind the counts: the cycles and the waits that they made when the code was left last (`counting`)."""
+"""Words after the counts: the cycles and waits that they added up to when the code was last left (`counting`)."""
 
 
 def new_counts(counters: int) -> NDArray[np.int64]:

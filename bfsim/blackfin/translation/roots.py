@@ -1,6 +1,7 @@
-"""The loop of the root by hand, a bit a turn: all of its turns but the last are one root of the host.
+"""The loop of a hand-written square root, a bit an iteration: all iterations but the last are one root of the host.
 
-A processor without a floating-point unit takes roots so. A turn tries whether the next bit of the root leaves a rest that is not negative:
+A processor without a floating-point unit takes roots this way. An iteration tries whether the next bit of the root
+leaves a remainder that is not negative:
 
     trial = root + bit; root >>= 1; if (rest >= trial) { rest -= trial; root += bit; } bit >>= 2;
 """
@@ -29,11 +30,11 @@ LOOP = re.compile(
     r"(?P=root) = (?P=root) \+ (?P=bit)\n"
     r"(?P=bit) >>= 0x2\n"
 )
-"""[GCC] Its three blocks: what always comes, what is jumped over where the bit is 0, and where the loop ends."""
+"""[GCC] Its three blocks: the first always runs, the second is skipped if the bit is 0, and the third ends the loop."""
 BLOCKS = 3
 TURNS = 16
 AHEAD = TURNS - 1
-"""How many turns are made at once."""
+"""How many iterations are made at once."""
 FIRST_BIT = 1 << 30
 DOUBLE = ir.DoubleType()
 
@@ -57,7 +58,7 @@ def root(code: Code, block: Block, *, keeps_overflow: bool) -> Root | None:
 
 
 def _one_behind_the_other(code: Code, first: Block) -> Iterator[Block]:
-    """Yield as many blocks as the loop has."""
+    """Yield consecutive blocks, as many as the loop has."""
     at = first
     for _ in range(BLOCKS - 1):
         yield at
@@ -69,9 +70,9 @@ def _one_behind_the_other(code: Code, first: Block) -> Iterator[Block]:
 
 @dataclass(frozen=True, slots=True)
 class Root:
-    """The loop of a root (`AtOnce`), its blocks, and the registers of the root, of the bit and of the rest.
+    """The loop of a root (`AtOnce`), its blocks, and the registers of the root, of the bit and of the remainder.
 
-    `keeps_overflow`: its turns are made one by one where VS might be set.
+    `keeps_overflow`: its iterations run one by one if VS might be set.
     """
 
     loop: HardwareLoop
@@ -83,19 +84,19 @@ class Root:
 
     @property
     def registers(self) -> tuple[str, ...]:
-        """What must be given."""
+        """The registers that the methods need."""
         return self.root, self.bit, self.rest, *self.loop.registers
 
     def can_be_made(self, registers: Registers) -> Value:
-        """Return whether registers are as at the loop's beginning, with a square of which no difference overflows where VS is kept."""
+        """Return whether the loop is at its beginning and, if VS is kept, no difference can overflow with this square."""
         is_first = self.loop.has_turns(registers, TURNS) & registers[self.root].equals(0)
         is_first &= registers[self.bit].equals(FIRST_BIT)
         return is_first & (registers[self.rest] >= 0) if self.keeps_overflow else is_first
 
     def before_last_turn(self, registers: Registers) -> dict[str, Value]:
-        """Return registers as they are before the loop's last turn, made of those at its beginning."""
+        """Return registers before the loop's last iteration, computed from those at its beginning."""
         square = registers[self.rest]
-        upper = self._upper(registers)  # the lowest bit is found in the last turn
+        upper = self._upper(registers)  # the lowest bit is found in the last iteration
         return {
             self.root: upper.shift_left(2),
             self.bit: upper.constant(1),
@@ -105,7 +106,7 @@ class Root:
         }
 
     def times(self, registers: Registers) -> dict[CountedEvent, Value]:
-        """Return how often control went each way: through all three blocks where a bit is 1."""
+        """Return how often each event happens: all three blocks run if a bit is 1."""
         first, middle, last = (each.start for each in self.blocks)
         ones = self._upper(registers).ones().zero_extended(64)
         ahead = ones.constant(AHEAD)
@@ -120,7 +121,7 @@ class Root:
         }
 
     def _upper(self, registers: Registers) -> Value:
-        """Return the root but for its lowest bit. That of a double is rounded correctly: no whole number is reached that should not be."""
+        """Return the root without its lowest bit. A double's root is rounded correctly, so it never reaches a larger integer."""
         square = registers[self.rest]
         builder = square.builder
         function = builder.module.declare_intrinsic("llvm.sqrt", [DOUBLE])

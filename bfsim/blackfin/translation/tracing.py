@@ -1,8 +1,8 @@
-"""Accesses of object code to memory are reported, one by one: to whom, and what is said of each.
+"""Reports of each access of object code to memory: who gets them, and what they say.
 
-A report goes through a block of words of 64 bits (`block_of`), whose address is in TRACE of the state: it says which addresses are
-memory that is followed, and what stands for them outside. An access elsewhere, such as to the stack, is not reported: code asks first
-whether it is between the lowest and the highest address of what is followed (`reports`).
+A report goes through a block of 64-bit words (`block_of`), whose address is in TRACE of the state. The block says which
+addresses are followed, and what stands for them outside. An access elsewhere, such as to the stack, is not reported:
+code first tests whether it is between the lowest and the highest address that is followed (`reports`).
 """
 
 from __future__ import annotations
@@ -59,9 +59,9 @@ done:
 
 @dataclass(frozen=True)
 class Tracing:
-    """How accesses are told apart: `site_of` a block and an instruction in it, by their addresses.
+    """How accesses are told apart: by `site_of`, given the addresses of a block and of an instruction in it.
 
-    A report has the bytes of an access, `write` more if it writes.
+    A report has the bytes of an access, and `write` more if it writes.
     """
 
     site_of: Callable[[int, int], int]
@@ -69,7 +69,7 @@ class Tracing:
 
 
 class Followed(NamedTuple):
-    """Memory that is followed: its first address, its bytes, what its first address is outside, and what is added to a site."""
+    """Memory that is followed: its first address, its bytes, its first address outside, and what is added to a site."""
 
     address: int
     nbytes: int

@@ -1,9 +1,10 @@
 """Object code → one native function of all that can be reached, with counters of its blocks.
 
-The function is `int(memory, state, counts)`: it goes on from the address in the PC of the state until it meets an event
-(`event.Event`), which it returns; registers are in the state again then, and the counts are added to. Registers are slots on its
-stack (`native_function`); within a block they are values, and slots are written at its end. Where it goes from there is said in `jumps`,
-and what it counts in `counting`. Whoever runs the code may translate it anew with an address that it did not know among its entries.
+The function is `int(memory, state, counts)`: it runs from the address in the PC of the state until an event
+(`event.Event`), which it returns; by then the registers are in the state again, and the counts are added to. Registers
+are slots on its stack (`native_function`); within a block they are values, and the slots are written at its end.
+`jumps` says where it goes from there, and `counting` what it counts. If code meets an address that it did not know, it
+can be translated anew with that among its entries.
 """
 
 from __future__ import annotations
@@ -36,12 +37,13 @@ from bfsim.blackfin.translation.tracing import Tracing
 
 ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
-"""[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
+"""[ours] With more blocks, LLVM's time to optimise one function grows with their square: minutes for newlib's printf."""
 
 SMALL_PROGRAM_BLOCKS = 200
-"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth some of LLVM's effort: all of it takes nearly twice
-as long, and the code gains an eighth, for a compiler has optimised it already. Longer code reports every access without asking first, and
-LLVM does less for it: anything else takes twice the time there, and such code seldom runs."""
+"""[ours] Code of up to this many blocks is most often a loop over pixels, which is worth some of LLVM's effort. All of
+it takes nearly twice as long and gains an eighth, because a compiler has already optimised the code. Longer code
+reports every access without testing first, and LLVM does less for it: otherwise LLVM takes twice as long, and such code
+seldom runs."""
 
 
 def is_large(code: Code) -> bool:
@@ -50,7 +52,7 @@ def is_large(code: Code) -> bool:
 
 
 def is_small(code: Code) -> bool:
-    """Whether native code is to be fast, not soon there."""
+    """Whether native code should be fast rather than soon ready."""
     return len(code.blocks) <= SMALL_PROGRAM_BLOCKS
 
 
@@ -62,17 +64,17 @@ def translate(
     tracing: Tracing | None = None,
     contract: Contract | None = None,
 ) -> str:
-    """Return the LLVM module of code; its function is called `symbol`. With `fuel`, the FUEL of the state is how many blocks it may run.
+    """Return the LLVM module of code; its function is called `symbol`.
 
-    With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
-    `contract`: of code that is called as a function. Where that is not trusted, it says which instruction has made an access or a jump for
-    which it is left.
+    With `fuel`, it may run as many blocks as FUEL of the state says. With `tracing`, accesses to memory are reported,
+    each with the cycle of this call at which its instruction is issued. `contract`: of code that is called as a
+    function. Code that is not trusted says which instruction made the access or jump for which it is left.
     """
     return str(_Translation(of, symbol, fuel=fuel, tracing=tracing, contract=contract).module())
 
 
 class _Translation:
-    """The function while it is made."""
+    """The function that is being made."""
 
     def __init__(
         self,
@@ -108,7 +110,7 @@ class _Translation:
             says_from=is_checked,
         )
         self.values: dict[str, ir.Value] = {}
-        """Registers behind the instructions of the block so far."""
+        """Registers after the instructions of the block so far."""
 
     def module(self) -> ir.Module:
         for block in self.code.blocks.values():
@@ -160,7 +162,7 @@ class _Translation:
         self.function.write(builder, "FUEL", builder.sub(left, I64(1)))
 
     def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, block: int, cclk: int) -> Effects:
-        """Add an instruction that is issued `cclk` cycles after its block, at the address `block`, has begun."""
+        """Add an instruction that is issued `cclk` cycles after the beginning of its block, at the address `block`."""
         effects = Effects(
             builder,
             partial(self._value, builder),
@@ -179,7 +181,7 @@ class _Translation:
         return effects
 
     def _value(self, builder: ir.IRBuilder, register: str) -> ir.Value:
-        """Return what a register is behind the instructions of the block so far."""
+        """Return the value of a register after the instructions of the block so far."""
         if register not in self.values:
             self.values[register] = self.function.read(builder, register)
         return self.values[register]
@@ -195,7 +197,7 @@ class _Translation:
         *,
         writes: bool,
     ) -> None:
-        """Report an access, and take note of whether it is aligned, where that is asked for."""
+        """Report an access, and note it for the test of alignment, if these are wanted."""
         if self.tracing and self.reports:
             access = nbytes + self.tracing.write * writes
             site = self.tracing.site_of(block, instruction.address)
@@ -204,7 +206,7 @@ class _Translation:
             self.alignment.note(builder, address, nbytes, instruction.address)
 
     def _following(self, builder: ir.IRBuilder, instruction: Instruction) -> Value:
-        """Return the address of what is executed behind an instruction that does not jump: at a loop's end perhaps its start."""
+        """Return the address that follows an instruction which does not jump: at a loop's end this may be its start."""
         found = Value(builder, I32(instruction.end))
         for counter in (0, 1):
             if (instruction.address, counter) in self.code.loop_starts:

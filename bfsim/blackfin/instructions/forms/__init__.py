@@ -1,4 +1,4 @@
-"""The instruction table, grouped as the programming reference groups it; where two rows could be meant, the first counts."""
+"""The instruction table, grouped as in the programming reference; if two rows fit, the first counts."""
 
 from bfsim.blackfin.instructions.forms import (
     accumulators,

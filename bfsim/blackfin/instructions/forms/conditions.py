@@ -12,7 +12,7 @@ RELATIONS = (
     ("below", "<"),
     ("below_or_equal", "<="),
 )
-"""In the order of their encoding; what compares without signs has (IU) behind it."""
+"""Relations in the order of their encoding; unsigned ones are followed by (IU)."""
 STATUS = {place: flag for flag, place in FLAGS.items()}
 
 

@@ -23,7 +23,7 @@ STORES = (
 
 
 def _stepping() -> Iterator[Form]:
-    """Through a pointer, which may step on or back behind it."""
+    """Yield accesses through a pointer, which may step on or back afterwards."""
     for number, (sign, direction) in enumerate((("++", 1), ("--", -1), ("", 0))):
         for is_store, rows in enumerate((LOADS, STORES)):
             for text, size, kind, given in rows:
@@ -41,7 +41,7 @@ def _stepping() -> Iterator[Form]:
 
 
 def _with_offset() -> Iterator[Form]:
-    """At an offset from a pointer: of 16 bits, or of 4."""
+    """Yield accesses at an offset from a pointer: of 16 bits, or of 4."""
     for is_store, rows in enumerate((LOADS, STORES)):
         for text, size, kind, given in rows:
             scale = f"x{given['nbytes']}".replace("x1", "")
@@ -61,7 +61,7 @@ def _near(is_store: int, number: int, row: tuple[str, str, int, Given]) -> Form:
 
 
 def _indexed() -> Iterator[Form]:
-    """Through a pointer that then steps by another; with one pointer for both, halves of registers do not step."""
+    """Yield accesses through a pointer that then steps by another; with one for both, halves of registers do not step."""
     halves: tuple[tuple[str, str, Given], ...] = (("01", "L", {"half": "low"}), ("10", "H", {"half": "high"}))
     for place, only in (("{p:P}", _is_one), ("{p:P} ++ {i:P}", None)):
         for bits, letter, given in halves:

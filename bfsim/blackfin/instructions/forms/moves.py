@@ -7,7 +7,7 @@ GENERAL = {*DATA, *POINTERS}
 
 
 def _can_move(d: str, s: str) -> bool:
-    """Whether a register can be moved to another: one of them is general, or both are of the address generators, or emulation's."""
+    """Whether a register can move to another: one is general, or both belong to the address generators or to emulation."""
     if s in GENERAL or d in GENERAL or d == "EMUDAT" or s in ACCUMULATOR_PARTS:
         return True
     if s in DAG and d in {*DAG, *ACCUMULATOR_PARTS}:

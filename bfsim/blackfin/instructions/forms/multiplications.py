@@ -17,7 +17,7 @@ WITHOUT_FACTORS = {RESTS, MOVES}
 
 LETTERS = {1: ("o", "a", "b"), 0: ("n", "c", "e")}
 DESTINATIONS = {(1, 0): "{d:R}.H", (0, 0): "{d:R}.L", (1, 1): "{d:odd}", (0, 1): "{d:even}"}
-"""By multiplier, and whether it writes whole registers, which are a pair then."""
+"""By multiplier, and whether it writes whole registers, which are then a pair."""
 
 
 def _text(mac: int, does: str, wide: int) -> str:
@@ -69,7 +69,7 @@ def _forms(kinds: tuple[str, ...]) -> Iterator[Form]:
         writes = not WRITING.isdisjoint({mac1, mac0})
         if mac1 == mac0 == RESTS or (wide and not writes):
             continue
-        # (M) is part of the mode where MAC1 is alone, and behind MAC1 where it is not.
+        # (M) is part of the mode if MAC1 is alone, and follows MAC1 if it is not.
         for each in "0" if mac1 in WITHOUT_FACTORS else "01" if mac0 == RESTS else "x":
             yield _form(mac1, mac0, wide, each)
 

@@ -1,7 +1,8 @@
 """dsp32shift and dsp32shiftimm: shifts and rotations, by a register or by a number.
 
-Letters: d the destination, t what is shifted, s the register with the count, n the count, positive to the left; h and l the halves of
-d and t, a an accumulator. Numbers that no assembler makes, beyond the width of a word, do what GNU's tests have seen of the hardware.
+Letters: d the destination, t what is shifted, s the register with the count, n the count, positive to the left; h and l
+the halves of d and t, a an accumulator. Counts beyond the width of a word, which no assembler makes, do what GNU's
+tests have seen the hardware do.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from __future__ import annotations
 from bfsim.blackfin.instructions.forms.dsp32alu import dsp32alu
 
 FORMS = (
-    # Sums and differences. GNU objdump prints the plain ones with (NS), for without it they are 16-bit instructions.
+    # Sums and differences. GNU objdump prints the plain ones with (NS), since without it they are 16-bit instructions.
     dsp32alu("sum_of_registers", "0 00100 00q0 ddd --- sss ttt", "{d:R} = {s:R} + {t:R}{q:saturation}"),
     dsp32alu(
         "difference_of_registers", "0 00100 01q0 ddd --- sss ttt", "{d:R} = {s:R} - {t:R}{q:saturation}"
@@ -28,7 +28,7 @@ FORMS = (
         "h 00011 klq0 ddd --- sss ttt",
         "{d:R}.{h:half} = {s:R}.{k:half} - {t:R}.{l:half}{q:saturation}",
     ),
-    # Of both halves: the upper operation and the lower one.
+    # On both halves: the upper operation and the lower one.
     dsp32alu("vector", "0 00000 abmm ddd --- sss ttt", "{d:R} = {s:R} {a:sign}|{b:sign} {t:R}{m:crossing}"),
     *(
         dsp32alu(

@@ -1,4 +1,4 @@
-"""What forms do, as functions of `Effects` and the operands of a form, which have the letters of its bits as their names."""
+"""What forms do, as functions of `Effects` and the operands of a form, whose names are the letters of its bits."""
 
 from collections.abc import Callable
 from inspect import isfunction

@@ -18,7 +18,7 @@ from bfsim.blackfin.instructions.value import Value
 BITS = 40
 LARGEST = (1 << BITS - 1) - 1
 W32 = 0x80FFFFFFFF
-"""What GNU's simulator keeps of a sum with (W32): 32 bits and the sign of 40."""
+"""The bits of a sum with (W32) that GNU's simulator keeps: 32 bits and the sign of 40."""
 
 
 def clear_accumulator(fx: Effects, a: str) -> None:
@@ -74,7 +74,7 @@ def _at_32_bits(accumulator: Value) -> tuple[Value, Value]:
 
 
 def _change(fx: Effects, change: Callable[[Value], tuple[Value, Value]], *pairs: tuple[str, str]) -> None:
-    """Write what becomes of the second accumulator of each pair to the first; flags are set if any result asks for it."""
+    """Write the changed second accumulator of each pair to the first; flags are set if any result sets them."""
     results = []
     for to, source in pairs:
         result, over = change(fx.read(source).low(BITS))

@@ -16,7 +16,7 @@ def add_with_flags(fx: Effects, left: Value, right: Value) -> Value:
 
 
 def subtract_with_flags(fx: Effects, left: Value, right: Value) -> Value:
-    """Return the difference of two words, and set all flags of it. The carry is that nothing was borrowed."""
+    """Return the difference of two words, and set all flags of it. The carry says that nothing was borrowed."""
     difference = left - right
     overflow = ((left ^ right) & (left ^ difference)).negative()
     fx.set_flags(
@@ -102,7 +102,7 @@ def _shifted(value: Value, amount: Value, how: str) -> Value:
 
 
 def add_and_shift(fx: Effects, d: str, s: str, shift: int) -> None:
-    """It overflows if the sum or a step of the shift does."""
+    """Add and shift; it overflows if the sum or a step of the shift does."""
     left, right = fx.read(d), fx.read(s)
     total = left + right
     overflow = ((left ^ total) & (right ^ total)).negative()

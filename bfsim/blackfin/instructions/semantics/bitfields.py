@@ -37,7 +37,7 @@ def extract_x(fx: Effects, d: str, s: str, t: str) -> None:
 
 
 def deposit(fx: Effects, d: str, s: str, t: str) -> None:
-    """Lay the upper half of one register, as many bits of it as its lower half says, over another."""
+    """Lay bits of a register's upper half over another register; its lower half says how many, and where."""
     foreground = fx.read(s)
     length, first = _field(foreground)
     mask = _mask(length.smaller(16))
@@ -46,7 +46,7 @@ def deposit(fx: Effects, d: str, s: str, t: str) -> None:
 
 
 def deposit_x(fx: Effects, d: str, s: str, t: str) -> None:
-    """Lay it over another, and its sign over all bits above."""
+    """Do so, and lay the sign over all bits above."""
     foreground = fx.read(s)
     length, first = _field(foreground)
     room = -length + 16 & 0x1F
@@ -93,7 +93,7 @@ def ones(fx: Effects, d: str, t: str) -> None:
 
 
 def _smaller_exponent(found: Value, before: Value, bits: int) -> Value:
-    """Return the lesser of two exponents, of which so many bits are compared."""
+    """Return the smaller of two exponents, comparing `bits` bits."""
     mask = (1 << bits) - 1
     return (found & mask).below(before & mask).choose(found, before)
 

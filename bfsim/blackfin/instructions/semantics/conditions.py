@@ -8,7 +8,7 @@ from bfsim.blackfin.instructions.value import Value
 
 
 def compare(fx: Effects, x: str, y: str | int, relation: str, flags: int) -> None:
-    """Pointers leave the flags alone."""
+    """Compare registers; pointers leave the flags alone."""
     left = fx.read(x)
     right = fx.read(y) if isinstance(y, str) else fx.constant(y)
     fx.write("CC", _related(left, right, relation))
@@ -50,7 +50,7 @@ def cc_from_status(fx: Effects, operator: str, place: int) -> None:
 
 
 def cc_to_status(fx: Effects, operator: str, place: int) -> None:
-    """Of a flag and its copy only the one that is named is written."""
+    """Write a flag; of a flag and its copy, only the one that is named."""
     new = _combined(_status_bit(fx, place), fx.read("CC"), operator)
     others = fx.read("ASTAT") & ~(1 << place)
     fx.write("ASTAT", others | new.zero_extended().shift_left(place))

@@ -1,4 +1,4 @@
-"""Loads and stores through pointers; a pointer steps on behind the access."""
+"""Loads and stores through pointers; a pointer steps on after the access."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """The data address generators.
 
-An index I that steps out of the buffer of L bytes at B comes in again at its other end; with L = 0 there is no buffer. What happens to an
-index that was not in its buffer before, or near the ends of the address space, is what the adders of the hardware make of it.
+An index I that steps out of the buffer of L bytes at B comes in again at its other end; with L = 0 there is no buffer.
+The adders of the hardware decide what happens to an index that was outside its buffer, or near the ends of the address
+space.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ def modify_index_by_register(fx: Effects, i: str, m: str, sign: int) -> None:
 
 
 def modify_index_reversed(fx: Effects, i: str, m: str) -> None:
-    """The order of a fast Fourier transform; no buffer counts here."""
+    """Step in the order of a fast Fourier transform; no buffer counts here."""
     fx.write(i, sum_reversed(fx.read(i), fx.read(m)))
 
 
@@ -75,5 +76,5 @@ def _carry(left: Value, right: Value) -> Value:
 
 
 def _is_below(below: Value, same_turn: Value) -> Value:
-    """Whether an address is below a bound; turned about if only one of them has gone round the end of the address space."""
+    """Whether an address is below a bound; inverted if only one of them has wrapped round the address space."""
     return below.equals(same_turn)

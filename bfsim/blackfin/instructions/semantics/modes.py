@@ -12,18 +12,18 @@ from bfsim.blackfin.instructions.value import Value
 
 UNSIGNED = ("FU", "TFU", "IU")
 FRACTIONS = ("", "S2RND", "T", "W32")
-"""Modes of signed fractions, of 1.15: their products are doubled, to have the point where an accumulator has it."""
+"""Modes of signed fractions, 1.15: their products are doubled, so that the point is where an accumulator has it."""
 DOUBLED = ("S2RND", "ISS2")
 TRUNCATED = ("T", "TFU")
 INTEGERS = ("IS", "ISS2", "IU")
-"""Modes of which a half register gets the lowest 16 bits, of the others bits 16 to 31."""
+"""Modes in which a half register gets the lowest 16 bits; in the others it gets bits 16 to 31."""
 ACCUMULATOR = 0xFFFFFFFFFF
 """40 bits."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """An option of a multiplication, by its name in assembler. `mixed`: with (M), the second factor only is unsigned."""
+    """An option of a multiplication, by its name in assembler. `mixed`: with (M), only the second factor is unsigned."""
 
     name: str
     mixed: bool = False
@@ -41,7 +41,7 @@ class Mode:
         return exact.shift_left(1) if self.name in FRACTIONS and not self.mixed else exact
 
     def widened(self, accumulator: Value) -> Value:
-        """Return what an accumulator is, of which a sign-extended value is given."""
+        """Return the value of an accumulator, given sign-extended."""
         return accumulator if self.is_signed else accumulator & ACCUMULATOR
 
     def kept(self, exact: Value, before: Value) -> tuple[Value, Value]:

@@ -26,7 +26,7 @@ SET, ADD, SUBTRACT = range(3)
 
 @dataclass(frozen=True, slots=True)
 class Multiplier:
-    """What one of the two does: its number, its mode, what `multipliers` calls it, its operation and its factors."""
+    """What one of the two does: its number, its mode, what it `does` (`multipliers`), its operation and its factors."""
 
     number: int
     mode: Mode
@@ -36,7 +36,7 @@ class Multiplier:
     """Each a register, and whether its high half is meant."""
 
     def result(self, fx: Effects) -> tuple[Value, Value]:
-        """Do it, but for the register; return in 64 bits what that gets, and what decides whether it overflows."""
+        """Do all but write the register; return in 64 bits its new value, and the number that decides if it overflows."""
         accumulator = f"A{self.number}"
         if self.does == MOVES:
             before = self.mode.widened(fx.read(accumulator))
@@ -65,7 +65,7 @@ class Multiplier:
         return self.mode.register(number) if wide else self.mode.half(number, fx.read("RND_MOD"))
 
     def write(self, fx: Effects, d: str, wide: int, result: Value) -> None:
-        """Write to a half of d, or to d or the register behind it."""
+        """Write to a half of d, or to d or the register after it."""
         if wide:
             fx.write(f"R{int(d[1]) + self.number}", result)
         else:

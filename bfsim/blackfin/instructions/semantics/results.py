@@ -27,7 +27,7 @@ def join(high: Value, low: Value) -> Value:
 
 
 def part(whole: Value, first: int, bits: int) -> Value:
-    """Return so many bits of a value, from bit number `first` on."""
+    """Return `bits` bits of a value, from bit number `first` on."""
     return whole.shift_right(first).low(bits)
 
 
@@ -44,6 +44,6 @@ def set_zero_negative(fx: Effects, *results: Value) -> None:
 
 
 def set_overflow(fx: Effects, over: Value, flag: str = "V") -> None:
-    """Set V, or an accumulator's AV0 or AV1, to whether a result did not fit; its sticky flag stays set."""
+    """Set V, or an accumulator's AV0 or AV1, if a result did not fit, else clear it; its sticky flag stays set."""
     fx.set_flags(**{flag: over})
     fx.set_sticky(f"{flag}S", over)

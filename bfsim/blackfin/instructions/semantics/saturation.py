@@ -26,12 +26,12 @@ def fitted(exact: Value, bits: int, *, saturate: int) -> tuple[Value, Value]:
 
 
 def negated(number: Value) -> tuple[Value, Value]:
-    """Return minus `number`, the largest number for the least one, and whether it was the least one."""
+    """Return minus `number`, for the least number the largest one, and whether it was the least."""
     return saturated(-number.sign_extended(number.bits + 1), number.bits)
 
 
 def magnitude(number: Value) -> tuple[Value, Value]:
-    """Return the absolute value, the largest number for the least one, and whether it was the least one."""
+    """Return the absolute value, for the least number the largest one, and whether it was the least."""
     minus, over = negated(number)
     return number.negative().choose(minus, number), over
 

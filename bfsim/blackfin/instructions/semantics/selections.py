@@ -44,7 +44,7 @@ def absolute_pair(fx: Effects, d: str, s: str) -> None:
 
 
 def negate_register(fx: Effects, d: str, s: str, q: int) -> None:
-    """R0 = -R1 (S): GNU's simulator sets V where it saturates, and never clears it."""
+    """R0 = -R1 (S): GNU's simulator sets V if it saturates, and never clears it."""
     near, over = negated(fx.read(s))
     result = near if q else -fx.read(s)
     fx.write(d, result)

@@ -1,6 +1,6 @@
 """Shifts and rotations of values of 16, 32 and 40 bits, and whether they overflow.
 
-A count is a number, or a value of 64 bits; positive to the left, between -32 and 32. What overflows is as in GNU's simulator:
+A count is a number, or a value of 64 bits; positive to the left, between -32 and 32. Overflow is as in GNU's simulator:
 the bits that leave must all be zeros, or all ones before a negative result.
 """
 
@@ -17,7 +17,7 @@ Shifted = tuple[Value, Value]
 
 
 def amount(register: Value) -> Value:
-    """Return the count that a register says in its lowest six bits."""
+    """Return the count in the lowest six bits of a register."""
     return register.low(6).sign_extended(64)
 
 

@@ -38,7 +38,7 @@ def _watchful(number: Value, count: Count) -> Shifted:
 
 
 def _short(number: Value, count: Count) -> Shifted:
-    """Shift a half by a number of six bits: what is no shift of 16 bits to the right is one to the left, by its lowest four bits."""
+    """Shift a half by a six-bit number: by up to 16 to the right, or else to the left, by its lowest four bits."""
     assert isinstance(count, int)
     return arithmetic(number, count if -16 <= count <= 0 else count % 16 or 16)
 

@@ -29,7 +29,7 @@ class Sum:
 
     @classmethod
     def of(cls, one: Value, other: Value, *, minus: int, saturate: int) -> Sum:
-        """Add two values, or take the second from the first. A difference carries where nothing is borrowed."""
+        """Add two values, or subtract the second from the first. A difference carries if nothing is borrowed."""
         carry = other.below_or_equal(one) if minus else (~one).below(other)
         return cls(*fitted(_exact(one, other, minus), one.bits, saturate=saturate), carry)
 
@@ -48,7 +48,7 @@ def _exact(one: Value, other: Value, minus: int) -> Value:
 
 
 def _set_flags(fx: Effects, *sums: Sum) -> None:
-    """Set AZ, AN, V and VS as any of the results asks for it."""
+    """Set AZ, AN, V and VS if any of the results sets them."""
     set_zero_negative(fx, *(each.result for each in sums))
     set_overflow(fx, any_of(each.over for each in sums))
 
