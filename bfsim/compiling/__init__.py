@@ -1,1 +1,1 @@
-"""Kernels' C, and C and assembler of users, through the Blackfin's compiler: object code, kept by what it was made of."""
+"""Object code that the Blackfin's compiler makes of kernels' C and of users' C and assembler, kept by what it is made from."""

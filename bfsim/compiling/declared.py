@@ -1,4 +1,4 @@
-"""Whether what Python says of a function in C is what C says: of arguments that are not, it would compute anything."""
+"""Checks that Python declares a function in C as C does: with other arguments it would compute anything."""
 
 from __future__ import annotations
 
@@ -20,11 +20,12 @@ ONE_REGISTER = "a number of at most 32 bits or a pointer in C"
 def require_declared(
     image: Image, place: str, name: str, parameters: Sequence[Parameter], result: Number | None
 ) -> None:
-    """Raise KernelError unless parameters and result are as C has them, where the debugging information tells.
+    """Raise KernelError unless parameters and result are as in C, as far as the debugging information tells.
 
-    A number of fewer than 32 bits must be that in Python, too: GCC leaves it to the caller to cut what it hands over, and to
-    extend what it gets. An array may be of numbers where C has a pointer to a struct or to void, a pointer be the number 0,
-    and a result be left alone. What takes more than one register in C, a number of 64 bits or a struct itself, cannot be declared.
+    A number of fewer than 32 bits must be one in Python, too: GCC leaves it to the caller to truncate arguments and to
+    extend results. For a pointer to a struct or to void in C, an array may be of any numbers; a pointer may be the
+    number 0, and a result may be ignored. What takes more than one register in C, a number of 64 bits or a struct
+    itself, cannot be declared.
     """
     key = keys.object_key(image.digest, name, "", f"told apart from {tuple(parameters)} {result}")
     wrong, prototype = store.kept(key, lambda: _otherwise(image, name, parameters, result))
@@ -35,7 +36,7 @@ def require_declared(
 def _otherwise(
     image: Image, name: str, parameters: Sequence[Parameter], result: Number | None
 ) -> tuple[str, str]:
-    """Return what is declared otherwise, and how C has it; nothing where that is nothing, or is told as other compilers do."""
+    """Return what is declared otherwise, and C's prototype; '' if nothing is, or if its information cannot be read."""
     prototype = None
     with suppress(KernelError):
         prototype = prototype_of(image, name)
@@ -73,7 +74,7 @@ def _counted(count: int) -> str:
 
 
 def _what_fits(kind: CType, declared: Number | ArrayType) -> str:
-    """Return what a parameter must be that C gives this type; nothing where what is declared will do."""
+    """Return what a parameter of this type in C must be; '' if what is declared will do."""
     if isinstance(declared, ArrayType):
         if kind.target is None:
             return "a number" if kind.nbytes else ""
@@ -87,14 +88,14 @@ def _what_fits(kind: CType, declared: Number | ArrayType) -> str:
 
 
 def _short(kind: CType) -> IntType | None:
-    """Return what C has as an integer of fewer than 32 bits, or None for anything else."""
+    """Return the type of an integer in C of fewer than 32 bits, or None for anything else."""
     if kind.target is not None or kind.is_float or not 0 < kind.nbytes < REGISTER_BYTES:
         return None
     return IntType(f"{'i' if kind.is_signed else 'u'}{8 * kind.nbytes}", 8 * kind.nbytes, kind.is_signed)
 
 
 def _is_within(one: IntType, other: IntType) -> bool:
-    """Whether all that one type holds fits into another one."""
+    """Whether all values of one type fit into another one."""
     (low, high), (lowest, highest) = one.bounds, other.bounds
     return lowest <= low and high <= highest
 

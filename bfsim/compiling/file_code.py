@@ -30,20 +30,21 @@ SOURCES = (".c", ".s", ".S")
 OBJECTS = (".o", ".elf", ".doj", ".dxe")
 """The last two are what VisualDSP++ and CrossCore call an object file and a program."""
 OPTIONS = ("-O2", "-g2", "-gno-statement-frontiers", "-fno-var-tracking")
-"""-g2: what parameters the functions have, too, which is held against what Python says of them. The others keep the lines of -g1."""
+"""-g2 also says what parameters the functions have, to be compared with what Python says. The others keep the lines of -g1."""
 INCLUDE = re.compile(r'^\ufeff?\s*(#\s*include|\.include)\s*"([^"]+)"', re.MULTILINE)
-"""Of the preprocessor, where a file may begin with a byte order mark, as Windows has it, and of the assembler."""
+"""Inclusions of the preprocessor, where a file may begin with a byte order mark, as on Windows, and of the assembler."""
 
 
 _last: dict[Path, tuple[LoadedImage, set[str]]] = {}
-"""Of each file the image that was loaded last for kernels that are called by themselves, and which of its functions have it."""
+"""For each file, the image that was loaded last for kernels that are called by themselves, and its functions that have it."""
 
 
 @dataclass(frozen=True, eq=False)
 class FileCode:
     """The object code of one file, as one of its functions has it.
 
-    `files`: what it was made of, with their SHA-256. `compiler`: what compiled it now, or before; empty where the file is object code.
+    `files`: what it was made from, with their SHA-256. `compiler`: what compiled it, now or before; empty if the file
+    is object code.
     """
 
     files: Mapping[Path, str]
@@ -68,9 +69,9 @@ class FileCode:
     def compiled(
         self, profile: CompilerProfile, *, traced: bool = False, files: LoadedFiles | None = None
     ) -> CompiledObject:
-        """Return it ready to run, timed as `profile` has it; it is translated once.
+        """Return it ready to run, with the timing of `profile`; it is translated once.
 
-        `traced`: its accesses to memory are reported. `files`: what the core that runs it has loaded, if one does.
+        `traced`: it reports its accesses to memory. `files`: what its core has loaded, if it runs on one.
         """
         timing = timing_of(profile).placed(self.loaded.image)
         loaded = files.image(self.loaded) if files else self.loaded
@@ -82,7 +83,7 @@ class FileCode:
 
 
 def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result: Number | None) -> Kernel:
-    """Return the function `name` of a file as a kernel. Raises as `kernel_from`."""
+    """Return the function `name` of a file as a kernel. Raises as `kernel_from` does."""
     files = _files(path)
     octets, compiler = _object_file(path, files)
     image = link(read_object(octets, path.name), is_whole=False)
@@ -108,7 +109,7 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
 
 
 def _loaded(path: Path, image: Image, name: str) -> LoadedImage:
-    """Return a file's image, which has functions of one file in common; that of one which is taken once more is loaded anew."""
+    """Return a file's image, which its functions share; if a function is taken once more, the image is loaded anew."""
     loaded, names = _last.get(path.resolve(), (None, set[str]()))
     if loaded is None or loaded.image.digest != image.digest or name in names:
         loaded, names = _last[path.resolve()] = LoadedImage(image), set()
@@ -117,7 +118,7 @@ def _loaded(path: Path, image: Image, name: str) -> LoadedImage:
 
 
 def _sources(folder: Path, names: Iterable[str]) -> SourceFiles:
-    """Return where the files of these names are, as seen from `folder`."""
+    """Return where the files with these names, relative to `folder`, are."""
     found: dict[str, Path | None] = {}
     for each in names:
         name = PurePosixPath(each).name
@@ -126,7 +127,7 @@ def _sources(folder: Path, names: Iterable[str]) -> SourceFiles:
 
 
 def _files(path: Path) -> dict[str, bytes]:
-    """Read a file, and what it includes if it is source, by their names as seen from its folder."""
+    """Read a file, and what it includes if it is source, by their names relative to its folder."""
     kinds = (*SOURCES, *OBJECTS)
     if path.suffix not in kinds:
         raise KernelError(f"a kernel must come from a file {', '.join(kinds)}, not from {path.name}")
@@ -138,7 +139,7 @@ def _files(path: Path) -> dict[str, bytes]:
         if path.suffix in SOURCES:
             folder = posixpath.dirname(name)
             for word, each in INCLUDE.findall(octets.decode(errors="replace")):
-                # The assembler looks from where it was started.
+                # The assembler looks in the folder in which it was started.
                 included = posixpath.normpath(posixpath.join("" if word == ".include" else folder, each))
                 if included not in found and (path.parent / included).is_file():
                     waiting.append(included)
@@ -154,7 +155,7 @@ def _object_file(path: Path, files: Mapping[str, bytes]) -> tuple[bytes, str]:
 
 
 def recipe_of_source(files: Mapping[str, bytes], name: str) -> Recipe:
-    """Return what the code of the source file `name` is made of; `files`: it and what it includes."""
+    """Return the recipe for the code of the source file `name`; `files`: it and what it includes."""
     texts = {each: octets.decode(errors=AS_BYTES) for each, octets in files.items()}
     return Recipe(texts, (name,), OPTIONS)
 

@@ -1,4 +1,4 @@
-"""When the built-in firmware calls its kernels for the first time, and on which buffers: what is compiled ahead should be there by then."""
+"""The order in which the built-in firmware first calls its kernels, and on which buffers: compilation ahead follows it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bfsim.files import store
 from bfsim.kernel import Kernel
 
 FIRST_CALLS = "first_calls"
-"""What comes with bfsim under this name: symbols of kernels in the order of their first calls, and behind each the buffers of its rows."""
+"""A file that comes with bfsim: symbols of kernels in the order of their first calls, each with the buffers of its rows."""
 
 
 class FirstCall(NamedTuple):
@@ -23,7 +23,7 @@ class FirstCall(NamedTuple):
 def in_order(kernels: Iterable[Kernel]) -> list[FirstCall]:
     """Return kernels in the order in which the built-in firmware first calls them.
 
-    Those that it does not call are behind, in the order of their symbols, and nothing is known of their rows.
+    Those that it does not call come last, in the order of their symbols, and nothing is known of their rows.
     """
     known = _first_calls()
     places = {symbol: number for number, symbol in enumerate(known)}

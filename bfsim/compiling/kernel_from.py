@@ -1,4 +1,4 @@
-"""Kernels that are not written in Python: C and assembler, which the Blackfin's compiler translates, and object code of any."""
+"""Kernels that are not written in Python: C and assembler, which the Blackfin's compiler translates, and any object code."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ def kernel_from(
 ) -> Kernel:
     """Return the function `name` of a file as a kernel: `kernel_from("sobel.c", "sobel_row", line=u8[:], out=u8[:], n=i32)`.
 
-    `file` is C (.c), assembler (.s), an object file (.o, .doj) or a program (.elf, .dxe), beside the Python file that calls this.
-    bfin-elf-gcc -O2 compiles C and assembler; without it on the PATH, the code must be in the cache. `parameters` are declared in
-    the function's order, like those of a `@kernel`; an array is a pointer to its first element. `result` is the type of the result.
+    `file` is C (.c), assembler (.s), an object file (.o, .doj) or a program (.elf, .dxe), beside the Python file that
+    calls this. bfin-elf-gcc -O2 compiles C and assembler; without it on the PATH, the code must be in the cache.
+    `parameters` are declared in the function's order, like those of a `@kernel`; an array is a pointer to its first
+    element. `result` is the type of the result.
 
     Raises KernelError if the file is no code for the Blackfin or has no such function, and ConfigError if there is no
     compiler, or with the compiler's message.
@@ -42,7 +43,7 @@ def kernel_from(
 
 
 def _written(kind: object) -> str:
-    """Return what was given as a type, as one writes it."""
+    """Return what was given as a type, as it is written."""
     if isinstance(kind, type):
         return kind.__name__
     return str(kind) if isinstance(kind, ArrayType) else shown(kind)

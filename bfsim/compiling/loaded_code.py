@@ -18,7 +18,7 @@ from bfsim.kernel.objects.places import Places
 
 @dataclass
 class LoadedCode:
-    """Kernels by their object code, timed by `timing`. Each is translated when it is asked for, and once."""
+    """Kernels by their object code, timed by `timing`. Each is translated once, when it is first asked for."""
 
     code: ObjectCode
     timing: Timing = GNU
@@ -37,7 +37,7 @@ class LoadedCode:
         return self._loaded.image.code_digest
 
     def has(self, function: Function) -> bool:
-        """Whether a kernel is a function of the code: helpers may be inlined in all that call them."""
+        """Whether a kernel is a function of the code: helpers may be inlined in all of their callers."""
         return self.code.symbol_of(function) in self._places.image.symbols
 
     def code_bytes(self, function: Function) -> dict[str, int]:
@@ -45,9 +45,9 @@ class LoadedCode:
         return code_bytes(self.code.symbol_of(function), self._loaded, self._places)
 
     def compiled(self, function: Function, *, traced: bool = False) -> CompiledObject:
-        """Return a kernel ready to run; `traced`: its accesses to memory are reported.
+        """Return a kernel ready to run; `traced`: it reports its accesses to memory.
 
-        Raises KernelError if the code has no function for it, as for helpers that are inlined.
+        Raises KernelError if the code has no function for it, for example if it is a helper that is inlined.
         """
         if (function, traced) not in self._compiled:
             symbol = self.code.symbol_of(function)

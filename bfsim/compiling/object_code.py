@@ -16,19 +16,19 @@ from bfsim.kernel import CompilerProfile, Kernel, function_keys
 from bfsim.kernel.language.function import Function
 
 PROGRAMS = "programs"
-"""What comes with bfsim under this name: the names under which its firmware is kept as C."""
+"""A file that comes with bfsim: the names under which its firmware is kept as C."""
 LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
-"""What the compiler is told, for each profile that stands for it."""
+"""The compiler's option for each profile that stands for it."""
 
 MOST_PROGRAMS = 8
-"""Firmware that a process remembers as C, kernels and all."""
+"""How many sets of kernels a process remembers as C."""
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectCode:
     """Kernels as one relocatable ELF file, with the parts of the libraries that they call.
 
-    `names`: what each kernel is called in C. `compiler`: its version. `is_shipped`: whether it comes with bfsim.
+    `names`: the name of each kernel in C. `compiler`: its version. `is_shipped`: whether the code comes with bfsim.
     """
 
     octets: bytes
@@ -42,7 +42,7 @@ class ObjectCode:
 
 
 def level_of(profile: CompilerProfile) -> str:
-    """Return what the compiler is told for a profile. Raises ConfigError for one that stands for no compiler that can be asked."""
+    """Return the compiler's option for a profile. Raises ConfigError for a profile of a compiler that cannot be asked."""
     if profile.name not in LEVELS:
         raise ConfigError(
             f"the profile must be one of {', '.join(LEVELS)} for there to be real code, not {profile.name}: of other "
@@ -57,9 +57,9 @@ def object_code(
     profile: CompilerProfile,
     toolchain: Toolchain | None,
 ) -> ObjectCode:
-    """Return the code of `kernels`, kept or compiled now; `entries` are those that something else than kernels calls.
+    """Return the code of `kernels`, kept or compiled now; `entries` are those that are called by others than kernels.
 
-    Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
+    Raises ConfigError if there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
     level, (files, names) = level_of(profile), _in_c(frozenset(kernels), frozenset(entries))
     if not names:
@@ -74,7 +74,7 @@ def object_code_at_hand(
     profile: CompilerProfile,
     toolchain: Toolchain | None,
 ) -> ObjectCode | None:
-    """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
+    """Return what `object_code` does, or None if there is neither kept code nor a compiler."""
     files, names = _in_c(frozenset(kernels), frozenset(entries))
     recipe = recipe_of(files, level_of(profile))
     found = code_at_hand(recipe, toolchain)
@@ -82,7 +82,7 @@ def object_code_at_hand(
 
 
 def shipped_code(kernel: Kernel, profile: CompilerProfile, toolchain: Toolchain | None) -> ObjectCode | None:
-    """Return the code of the built-in firmware that a kernel belongs to, or None where it belongs to none."""
+    """Return the code of the built-in firmware that a kernel belongs to, or None if it belongs to none."""
     functions = _by_symbol([kernel])
     for program in _shipped_programs():
         if kernel.function.symbol in program.names:
@@ -100,7 +100,7 @@ def _shipped_programs() -> tuple[InC, ...]:
 
 
 def recipe_of(files: Mapping[str, str], level: str) -> Recipe:
-    """Return what the code of kernels in C is made of."""
+    """Return the recipe for the code of kernels in C."""
     return Recipe(files, tuple(each for each in files if each.endswith(".c")), ("-w", level))
 
 
@@ -113,7 +113,7 @@ class InC:
 
 
 def written(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> tuple[str, InC]:
-    """Write kernels as C, and return the name under which that is kept."""
+    """Write kernels as C; return the name under which that is kept, and the C."""
     functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
     return function_keys.program_key(functions.values(), called), _written(functions, called)
 
@@ -122,10 +122,10 @@ def written(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> tuple[str, 
 def _in_c(
     kernels: frozenset[Kernel], entries: frozenset[Kernel]
 ) -> tuple[Mapping[str, str], Mapping[Function, str]]:
-    """Return kernels as files of C, and what each is called there.
+    """Return kernels as files of C, and the name of each there.
 
-    It is kept in the user's cache, and that of the built-in firmware comes with bfsim, for to write all kernels of firmware takes
-    longer than to run a frame. A process that runs the same firmware again does not look there again.
+    They are kept in the user's cache, and those of the built-in firmware come with bfsim, since writing all kernels of
+    firmware takes longer than running a frame. A process that runs the same firmware again does not look there again.
     """
     functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
     name = function_keys.program_key(functions.values(), called)
@@ -143,7 +143,7 @@ def _by_symbol(kernels: Iterable[Kernel]) -> dict[str, Function]:
 
 
 def _written(functions: Mapping[str, Function], called: Mapping[str, Function]) -> InC:
-    """Lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same."""
+    """Return functions as C. Line numbers are relative to the kernel, so the C is the same wherever the Python lies."""
     from bfsim.kernel.c import Place, c_program  # most starts find all C
 
     program = c_program(

@@ -1,4 +1,4 @@
-"""`@kernel` for firmware: a Python kernel whose cost is also that of the code that the Blackfin's compiler makes of it."""
+"""`@kernel` for firmware: a Python kernel whose cost can also be that of the code that the Blackfin's compiler makes of it."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
 
 
 def kernel(python: Callable[..., Any] | None = None, /, **options: object) -> Kernel:
-    """Make `python` a kernel. Raises KernelError, with file, line and caret, where it leaves the language.
+    """Make `python` a kernel. Raises KernelError, with file, line and caret, if it leaves the language.
 
-    There are no options: what is written in brackets is refused.
+    There are no options: anything in brackets is refused.
     """
     return replace(estimated_kernel(python, **options), own_code=own_code)
 
 
 _found: dict[tuple[Kernel, str], CompiledObject] = {}
-"""By kernels and names of profiles."""
+"""Code that was found, by kernels and names of profiles."""
 
 
 def own_code(kernel: Kernel, profile: CompilerProfile) -> CompiledObject | None:
-    """Return the code that a profile's compiler makes of a kernel, or None where none is kept and no compiler is on the PATH.
+    """Return the code that a profile's compiler makes of a kernel, or None if none is kept and no compiler is on the PATH.
 
     A kernel of the built-in firmware has the code that it has there; others are compiled with all kernels of their file, as in a run:
     which calls are inlined depends on them. Raises ConfigError with what the compiler says if it refuses.

@@ -1,7 +1,7 @@
-"""What object code is made of, and the code: kept under a digest of that, or compiled.
+"""Recipes for object code, and the code: kept under a digest of its recipe, or compiled.
 
-Code is kept in the user's cache. That of the built-in firmware, and of the examples of the documentation, comes with bfsim, so that it
-is there without a compiler (`benchmarks/toolchain/keep.py` makes it).
+Code is kept in the user's cache. The code of the built-in firmware and of the documentation's examples comes with
+bfsim, so that it is there without a compiler (`benchmarks/toolchain/keep.py` makes it).
 """
 
 from __future__ import annotations
@@ -17,18 +17,19 @@ from bfsim.errors import ConfigError
 from bfsim.files import store
 
 OPTIONS = ("-std=gnu99", "-g1")
-"""-g1: lines, but no word of variables. It changes no code."""
+"""-g1: lines, but nothing about variables. It changes no code."""
 KEPT_COMPILER = Compiler("bfin-elf", "12.2.0", CPU)
-"""Whose code comes with bfsim, and is looked for where no compiler is at hand."""
+"""The compiler whose code comes with bfsim, and is looked for if no compiler is at hand."""
 AS_BYTES = "surrogateescape"
-"""How texts keep bytes that are not UTF-8: a compiler sees those of the file."""
+"""How texts keep bytes that are not UTF-8, so that a compiler sees the bytes of the file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """Files by name, which of them are compiled, and what the compiler is told beside `OPTIONS`.
+    """Files by name, which of them are compiled, and the compiler's options besides `OPTIONS`.
 
-    A name may have folders in it, also `..`, as seen from where the files that are compiled are; a file with the name of a place is read there.
+    A name may have folders in it, also `..`, relative to the folder of the files that are compiled; a file with an
+    absolute name is read where it is.
     """
 
     texts: Mapping[str, str]
@@ -36,7 +37,7 @@ class Recipe:
     options: tuple[str, ...]
 
     def digest(self, compiler: Compiler) -> str:
-        """Return the name under which the code is kept that a compiler makes of it."""
+        """Return the name under which a compiler's code for it is kept."""
         made_by = repr(("object code", compiler, *OPTIONS, *self.options, self.sources))
         parts = [made_by, *(part for file in self.texts.items() for part in file)]
         return hashlib.sha256("\0".join(parts).encode(errors=AS_BYTES)).hexdigest()
@@ -57,7 +58,7 @@ class Recipe:
 def code_of(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str]:
     """Return the object file that is kept, or made now, and the version of its compiler.
 
-    Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
+    Raises ConfigError if there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
     found = code_at_hand(recipe, toolchain)
     if found is None:
@@ -75,7 +76,7 @@ def is_shipped(recipe: Recipe) -> bool:
 
 
 def code_at_hand(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str] | None:
-    """Return what `code_of` does, or None where there is neither kept code nor a compiler."""
+    """Return what `code_of` does, or None if there is neither kept code nor a compiler."""
     compiler = toolchain.identity if toolchain else KEPT_COMPILER
     name = recipe.digest(compiler)
     octets = store.load(name) or store.shipped(__package__, name)

@@ -17,13 +17,13 @@ GCC, SIMULATOR = "bfin-elf-gcc", "bfin-elf-run"
 CPU = ("-mcpu=bf561", "-msim")
 ADVICE = "CONTRIBUTING.md says how to build a toolchain in ten minutes, and --toolchain FOLDER takes another than the PATH's"
 ERROR = re.compile(r"(?!collect2:).*\berror:", re.IGNORECASE)
-"""[GCC] A line of the compiler that says what is wrong has `error:`, one of the assembler `Error:`; collect2 says no more than that the linker failed."""
+"""[GCC] Errors of the compiler have `error:`, those of the assembler `Error:`; collect2 only says that the linker failed."""
 MOST_LINES = 10
 LIBRARIES = ("-lm", "-lc", "-lgcc")
 
 
 class Compiler(NamedTuple):
-    """Which compiler it is: the machine that it makes code for, its version, and the options for that machine."""
+    """A compiler's identity: the machine that it makes code for, its version, and the options for that machine."""
 
     machine: str
     version: str
@@ -43,7 +43,7 @@ class Toolchain:
 
     @cached_property
     def identity(self) -> Compiler:
-        """What the compiler says that it is."""
+        """The identity that the compiler states."""
         gcc, *options = self.compiler
         machine, version = (self._output(gcc, each).strip() for each in ("-dumpmachine", "-dumpfullversion"))
         return Compiler(machine, version, tuple(options))
@@ -90,7 +90,7 @@ class Toolchain:
 def _from_the_first_error(lines: Sequence[str]) -> list[str]:
     """Return the first lines of what a compiler says, without the warnings before an error."""
     first = next((number for number, each in enumerate(lines) if ERROR.match(each)), 0)
-    return [printable(each) for each in lines[first : first + MOST_LINES]]  # of a file that is no source, too
+    return [printable(each) for each in lines[first : first + MOST_LINES]]  # the file may be anything
 
 
 def prefer(folder: Path) -> None:
@@ -111,7 +111,7 @@ def blackfin_compiler() -> Toolchain | None:
 
 
 def blackfin_toolchain() -> Toolchain:
-    """Find GCC and the GNU simulator for the Blackfin. Raises ConfigError where one is missing."""
+    """Find GCC and the GNU simulator for the Blackfin. Raises ConfigError if one is missing."""
     found = blackfin_compiler()
     if found is None or not found.runner:
         raise _missing(SIMULATOR if found else GCC, "on the PATH")
