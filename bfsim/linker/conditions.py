@@ -13,7 +13,7 @@ _PLAIN = re.compile(r"[!\s]*[01]\s*")
 
 
 def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
-    """Say whether `condition` is not 0; names that no macro defines are 0. Raise MacroError if it has no value."""
+    """Return whether `condition` is not 0; names that no macro defines are 0. Raise MacroError if it has no value."""
 
     def is_defined(use: re.Match[str]) -> str:
         return "1" if (use[1] or use[2]) in macros else "0"
@@ -22,7 +22,7 @@ def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
     expanded = _DEFINED.sub(is_defined, expand(_DEFINED.sub(is_defined, condition), macros))
     if _PLAIN.fullmatch(expanded):
         return (expanded.count("!") + expanded.count("1")) % 2 == 1
-    from bfsim.linker.grammar import parse_condition  # it costs 100 ms, which few conditions need
+    from bfsim.linker.grammar import parse_condition  # it takes 100 ms, and few conditions need it
 
     try:
         return parse_condition(expanded) != 0

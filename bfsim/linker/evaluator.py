@@ -25,7 +25,7 @@ from bfsim.linker.script import (
 from bfsim.linker.source import LdfLine, Source
 
 ADDRESSES = range(1 << 32)
-"""Of a Blackfin: one digit too many, and a segment would be gigabytes of what no chip has."""
+"""Those of a Blackfin: with one digit too many, a segment would have gigabytes that no chip has."""
 
 Files = frozenset[str]
 _start = attrgetter("start")
@@ -41,7 +41,7 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class ObjectList:
-    """A $LIST: its files, and by name the lists in it that were not defined yet where it is."""
+    """A $LIST: its files, and by name the lists in it that are defined only after it."""
 
     files: Files
     later: dict[str, Token]
@@ -68,7 +68,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         return self._source.place_of(token.start_pos or 0)
 
     def _known_segment(self, name: str, offset: int) -> Segment:
-        """Return the segment of a name: the processor's own, a global one, else another processor's."""
+        """Return the segment of a name: the processor's own, else a global one, else another processor's."""
         owners = sorted(self._by_address, key=lambda o: (o != self._processor, o != ""))
         for owner in owners:
             if (owner, name) in self._segments:
@@ -162,7 +162,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         return frozenset() if is_taken is False else name
 
     def object_list(self, name: Token, *parts: Files | Token) -> None:
-        """Keep a list; other lists in it may be defined below it, as LDFs of VisualDSP++'s wizard have it."""
+        """Keep a list; other lists in it may be defined below it, as in LDFs of VisualDSP++'s wizard."""
         files, later = frozenset[str](), dict[str, Token]()
         for part in parts:
             if not isinstance(part, Token):
@@ -195,7 +195,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         return self._error(name, f"object list must be one that the LDF defines ({known}), not {cut(name)}")
 
     def attribute(self) -> bool:
-        """Value of a test such as prefersMem("internal"): no object file of bfsim carries such attributes."""
+        """Return the value of a test such as prefersMem("internal"): no object file of bfsim has such attributes."""
         return False
 
     def negation(self, operand: bool) -> bool:
@@ -209,5 +209,5 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
 
 
 def _address(value: int) -> str:
-    """Return an address as messages have it, one with a sign, too."""
+    """Return an address as messages show it, also a negative one."""
     return f"{'-' * (value < 0)}0x{abs(value):08X}"

@@ -59,7 +59,7 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Start]):
         return _combine(sign, str(sign), (operand,))
 
     def expr(self, first: Expression, *rest: Expression | Token | None) -> Expression:
-        """Give each operator its operands: `rest` alternates both, and ends with the two branches of "?" or None."""
+        """Give each operator its operands: `rest` alternates the two, and ends with the two branches of "?" or None."""
         *pairs, then, otherwise = rest
         operands, signs = [first], list[Token]()
         for sign, operand in zip(pairs[::2], pairs[1::2], strict=True):

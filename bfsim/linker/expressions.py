@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-WIDEST_BITS = 64  # of a value in between; an address has 32
+WIDEST_BITS = 64  # of an intermediate value; an address has 32
 
 
 class ExpressionError(Exception):
-    """Raised for what is wrong with the expression at `offset`; the file is added where it is known."""
+    """Raised for an error in the expression at `offset`; the file is added where it is known."""
 
     def __init__(self, offset: int, problem: str) -> None:
         super().__init__(problem)
@@ -47,7 +47,7 @@ class Expression:
 
     @property
     def is_number(self) -> bool:
-        """Say whether the value is known without a scope."""
+        """Whether the value is known without a scope."""
         return self.operator == "number"
 
     def value_in(self, scope: Scope) -> int:
@@ -64,7 +64,7 @@ class Expression:
         return self._apply([operand.value_in(scope) for operand in self.operands])
 
     def _value_of_branch(self, scope: Scope) -> int:
-        """Return the value by the operands that count: a branch that is not taken need not have one."""
+        """Return the value of the operands that count: a branch that is not taken need not have one."""
         first, *rest = self.operands
         is_true = first.value_in(scope) != 0
         if self.operator == "?":
@@ -118,7 +118,7 @@ _BINARY: dict[str, Callable[..., int]] = {
 
 
 class _NoScope:
-    """The scope of a condition: no functions, and names that are no macros are 0."""
+    """The scope of a condition: no functions, and names that are not macros are 0."""
 
     def value_of(self, _name: str, _offset: int, /) -> int:
         """Return 0, as C does in #if."""

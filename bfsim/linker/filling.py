@@ -21,7 +21,7 @@ class Filling:
 
     @property
     def location(self) -> int:
-        """The location pointer: first address behind all that was taken."""
+        """The location pointer: first address after all that was taken."""
         return self._pointer
 
     def address_for(self, nbytes: int, align: int) -> int:
@@ -37,11 +37,11 @@ class Filling:
         return min((start for start, _ in self._reserved if start >= address), default=self._limit) - address
 
     def has_room(self, nbytes: int, align: int) -> bool:
-        """Say whether `nbytes` still fit."""
+        """Return whether `nbytes` still fit."""
         return self.address_for(nbytes, align) + nbytes <= self._limit
 
     def take(self, nbytes: int, align: int) -> int:
-        """Move the pointer behind the next `nbytes` and return their address."""
+        """Move the pointer past the next `nbytes` and return their address."""
         address = self.address_for(nbytes, align)
         self._pointer = address + nbytes
         return address
@@ -53,14 +53,14 @@ class Filling:
         return self._limit - self._pointer - ahead
 
     def move_to(self, address: int) -> bool:
-        """Move the pointer forward to `address`; say whether it lies ahead and inside the segment."""
+        """Move the pointer forward to `address`; return whether that lies ahead and inside the segment."""
         is_ahead = self._pointer <= address <= self._limit
         if is_ahead:
             self._pointer = address
         return is_ahead
 
     def largest_stretch(self, taken: Iterable[tuple[int, int]], align: int) -> tuple[int, int]:
-        """Return start and size of the largest stretch, from a multiple of `align`, of what is not `taken`."""
+        """Return start and size of the largest stretch that is not `taken`, from a multiple of `align`."""
         best = here = align_up(self.segment.start, align)
         best_nbytes = 0
         for start, end in sorted([*taken, *self._reserved, (self._limit, self._limit)]):

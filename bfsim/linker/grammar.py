@@ -1,4 +1,4 @@
-"""The grammar in ldf.lark: trees of LDFs and values of conditions, and what a syntax error says."""
+"""The grammar in ldf.lark: trees of LDFs, values of conditions, and messages of syntax errors."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def parse_condition(text: str) -> int:
 
 @cache
 def _grammar() -> Lark:
-    """Return the parser. It takes 50 ms, and is not kept: a kept one would be a pickle, which runs code when it is read."""
+    """Return the parser. It takes 50 ms to make and is not kept: a kept one would be a pickle, which runs code when read."""
     text = files("bfsim.linker").joinpath("ldf.lark").read_text(encoding="utf-8")
     return Lark(text, parser="lalr", lexer="contextual", start=["start", "condition"])
 
@@ -93,7 +93,7 @@ def _difference(text: str, error: UnexpectedInput) -> tuple[int, str, str]:
 
 
 def _unknown_command(error: UnexpectedInput) -> Token | None:
-    """Return the name before the error, if that can only be what is assigned to: a command that is misspelt, or of another linker."""
+    """Return the name before the error if only an assignment can follow it: a command, misspelt or of another linker."""
     if not (isinstance(error, UnexpectedToken) and error.interactive_parser and error.expected == {"EQUAL"}):
         return None
     last = error.interactive_parser.parser_state.value_stack[-1]

@@ -1,4 +1,4 @@
-"""LDFs that were read before, as the cache on disk keeps them: to read one costs a start 40 ms, with all that it imports."""
+"""LDFs that the cache on disk keeps once they have been read: reading one adds 40 ms to a start, imports included."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from bfsim.linker.source import LdfLine, Source
 PARTS = (
     Assignment, Block, Expression, FixedReserve, Input, InputSections, LdfLine, Move, OutputSection, Reserve, Resolve, Segment,
 )  # fmt: skip
-"""What a script is made of, beside tuples, sets, paths, text and numbers."""
+"""What a script is made of, besides tuples, sets, paths, text and numbers."""
 
 KIND, CONTENT = "is", "of"
 MAKERS: dict[str, Callable[..., Any]] = {
@@ -41,7 +41,7 @@ MAKERS: dict[str, Callable[..., Any]] = {
 
 
 def kept_script(source: Source, made: Callable[[], LinkerScript]) -> LinkerScript:
-    """Return what a preprocessed LDF says, as it is kept, or as it is `made` now. What is wrong with it is not kept."""
+    """Return the script of a preprocessed LDF as it is kept, or as it is `made` now. Errors are not kept."""
     found = store.kept(
         _key(source), lambda: [_written(getattr(made(), each.name)) for each in fields(LinkerScript)[1:]]
     )
@@ -64,13 +64,13 @@ def _key(source: Source) -> str:
 
 @cache
 def _sources() -> str:
-    """Return the digest of what reads LDFs."""
+    """Return the digest of the files that read LDFs."""
     folder = Path(__file__).parent
     return digest_of([*python_below(folder), str(folder / "ldf.lark")])
 
 
 def _written(value: Any) -> Any:
-    """Return a part of a script as JSON has it."""
+    """Return a part of a script for JSON."""
     if is_dataclass(value):
         return {
             KIND: type(value).__name__,

@@ -43,7 +43,7 @@ class Placement:
 class SegmentUsage:
     """How full a segment is: `used_bytes` counts symbols, reserves and the gaps that alignment leaves.
 
-    Of a reserve that expands only the minimum counts.
+    For a reserve that expands, only the minimum counts.
     """
 
     name: str
@@ -99,7 +99,7 @@ class LinkMap:
         }
 
     def find(self, processor: str | None, name: str) -> Placement:
-        """Return the placement of the processor's own or the shared symbol; LinkError if there is none."""
+        """Return the placement of the processor's own or the shared symbol; raise LinkError if there is none."""
         placed = self._by_name.get((processor, name)) or self._by_name.get((None, name))
         if placed is None:
             raise LinkError(

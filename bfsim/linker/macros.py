@@ -1,4 +1,4 @@
-"""The macros of the LDF preprocessor: what #define says, and their expansion, as C does it."""
+"""The macros of the LDF preprocessor: what #define says, and their expansion, as in C."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Macro:
 
 
 class MacroError(Exception):
-    """Carries what is wrong with the use of a macro up to where the place of that use is known."""
+    """Carries an error in the use of a macro up to where the place of that use is known."""
 
 
 def expand(text: str, macros: Mapping[str, Macro], active: tuple[str, ...] = ()) -> str:
@@ -62,7 +62,7 @@ def expand(text: str, macros: Mapping[str, Macro], active: tuple[str, ...] = ())
 def expand_use(
     text: str, use: re.Match[str], macros: Mapping[str, Macro], active: tuple[str, ...] = ()
 ) -> tuple[str, int]:
-    """Return what the macro used at `use` becomes, and the position in `text` behind its arguments."""
+    """Return what the macro used at `use` becomes, and the position in `text` after its arguments."""
     name = use.group()
     macro = macros[name]
     if len(active) == _DEEPEST_NESTING:
@@ -80,7 +80,7 @@ def expand_use(
 
 
 def _arguments(text: str, position: int, name: str) -> tuple[list[str], int] | None:
-    """Return the arguments in parentheses from `position` on and the position behind; None if there are none."""
+    """Return the arguments in parentheses from `position` on and the position after them; None if there are none."""
     opening = _OPENING.match(text, position)
     if opening is None:
         return None
@@ -98,7 +98,7 @@ def _arguments(text: str, position: int, name: str) -> tuple[list[str], int] | N
 def _substitute(
     body: str, values: Mapping[str, str], macros: Mapping[str, Macro], active: tuple[str, ...]
 ) -> str:
-    """Put the arguments into a macro's body: as written beside ## and behind #, else expanded first."""
+    """Put the arguments into a macro's body: as written beside ## and after #, else expanded first."""
 
     @cache
     def expanded(parameter: str) -> str:

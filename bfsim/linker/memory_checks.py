@@ -1,4 +1,4 @@
-"""What must hold of the segments of an LDF: each in a memory of the board that its core reaches, reserves inside them."""
+"""Checks of an LDF's segments: each must lie in a memory of the board that its core reaches, with reserves inside it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def check_memories(script: LinkerScript, regions: Sequence[Region]) -> None:
     used = {output.segment for block in script.blocks for output in block.output_sections if output.segment}
     highest_first = sorted(
         script.segments, key=lambda each: each.end, reverse=True
-    )  # its advice is good for all
+    )  # the advice for it is good for all
     region_by_segment = {
         segment.name: region_under(segment, regions) for segment in highest_first if segment.name in used
     }
@@ -41,7 +41,7 @@ def check_memories(script: LinkerScript, regions: Sequence[Region]) -> None:
 def _check_views(script: LinkerScript) -> None:
     """Check that the processors' own segments are the same memory or different ones."""
     by_address = sorted(script.segments, key=lambda each: (each.start, each.nbytes))
-    for pair in pairwise(by_address):  # if any two are a part of each other, then so are two neighbours
+    for pair in pairwise(by_address):  # if any two overlap in part, so do two neighbours
         if pair[0].overlaps(pair[1]) and (pair[0].start, pair[0].nbytes) != (pair[1].start, pair[1].nbytes):
             left, right = sorted(pair, key=script.segments.index)
             raise LinkError(
@@ -51,7 +51,7 @@ def _check_views(script: LinkerScript) -> None:
 
 
 def region_under(segment: Segment, regions: Sequence[Region]) -> Region:
-    """Return the memory under a segment, the first one of several; raise LinkError with its place in the LDF where there is none."""
+    """Return the memory under a segment, the first of several; raise LinkError with the segment's place if there is none."""
     try:
         return regions_under(segment.start, segment.nbytes, regions)[0]
     except ConfigError as error:
@@ -61,7 +61,7 @@ def region_under(segment: Segment, regions: Sequence[Region]) -> Region:
 
 
 def _advice(segment: Segment, regions: Sequence[Region]) -> str:
-    """Return what to do about a segment without a memory: another board, or one with more SDRAM if the model has addresses for it."""
+    """Return what to do about a segment without memory: another board, or more SDRAM if the model has addresses for it."""
     boards = "`bfsim boards NAME` lists the memories of a board"
     l2 = sum(each.nbytes for each in regions if each.memory == "L2")
     after_sdram = min((each.start for each in regions if each.start), default=0)
@@ -80,7 +80,7 @@ def _advice(segment: Segment, regions: Sequence[Region]) -> str:
 
 
 def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: str, place: LdfLine) -> None:
-    """Check that the memory under a segment is shared, or belongs to the core that is to use it."""
+    """Check that the memory under a segment is shared, or belongs to the core that uses it."""
     if region.owner not in ("shared", script.core_of_processor.get(user)):
         raise LinkError(
             f"{place}: segment '{segment.name}' lies in {region.name}, which only core "

@@ -26,15 +26,15 @@ def parse_ldf(
 ) -> LinkerScript:
     """Read the LDF at `path`; raise LinkError with file, line, column, the source line and a caret.
 
-    `defines` are macros beside those that VisualDSP++ predefines, which they can replace; `include_dirs` are
-    searched for what is not beside the file that includes it; `chip` counts where the LDF has no ARCHITECTURE.
+    `defines` are macros besides those that VisualDSP++ predefines, which they can replace; `include_dirs` are
+    searched for files that are not beside the including one; `chip` counts if the LDF has no ARCHITECTURE.
     """
     return _script(preprocess(path, defines or {}, include_dirs, chip))
 
 
 @lru_cache(maxsize=8)
 def _script(source: Source) -> LinkerScript:
-    """Read a preprocessed LDF; many runs of a process have the same one, and many starts."""
+    """Read a preprocessed LDF; many runs of a process, and many starts, have the same one."""
     return kept_script(source, lambda: _made(source))
 
 

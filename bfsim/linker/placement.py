@@ -53,7 +53,7 @@ def link(
     *,
     chip: str = "ADSP-BF561",
 ) -> LinkMap:
-    """Place `symbols` by `script` into the memories `regions` of a board with a `chip`; LinkError if one has no place."""
+    """Place `symbols` by `script` in the memories `regions` of a board with a `chip`; raise LinkError if one has no place."""
     if not script.chip:
         script = replace(script, chip=chip)  # an LDF without ARCHITECTURE is for any chip
     check_chip(script, chip)
@@ -77,7 +77,7 @@ def link(
 
 
 class _Linker:
-    """One link: the segments as they fill, the symbols that have a place, and which sections had no room for which symbol."""
+    """One link: the segments as they fill, the symbols that have a place, and the sections that had no room for a symbol."""
 
     def __init__(self, script: LinkerScript, symbols: Sequence[Symbol]) -> None:
         self._script = script
@@ -128,7 +128,7 @@ class _Linker:
         return [self._symbols[number] for number in found]
 
     def link_map(self) -> LinkMap:
-        """Return what was placed, after the reserves that expand have got what is free."""
+        """Return what was placed, after the reserves that expand have taken what is free."""
         placements = list(self.placed.values())
         reserves = expanded(self._script, self._reserves, placements, self.fillings)
         reserved = {(r.processor, r.name): r.start for r in reserves}
@@ -139,7 +139,7 @@ class _Linker:
         return LinkMap(placements, usages, reserves, values)
 
     def _takes(self, output: OutputSection, statement: InputSections, symbol: Symbol) -> bool:
-        """Say whether a statement of `output` takes a symbol that is not pinned elsewhere."""
+        """Return whether a statement of `output` takes a symbol that is not pinned elsewhere."""
         return statement.takes(symbol) and not any(
             pinned is not output and (pin.is_exclusive or pinned not in self._filled) and pin.takes(symbol)
             for block, pinned, pin in self._pins
@@ -206,7 +206,7 @@ class _Linker:
         )
 
     def _of_other_files(self, symbol: Symbol) -> str:
-        """Return the end of an error: the first statement that names the symbol's section, of other files; or nothing.
+        """Return the end of an error: the first statement that takes the symbol's section of other files; '' if none does.
 
         The wizard of VisualDSP++ writes such LDFs for a project with sub-projects, whose output are the libraries
         sml2.dlb and sml3.dlb.
@@ -258,7 +258,7 @@ def _pins(script: LinkerScript) -> list[tuple[Block, OutputSection, InputSection
 
 
 def _fillings(script: LinkerScript) -> dict[str, Filling]:
-    """Return a filling for each segment; those of several processors for the same memory have one in common."""
+    """Return a filling for each segment; segments of several processors for the same memory share one."""
     reserves: dict[tuple[int, int], list[FixedReserve]] = {}
     for reserved in script.reserves:
         if segment := script.segment_of(reserved):

@@ -20,24 +20,24 @@ SILICON_REVISION = {
 ANY_REVISION = "0xffff"  # the default LDF of the BF533 takes it for all revisions
 
 ARCHITECTURE = re.compile(r"\bARCHITECTURE\s*\(\s*([\w-]+)\s*\)")
-# ADSP-BF592-A is a chip of its own; behind other names stand package and temperature, as in ADSP-BF561-SKBCZ.
+# ADSP-BF592-A is a chip of its own; other names are followed by package and temperature, as in ADSP-BF561-SKBCZ.
 _BLACKFIN = re.compile(r"ADSP-(BF[5-7]\d\d\w*)((?:-\w+)*)", re.IGNORECASE)
 
 
 def chip_named(name: str) -> str:
-    """Return the chip that ARCHITECTURE names, without its package; nothing if it is no Blackfin."""
+    """Return the chip that ARCHITECTURE names, without its package; '' if it is not a Blackfin."""
     blackfin = _BLACKFIN.fullmatch(name)
     return f"ADSP-{blackfin[1].upper()}" if blackfin else ""
 
 
 def chip_in(text: str) -> str:
-    """Return the chip for which the text of an LDF is; nothing if it says none, or one that is no Blackfin."""
+    """Return the chip that the text of an LDF is for; '' if it names none, or one that is not a Blackfin."""
     found = ARCHITECTURE.search(text)
     return chip_named(found[1]) if found else ""
 
 
 def macros_for(chip: str) -> dict[str, str]:
-    """Return the macros that are defined before an LDF is read; without a chip those that all have."""
+    """Return the macros that are defined before an LDF is read; without a chip, those that all chips have."""
     macros = {
         "__VISUALDSPVERSION__": VERSION,
         "__VERSIONNUM__": VERSION,

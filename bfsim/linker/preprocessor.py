@@ -22,10 +22,10 @@ _DEFINE = re.compile(
 _NAME = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*")
 _INCLUDED = re.compile(r'\s*(?:"(?P<beside>[^"\n]+)"|<(?P<listed>[^>\n]+)>)\s*')
 _GOES_ON = re.compile(r"//[^\n]*\\[ \t\r]*\n(?!\s*?(?://|$))", re.MULTILINE)
-"""A comment that takes the next line into it, as C has it, where that line says something."""
+"""A comment that includes the next line, as in C, if that line says something."""
 _INCLUDE_COMMAND = re.compile(r'INCLUDE\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
 Text = tuple[str, File, int, bool]
-"""A piece of expanded text, the file and the offset where it was written, whether it was written just so."""
+"""A piece of expanded text, the file and the offset where it was written, and whether it is a copy of what was written."""
 
 _CONDITIONS = ("if", "ifdef", "ifndef", "elif", "else", "endif")
 _NEEDED = {"define": "a macro", "undef": "the name of a macro", "include": 'a file in "" or <>'}
@@ -38,7 +38,7 @@ _MOST_INCLUSIONS = 500
 
 @dataclass(slots=True)
 class _Condition:
-    """An #if: is the text around it read, is its present branch taken, was one of its branches taken before."""
+    """An #if: whether the text around it is read, its current branch is taken, or a branch was taken before."""
 
     offset: int
     is_read: bool
@@ -59,7 +59,7 @@ class _Preprocessor:
     def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[Text]:
         """Yield the expanded text of a file, which the files `active` include."""
         written, conditions, position = file.written, list[_Condition](), 0
-        copied = 0  # up to where the text is yielded, or left out
+        copied = 0  # the text up to here is yielded or left out
         while (match := TOKEN.search(written, position)) is not None:
             start, position, kind = match.start(), match.end(), match.lastgroup
             _require_end(file, match)
@@ -181,9 +181,9 @@ class _Preprocessor:
 
 
 def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path], chip: str) -> Source:
-    """Read an LDF with `macros` beside the predefined ones, expand macros, blank comments; LinkError if it cannot.
+    """Read an LDF with `macros` besides the predefined ones, expand macros, blank comments; raise LinkError if it cannot.
 
-    The macros of a chip are those of its ARCHITECTURE, in whichever file that stands; without one, those of `chip`.
+    The macros of a chip are those of its ARCHITECTURE, whichever file has it; without one, those of `chip`.
     """
     try:
         file = File(path, _read(path))
@@ -216,9 +216,9 @@ def _expanded(file: File, defined: Mapping[str, str], include_dirs: Sequence[Pat
 
 
 def _read(path: Path) -> str:
-    """Return the text of a file, in UTF-16 where it begins with that mark, as editors of Windows write it.
+    """Return the text of a file, read as UTF-16 if it begins with that mark, as editors on Windows write it.
 
-    A carriage return that stands alone ends a line, too, as once on the Macintosh and where a line feed was lost.
+    A lone carriage return ends a line, too, as on old Macintoshes and where a line feed was lost.
     """
     content = read_bounded(path)
     is_utf_16 = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
@@ -227,7 +227,7 @@ def _read(path: Path) -> str:
 
 
 def _require_end(file: File, token: re.Match[str]) -> None:
-    """Raise LinkError for a comment that does not end where a person sees it end."""
+    """Raise LinkError for a comment that does not end where it seems to."""
     start = token.start()
     if token.lastgroup == "unclosed":
         raise file.error_at(start, "comment must end with */ before the file does")

@@ -1,4 +1,4 @@
-"""The reserves of a link: where each RESERVE lies, and what those that expand get in the end."""
+"""The reserves of a link: where each RESERVE lies, and what those that expand finally get."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.linker.script import LinkerScript, OutputSection, Reserve
 
 @dataclass(frozen=True, slots=True)
 class Reserved:
-    """A RESERVE of an output section as it was met: `nbytes` from `start`."""
+    """A RESERVE of an output section as it was placed at first: `nbytes` from `start`."""
 
     reserve: Reserve
     processor: str | None
@@ -33,10 +33,10 @@ def expanded(
     placements: Sequence[Placement],
     fillings: Mapping[str, Filling],
 ) -> list[PlacedReserve]:
-    """Return all reserves, after those that expand have taken the largest stretch that is free in their segment.
+    """Return all reserves, after those that expand have taken the largest free stretch of their segment.
 
     What a RESERVE and the RESERVE_EXPAND of its name hold counts as free for them: together they become one stretch.
-    That is how the default LDFs use them [assumed]: heap and stack get all that the data leave.
+    The default LDFs use them so [assumed]: heap and stack get all that the data leave.
     """
     held = list(reserves)
     for expanding in (each for each in reserves if each.reserve.expands):

@@ -46,7 +46,7 @@ class Segment(Statement):
         return self.start + self.nbytes - 1
 
     def overlaps(self, other: Segment) -> bool:
-        """Say whether a byte lies in both."""
+        """Return whether a byte lies in both."""
         return self.start <= other.end and other.start <= self.end
 
 
@@ -64,18 +64,18 @@ class Input:
     sections: frozenset[str]
 
     def takes_file(self, symbol: Symbol) -> bool:
-        """Say whether `symbol` is from one of the files. A .doj is a command line object, a .dlb is not."""
+        """Return whether `symbol` is from one of the files. A .doj is a command line object, a .dlb is not."""
         is_object = not symbol.object_file.endswith(".dlb")
         return symbol.object_file in self.files or (is_object and COMMAND_LINE_OBJECTS in self.files)
 
     def takes_section(self, symbol: Symbol) -> bool:
-        """Say whether `symbol` lies in one of the sections."""
+        """Return whether `symbol` lies in one of the sections."""
         return symbol.section in self.sections or any(
             fnmatchcase(symbol.section, section) for section in self.sections if {*section} & {*"*?"}
         )
 
     def takes(self, symbol: Symbol) -> bool:
-        """Say whether `symbol` lies in one of the sections of one of the files."""
+        """Return whether `symbol` lies in one of the sections of one of the files."""
         return self.takes_file(symbol) and self.takes_section(symbol)
 
 
@@ -83,7 +83,7 @@ class Input:
 class InputSections(Statement):
     """An INPUT_SECTIONS statement; `align` is the INPUT_SECTION_ALIGN, in bytes, in force there.
 
-    What one `is_pinned` takes goes to no output section before it, and to no other at all if it `is_exclusive`.
+    What a pinned one takes goes to no output section before it, and to no other at all if it `is_exclusive`.
     """
 
     inputs: tuple[Input, ...]
@@ -92,7 +92,7 @@ class InputSections(Statement):
     is_exclusive: bool = False
 
     def takes(self, symbol: Symbol) -> bool:
-        """Say whether `symbol` is one of the statement's inputs."""
+        """Return whether `symbol` is one of the statement's inputs."""
         return any(source.takes(symbol) for source in self.inputs)
 
 
@@ -123,7 +123,7 @@ class FixedReserve(Statement):
     processor: str | None
 
     def is_same_as(self, other: FixedReserve) -> bool:
-        """Say whether both reserve the same bytes, each for its own processor."""
+        """Return whether both reserve the same bytes, each for its own processor."""
         return (self.start, self.nbytes) == (other.start, other.nbytes) and self.processor != other.processor
 
 
@@ -187,7 +187,7 @@ class Block(Statement):
         }
 
     def serves(self, symbol: Symbol) -> bool:
-        """Say whether the block places symbols of this one's processor."""
+        """Return whether the block places symbols of this one's processor."""
         return self.is_shared if symbol.processor is None else symbol.processor in self.processors
 
     def _assignments(self) -> Iterator[Assignment]:
@@ -230,25 +230,25 @@ class LinkerScript:
         return sorted(self.segments, key=lambda each: each.start)
 
     def segment_of(self, reserved: FixedReserve) -> Segment | None:
-        """Return the segment that a reserve starts in; where several processors have that memory, one of theirs."""
+        """Return the segment that a reserve starts in; if several processors have that memory, one of theirs."""
         before = bisect(self._by_address, reserved.start, key=lambda each: each.start)
         segment = self._by_address[before - 1] if before else None
         return segment if segment and reserved.start <= segment.end else None
 
     @property
     def is_dual_core(self) -> bool:
-        """Say whether the LDF is for a chip with two cores; without an ARCHITECTURE it may be."""
+        """Whether the LDF is for a chip with two cores; without an ARCHITECTURE it may be."""
         return not self.chip or self.chip in DUAL_CORE_CHIPS
 
     @cached_property
     def core_of_processor(self) -> Mapping[str, str]:
-        """The core, "A" or "B", that each processor of the LDF is: by name, or the only one of a single core."""
+        """The core, "A" or "B", of each processor of the LDF: by name, or "A" if there is only one core."""
         if self.is_dual_core:
             return CORE_OF_PROCESSOR
         return {name: "A" for block in self.blocks for name in block.processors}
 
     def with_cores_named(self) -> LinkerScript:
-        """Return the LDF with the name "p0" for the one processor of a single core, which may have any."""
+        """Return the LDF with the name "p0" for the processor of a chip with a single core, whatever its name."""
         names = {name for block in self.blocks for name in block.processors}
         if self.is_dual_core or len(names) != 1:
             return self

@@ -30,7 +30,7 @@ class LdfLine:
 
 
 def _visible(character: str) -> str:
-    """Return a character of a source line as one place of a terminal: a file that is no LDF may have any."""
+    """Return a character of a source line as one place of a terminal: a file that is not an LDF may have any."""
     if character.isprintable():
         return character
     return " " if character == "\t" else "\N{REPLACEMENT CHARACTER}"
@@ -67,7 +67,7 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Fragment:
-    """A stretch of expanded text and where it was written; not `is_copy` where a macro was expanded."""
+    """A stretch of expanded text and where it was written; it is no copy (`is_copy`) if a macro was expanded."""
 
     expanded_at: int
     file: File

@@ -1,4 +1,4 @@
-"""The symbols that an LDF assigns: computed where they stand if they can be, else when everything has its place."""
+"""The symbols that an LDF assigns: computed where they stand if possible, else when everything has its place."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Values:
         self._waiting.append((processor, assignment, location))
 
     def location_of(self, processor: str | None, assignment: Assignment, location: int) -> int:
-        """Return where an assignment to "." moves the location counter; LinkError if that is not known yet."""
+        """Return where an assignment to "." moves the location counter; raise LinkError if that is not known yet."""
         try:
             return self._compute(processor, assignment.expression, location)
         except _NotYetError:
@@ -57,7 +57,7 @@ class Values:
         extents: Mapping[Key, tuple[int, int]],
         reserved: Mapping[Key, int],
     ) -> Mapping[Key, int]:
-        """Return all values, by the addresses of symbols, start and size of output sections, and reserves."""
+        """Return all values, given the addresses of symbols, start and size of output sections, and reserves."""
         self.is_settled, self.addresses, self.extents = True, addresses, extents
         self.known |= reserved
         for processor, assignment, location in self._waiting:
