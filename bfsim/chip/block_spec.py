@@ -8,7 +8,7 @@ from fractions import Fraction
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class L1Spec:
-    """L1 data memory: `subbank_bytes` that take one access a cycle. `conflict_cclk`: what the second one waits."""
+    """L1 data memory: `subbank_bytes` that take one access a cycle. `conflict_cclk`: how long the second one waits."""
 
     subbank_bytes: int
     conflict_cclk: int
@@ -18,7 +18,7 @@ class L1Spec:
 class CacheSpec:
     """A cache in L1: what it takes of each memory that can be cache, and how it is divided.
 
-    `invalidate_cclk`: what the loop that invalidates lines of the data cache takes for each.
+    `invalidate_cclk`: cycles for each line of the loop that invalidates lines of the data cache.
     """
 
     line_bytes: int
@@ -42,7 +42,7 @@ class L2Spec:
 class ExternalSpec:
     """A core's way to SDRAM through the EBIU.
 
-    `core_sync_sclk`: what a read takes beside the SDRAM's own cycles, to the bus and back; a store is posted
+    `core_sync_sclk`: what a read takes besides the SDRAM's own cycles, to the bus and back; a store is posted
     into a buffer of `store_buffer` words.
     """
 
@@ -52,10 +52,10 @@ class ExternalSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DmaSpec:
-    """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element, beside its memory.
+    """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor takes `descriptor_sclk` an element, besides its memory.
 
-    `word_bytes`: width of their buses, and the longest word; `mdma_streams`: memory DMA, of all controllers together.
-    `read_word_sclk`: memory DMA, cycles per word from SDRAM on an open page (to SDRAM it is one);
+    `word_bytes`: width of their buses, and the longest word; `mdma_streams`: streams of memory DMA, of all controllers
+    together. `read_word_sclk`: memory DMA, cycles per word from SDRAM on an open page (to SDRAM it is one);
     `on_chip_word_sclk`: between L1 and L2; `imdma_word_cclk`: the internal DMA, 0 without one.
     """
 
@@ -74,8 +74,8 @@ class DmaSpec:
 class EventSpec:
     """Interrupts, registers and locks. Entry: from the request to the handler's first line; exit: the way back.
 
-    `mmr_*_cclk`: an access to a register of a device. `testset_cclk`: TESTSET without its memory; `spin_cclk`: a turn
-    of a spin loop without its TESTSET.
+    `mmr_*_cclk`: an access to a register of a device. `testset_cclk`: TESTSET without its memory; `spin_cclk`: an
+    iteration of a spin loop without its TESTSET.
     """
 
     interrupt_entry_cclk: int

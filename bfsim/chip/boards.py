@@ -106,7 +106,7 @@ CM_BF561_500_100 = new_board(
 
 BF561_EZKIT = new_board(
     "bf561-ezkit",
-    "ADSP-BF561 EZ-KIT Lite",  # [assumed] with two cameras in the place of its video decoder and encoder
+    "ADSP-BF561 EZ-KIT Lite",  # [assumed] with two cameras in place of its video decoder and encoder
     BF561,
     Pll(clkin_hz=EZKIT_CLKIN_HZ, vco_multiplier=20, csel=1, ssel=5),  # u-boot's bf561-ezkit.h
     BF561_EZKIT_64_MB,

@@ -33,7 +33,7 @@ RANGES: dict[str, tuple[int | Fraction, int | Fraction]] = {
     "deb_period_transfers": (0, 15),  # fields of 4 and 5 bits of DMA_TC_PER
     "mdma_period_transfers": (0, 31),
 }
-"""Least and most of a field by its path, where that is not as `SUFFIXES` has it."""
+"""Least and greatest value of a field by its path, if they are not those of `SUFFIXES`."""
 SUFFIXES: dict[str, tuple[int | Fraction, int | Fraction]] = {
     "_cclk": (0, 100_000),
     "_sclk": (0, 100_000),
@@ -47,14 +47,14 @@ SUFFIXES: dict[str, tuple[int | Fraction, int | Fraction]] = {
     "cache_nbytes": (0, 1 << 31),
     "start": (0, 0xFFFF_FFFF),
 }
-"""The same by the end of a field's name, the first that fits. [assumed] far beyond any part, and within the model's integers."""
+"""The same by the end of a field's name, the first that fits. [assumed] Far beyond any part, within the model's integers."""
 OTHERS = (1, 1 << 31)
 LONGEST_RUN_S = 3_600
 LATEST_TICK = 1 << 62
 FINEST = 1_000_000
-"""The greatest denominator of a number that is no rate in Hz."""
+"""The greatest denominator of a number that is not a rate in Hz."""
 MOST_SUBBANKS = 64
-"""As many sub-banks of L1 the model has."""
+"""The most sub-banks of L1 that the model has."""
 MOST_OUTSIDE_L1 = 1 << 28
 """Bytes of SDRAM and L2 together that the model has addresses for."""
 POWERS_OF_TWO = (

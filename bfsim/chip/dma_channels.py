@@ -26,9 +26,9 @@ class DmaController:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChannelSpec:
-    """One channel. `serves`: its peripheral, or memory where it is half of a stream.
+    """One channel. `serves`: its peripheral, or memory if it is half of a stream.
 
-    `widest_bytes`: its widest word. `direction`: EITHER where the peripheral decides (PPI_CONTROL, SPI_CTL).
+    `widest_bytes`: its widest word. `direction`: EITHER if the peripheral decides (PPI_CONTROL, SPI_CTL).
     `peripheral_map`: what PERIPHERAL_MAP reads after reset.
     """
 
@@ -94,7 +94,7 @@ def _peripheral_channels(
 def _memory_channels(
     controller: DmaController, prefix: str, lacks: frozenset[str] = frozenset()
 ) -> tuple[ChannelSpec, ...]:
-    """Two streams; stream 0 goes first, and each is a destination and a source channel."""
+    """Return the channels of two streams; stream 0 goes first, and each is a destination and a source channel."""
     halves = (("D", Direction.TO_MEMORY), ("S", Direction.FROM_MEMORY))
     return tuple(
         ChannelSpec(

@@ -1,8 +1,8 @@
-"""Registers of a DMA channel of the Blackfin: how wide they are, what their bits say, and how a descriptor fills them.
+"""Registers of a DMA channel of the Blackfin: their widths, the meaning of their bits, and how a descriptor fills them.
 
 Names are the manual's. Which channels a chip has is in `dma_channels`.
 Sources: Linux arch/blackfin/mach-bf561/include/mach/defBF561.h for the bits; GNU sim/bfin/dv-bfin_dma.c
-for the order of a descriptor's elements and the NDSIZE that each FLOW allows; the rest is said where it stands.
+for the order of a descriptor's elements and the NDSIZE that each FLOW allows; other sources are named where they apply.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ DESCRIPTOR_ELEMENTS = {
 
 
 class IrqStatus(IntFlag):
-    """Bits of IRQ_STATUS. That DMA_DONE needs CONFIG.DI_EN is [assumed], as in the HRM recalled."""
+    """Bits of IRQ_STATUS. That DMA_DONE needs CONFIG.DI_EN is [assumed], from the HRM as recalled."""
 
     DMA_DONE = 0x1  # a row or a work unit has asked for its interrupt; write 1 to clear
     DMA_ERR = 0x2  # the channel has stopped over an error; write 1 to clear

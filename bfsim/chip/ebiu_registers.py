@@ -1,4 +1,4 @@
-"""What the words mean that boot code writes to the SDRAM controller. Pure functions; fields: Blackfin header defBF561.h."""
+"""The meaning of boot code's words to the SDRAM controller. Pure functions; fields: Blackfin header defBF561.h."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Interrupts of the peripherals by chip: the number of each in the system interrupt controller, and its level.
 
-A source that both chips have is called the same on both. The events of the core itself are not here.
+A source that both chips have has the same name on both. The events of the core itself are not here.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ class Region:
         return self.memory if self.owner == "shared" else f"CORE{self.owner}_{self.memory}"
 
     def holds(self, address: int, nbytes: int) -> bool:
-        """Say whether all `nbytes` from `address` lie in this region."""
+        """Return whether all `nbytes` from `address` lie in this region."""
         return self.start <= address and address + nbytes <= self.start + self.nbytes
 
 
@@ -93,9 +93,9 @@ CM_BF561_REGIONS = bf561_regions(sdram_nbytes=32 * MIB)
 
 
 def regions_under(address: int, nbytes: int, regions: Sequence[Region]) -> tuple[Region, ...]:
-    """Return the memories under `nbytes` from `address`: one, or neighbours of one owner, as SRAM and cache are.
+    """Return the memories under `nbytes` from `address`: one, or neighbours of one owner, such as SRAM and cache.
 
-    Raises ConfigError as `region_of`.
+    Raises ConfigError as `region_of` does.
     """
     first = next((region for region in regions if region.holds(address, 1)), None)
     found = [first] if first else []

@@ -1,4 +1,4 @@
-"""What is to be known of the PPI's registers: the bits of STATUS and the fastest clock."""
+"""Facts about the PPI's registers: the bits of STATUS and the fastest clock."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from fractions import Fraction
 class SensorMode:
     """One picture size of a sensor, in PPI_CLK cycles and in lines; two cycles carry one UYVY pixel.
 
-    A line is `line_clocks` cycles, its pixels first and its blanking behind them (HREF, the line sync, rises
+    A line is `line_clocks` cycles, its pixels first and then its blanking (HREF, the line sync, rises
     with the first pixel). A frame is `frame_lines` lines: `lines_before` blank ones from the frame sync on,
     the picture, and the blank rest.
     """
@@ -74,11 +74,11 @@ class SensorSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraSpec:
-    """What is a camera's own, beside the sensor in it: its oscillator, and how it settles after new settings.
+    """What a camera has besides its sensor: its oscillator, and how it settles after new settings.
 
     The oscillator runs `offset_ppm` millionths fast (below 0: slow), and its first frame sync comes
-    `phase_frames` (0 to 1) of a frame after the board's start. After a change of its settings the next
-    `settling_frames` pictures are off: for each frame left to go they are `y_step_256ths` / 256 too bright, and
+    `phase_frames` (0 to 1) of a frame after the board's start. After a change of its settings, the next
+    `settling_frames` pictures are off: for each frame still to go, they are `y_step_256ths` / 256 too bright, and
     their U and V differ by `u_step_levels` and `v_step_levels`.
     """
 

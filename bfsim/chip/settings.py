@@ -1,4 +1,4 @@
-"""A board with other numbers, as `--set PATH=VALUE` asks for them, and what follows from them."""
+"""A board with other numbers, as set by `--set PATH=VALUE`, and what follows from them."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ ALSO = {"cl": "nCL", "trcd": "nRCD", "trp": "nRP", "tras": "nRAS", "twr": "nWR"}
 
 
 def with_settings(board: BoardSpec, settings: Mapping[str, object]) -> tuple[BoardSpec, tuple[str, ...]]:
-    """Return a board with other numbers by their paths, and the settings as PATH=VALUE, sorted: the same ones in any words.
+    """Return a board with other numbers by their paths, and the settings as PATH=VALUE, sorted and in one spelling.
 
-    Values are numbers, or text as `--set` has it. What follows is set along: the clocks from the PLL, or the PLL from the
-    clocks, as the one setting that makes them or none; the memory map from the SDRAM's size. Raises ConfigError, with the
+    Values are numbers, or text as for `--set`. What follows from them is set, too: the clocks from the PLL, or the PLL
+    from the clocks, if a setting of it makes them; the memory map from the SDRAM's size. Raises ConfigError, with the
     setting, for a path that does not exist and a value that no board can have.
     """
     values: dict[str, int | Fraction | bool] = {}
@@ -54,7 +54,7 @@ def _written(value: float | Fraction) -> str:
 
 
 def _followed(board: BoardSpec, parts: set[str]) -> BoardSpec:
-    """Return a board whose `parts` were set with what follows from them."""
+    """Return a board whose `parts` were set, with what follows from them."""
     if {"pll", "clocks"} <= parts:
         raise ConfigError("pll and clocks must not both be set: either follows from the other")
     if "pll" in parts and board.pll:
@@ -68,7 +68,7 @@ def _followed(board: BoardSpec, parts: set[str]) -> BoardSpec:
 
 
 def _pll_of(board: BoardSpec, clocks: Clocks) -> Pll | None:
-    """Return the setting that makes these clocks of the board's crystal, with the slowest VCO, or none."""
+    """Return the setting that makes these clocks of the board's crystal, with the slowest VCO, or None."""
     assert board.pll
     for csel in (1, 2, 4, 8):
         multiplier = clocks.cclk_hz * csel / board.pll.clkin_hz

@@ -21,9 +21,10 @@ from bfsim.errors import ConfigError
 class SdramSpec:
     """An SDRAM part as the board's boot code sets its controller up. `word_bytes`: width of the data bus.
 
-    In SCLK cycles, `nCL` pass from a read to its data (CAS latency), `nRCD` from the activation of a row to its first access, `nRP` from
-    a precharge to the next activation, `nRAS` at least from an activation to the precharge, `nWR` from the last word written to it.
-    `turn_round_sclk` pass between a read and a write behind it. `rows_refreshed` rows are refreshed every `refresh_ms`, one at a time.
+    In SCLK cycles, `nCL` pass from a read to its data (CAS latency), `nRCD` from the activation of a row to its first
+    access, `nRP` from a precharge to the next activation, `nRAS` at least from an activation to the precharge, `nWR`
+    from the last word written to the precharge. `turn_round_sclk` pass between a read and a following write.
+    `rows_refreshed` rows are refreshed every `refresh_ms`, one at a time.
     """
 
     part: str
@@ -61,13 +62,13 @@ class SdramSpec:
         return self.nRP + self.nRAS + self.nRP
 
     def refresh_interval_sclk(self, sclk_hz: Fraction) -> int:
-        """Cycles from one refresh to the next: EBIU_SDRRC of u-boot's formula, plus the cycles it leaves out."""
+        """Return the cycles from one refresh to the next: EBIU_SDRRC of u-boot's formula, plus the cycles it leaves out."""
         return int(sclk_hz * self.refresh_ms / (1000 * self.rows_refreshed))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pll:
-    """How PLL_CTL and PLL_DIV are set: VCO = CLKIN x `vco_multiplier`, CCLK = VCO / `csel`, SCLK = VCO / `ssel`.
+    """Settings of PLL_CTL and PLL_DIV: VCO = CLKIN x `vco_multiplier`, CCLK = VCO / `csel`, SCLK = VCO / `ssel`.
 
     Raises ConfigError for what the fields of the registers cannot hold.
     """
@@ -88,13 +89,13 @@ class Pll:
 
     @property
     def vco_hz(self) -> Fraction:
-        """What both clocks are divided from."""
+        """The rate that both clocks are divided from."""
         return self.clkin_hz * self.vco_multiplier
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChipSpec:
-    """A chip: its cores, its memories, its ratings, and the timing of its own blocks. Without L2 `l2` is None."""
+    """A chip: its cores, its memories, its ratings, and the timing of its own blocks. `l2` is None without L2."""
 
     name: str
     cores: tuple[str, ...]
@@ -130,10 +131,10 @@ class ChipSpec:
 class BoardSpec:
     """A board: the chip with the board's memories, how it is clocked, its SDRAM and its cameras.
 
-    `pll` is None where no setting of it makes these `clocks`. `cameras`: what PPI0, PPI1 and so on look at.
-    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period_transfers` and
-    `mdma_period_transfers`: fields of DMA_TC_PER, transfers in one direction, and of one MDMA stream, before the other
-    has its turn; 0 switches the rule off.
+    `pll` is None if no setting of it makes these `clocks`. `cameras`: those at PPI0, PPI1 and so on. `dma_over_core`:
+    CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period_transfers` and `mdma_period_transfers`: fields
+    of DMA_TC_PER, how many transfers in one direction, and of one MDMA stream, come before the other has its turn; 0
+    switches the rule off.
     """
 
     name: str

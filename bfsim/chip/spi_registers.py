@@ -1,4 +1,4 @@
-"""What is to be known of the SPI's registers: the rate that BAUD sets, and how many a transfer by DMA needs."""
+"""Facts about the SPI's registers: the rate that BAUD sets, and how many of them a transfer by DMA needs."""
 
 from __future__ import annotations
 

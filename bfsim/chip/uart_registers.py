@@ -1,4 +1,4 @@
-"""What is to be known of the UART's registers: the rate that the divisor latch sets, and how many a transfer by DMA needs."""
+"""Facts about the UART's registers: the rate that the divisor latch sets, and how many of them a transfer by DMA needs."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ TRANSFER_WRITES = (
     5  # [ours] UART_IER (ETBEI or ERBFI), and START_ADDR, X_COUNT, X_MODIFY and CONFIG of the channel
 )
 
-# The stop bit is sampled in its middle, by a clock that finds the start bit to one sample. So far two ends may be apart.
+# The stop bit is sampled in its middle, by a clock that finds the start bit to one sample: two ends may differ by so much.
 MOST_DRIFT = (Fraction(1, 2) - Fraction(1, SAMPLES)) / (FRAME_BITS - Fraction(1, 2))
 
 
 @dataclass(frozen=True, slots=True)
 class UartRate:
-    """How fast the UART sends: a bit takes 16 · `divisor` SCLK. Raises ConfigError for a divisor that the latch does not have."""
+    """The UART's rate: a bit takes 16 · `divisor` SCLK. Raises ConfigError for a divisor that does not fit the latch."""
 
     divisor: int
 
@@ -36,7 +36,7 @@ class UartRate:
 
 
 def rate_for(baud: Fraction, sclk_hz: Fraction) -> UartRate:
-    """Return the rate that is nearest to that of the other end. Raises ConfigError if its bits would not be understood."""
+    """Return the rate that is nearest to the other end's. Raises ConfigError if its bits would not be understood."""
     ideal = sclk_hz / (SAMPLES * baud) if baud > 0 else Fraction(0)
     divisor = min(max(1, round(ideal)), DIVISOR_MOST)
     nearest = UartRate(divisor).baud(sclk_hz)
