@@ -26,7 +26,7 @@ class Played(NamedTuple):
 
 
 Calls = Mapping[Kernel, Sequence[Played]]
-"""Of each kernel the calls in the order of its sample."""
+"""The calls of each kernel, in the order of its sample."""
 
 
 def simulated(sampler: Sampler, code: ObjectCode, toolchain: Toolchain) -> Calls:

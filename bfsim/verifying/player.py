@@ -1,8 +1,8 @@
 """The C program that plays recorded calls of kernels, counts their cycles and sums up what they leave.
 
-Its input is a row of words: for each call the number of the kernel, then its arguments; an array is its length in bytes, then its
-bytes up to the next whole word, any other argument is a word. END stands behind the last call. A call gets fresh copies of its
-arrays. Its output is a line for each call: cycles and checksum.
+Its input is a row of words: for each call the number of the kernel, then its arguments; an array is its length in
+bytes, then its bytes up to the next whole word, any other argument is a word. END follows the last call. A call gets
+fresh copies of its arrays. Its output is a line for each call: cycles and checksum.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from bfsim.verifying.sample import Argument
 
 PLAYER, PLAYER_OPTIONS = "player.c", ("-std=gnu99", "-w", "-O2")
 ENTRIES = "entries.c"
-KERNELS = "_kernels"  # no kernel is called so in C
+KERNELS = "_kernels"  # no kernel has this name in C
 FACTOR = 16777619  # of the checksum: the sum of all words, each times a power of it
 END = 0xFFFFFFFF
 M32 = 0xFFFFFFFF
@@ -33,7 +33,7 @@ def write_player(
     entries: str,
     calls: Iterable[tuple[int, tuple[Argument, ...]]],
 ) -> list[str]:
-    """Write what plays `kernels`, and their `calls`, by numbers; return the files to be compiled, of which one is `entries`."""
+    """Write the player of `kernels`, and their `calls` by kernel number; return the files to compile, `entries` among them."""
     (folder / PLAYER).write_text(player(kernels), encoding="utf-8")
     (folder / ENTRIES).write_text(entries, encoding="utf-8")
     with (folder / "calls.bin").open("wb") as stream:
@@ -42,9 +42,9 @@ def write_player(
 
 
 def entries_of(names: Sequence[str], *, declared: bool = True) -> str:
-    """Return the C of a table of kernels by number, in a file of its own so that a kernel may be called as anything in the player is.
+    """Return the C of a table of kernels by number, in its own file: a kernel may share a name with anything in the player.
 
-    `names`: what they are called in C. `declared`: whether they must be declared here.
+    `names`: their names in C. `declared`: whether they must be declared here.
     """
     lines = [f"extern void {each}(void);\n" for each in names if declared]
     addresses = ", ".join(f"(void *){each}" for each in names)
@@ -66,7 +66,7 @@ def player(kernels: Sequence[Function]) -> str:
 
 
 def _kernel(number: int, function: Function) -> str:
-    """What plays one kernel: `timed_N` makes the call between two readings of the clock, `play_N` has the arguments."""
+    """Return what plays a kernel: `timed_N` makes the call between two readings of the clock, `play_N` has the arguments."""
     measured = function.measured
     types, names, take, leave = [], [], [], []
     for place, each in enumerate(function.parameters):
@@ -129,7 +129,7 @@ def played(calls: Iterable[tuple[int, tuple[Argument, ...]]]) -> Iterator[bytes]
 
 
 def checksum(arguments: Sequence[Argument], result: float | None) -> int:
-    """Return the program's checksum of a call: its arrays as they are afterwards, then its result."""
+    """Return the program's checksum of a call: of its arrays as it leaves them, then of its result."""
     octets = b"".join(_padded(each) for each in arguments if isinstance(each, np.ndarray))
     words = np.frombuffer(octets + _word(result or 0), "<u4")
     powers = np.cumprod(np.r_[1, np.full(len(words) - 1, FACTOR)].astype(np.uint32), dtype=np.uint32)

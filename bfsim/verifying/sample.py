@@ -1,7 +1,7 @@
 """Arguments of real calls: a sample of those that a run makes of each kernel.
 
-Of each kernel the calls number 0, s, 2s, ... of the whole run are kept, where s is the least power of two that leaves at most
-as many as are wanted. So a sample is spread evenly over the run, and is the same whenever the run is.
+For each kernel, the calls number 0, s, 2s, ... of the whole run are kept, where s is the least power of two that leaves
+at most as many as are wanted. So a sample is spread evenly over the run, and the same run gives the same sample.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Sampler:
     of: dict[Kernel, Sample] = field(default_factory=dict)
 
     def see(self, kernel: Kernel, arguments: Sequence[Row | int]) -> None:
-        """Take note of a call. One of code for the Blackfin, as of `kernel_from`, has no estimate to be judged."""
+        """Note a call. Code for the Blackfin, as from `kernel_from`, has no estimate to judge."""
         if kernel.object_code is not None:
             return
         sample = self.of.setdefault(kernel, Sample())

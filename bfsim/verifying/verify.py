@@ -18,10 +18,10 @@ from bfsim.verifying.sample import Sample, Sampler
 def verify(
     sampler: Sampler, frames: int, profile: CompilerProfile, code: ObjectCode, toolchain: Toolchain | None
 ) -> Verification:
-    """Play the calls that `sampler` kept of a run of `frames`, by the kernels here and by their object code.
+    """Play the calls that `sampler` kept of a run of `frames` frames, by the kernels here and by their object code.
 
-    The code is played by its translation and, with a `toolchain` that has one, under the GNU simulator, whose cycles then count.
-    Raises ConfigError for what the compiler refuses.
+    The code is played by its translation and, if the `toolchain` has one, under the GNU simulator, whose cycles then
+    count. Raises ConfigError for what the compiler refuses.
     """
     ours = translated(sampler, code)
     judged = simulated(sampler, code, toolchain) if toolchain and toolchain.runner else None
@@ -31,7 +31,7 @@ def verify(
 def compared(
     sampler: Sampler, frames: int, profile: CompilerProfile, compiler: str, ours: Calls, judged: Calls | None
 ) -> Verification:
-    """Compare the calls of a sample as the kernels make them here with those of their code: translated, and under the simulator."""
+    """Compare the calls of a sample by the kernels here with those by their code: translated, and under the simulator."""
     found = [
         _compared(each, sampler.of[each], frames, profile, ours[each], judged[each] if judged else None)
         for each in sampler.of
