@@ -1,4 +1,4 @@
-"""A kernel's instructions beside its source lines: where its code is, how often it ran, what each costs and what bounds its loops."""
+"""A kernel's instructions beside its source lines: where they are, how often they ran, their costs, and the bounds of loops."""
 
 from bfsim.assembly.counting import Counting
 from bfsim.assembly.finding import KernelCode, find_code

@@ -1,4 +1,4 @@
-"""How often the instructions of a kernel ran in a run: each call of it, or of what may call it, is made once more by its object code."""
+"""How often a kernel's instructions ran: each call of it, or of a possible caller, is repeated by its object code."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from bfsim.machine.memories import Row
 
 @dataclass(slots=True)
 class _Caller:
-    """A kernel whose calls may come to the one that is counted. `calls`: bound to arrays, by the lengths of these."""
+    """A kernel whose calls may reach the one that is counted. `calls`: bound to arrays, by their lengths."""
 
     kernel: Kernel
     compiled: CompiledObject
@@ -53,13 +53,13 @@ class _Caller:
 
 @dataclass(slots=True)
 class Counting:
-    """Counts what the calls of a run do to the code of a kernel. A run is to call `see` before each call."""
+    """Counts what the calls of a run do in the code of a kernel. A run must call `see` before each call."""
 
     code: KernelCode
     _callers: dict[Kernel, _Caller | None] = field(default_factory=dict)
 
     def see(self, kernel: Kernel, arguments: Sequence[Row | int]) -> None:
-        """Take note of a call."""
+        """Note a call."""
         if kernel not in self._callers:
             self._callers[kernel] = self._caller(kernel)
         caller = self._callers[kernel]
@@ -67,7 +67,7 @@ class Counting:
             caller.play(arguments)
 
     def events(self) -> Tally[CountedEvent]:
-        """Return how often each block ran, each branch was taken and each counted way was gone, of the kernel and of what calls it."""
+        """Return how often each block ran, each branch and each counted edge was taken, in the kernel and its callers."""
         found: Tally[CountedEvent] = Tally()
         for each in self._callers.values():
             if each is not None:
@@ -75,7 +75,7 @@ class Counting:
         return found
 
     def _caller(self, kernel: Kernel) -> _Caller | None:
-        """Return None for a kernel that never comes to the one that is counted: most are not even translated."""
+        """Return a caller, or None for a kernel that never reaches the one that is counted: most are not even translated."""
         if self.code.kernel.function not in (kernel.function, *kernel.function.callees()):
             return None
         compiled = self.code.compiled_of(kernel)

@@ -22,12 +22,12 @@ from bfsim.loading.firmware import LoadedFirmware
 from bfsim.loading.kernels import entries_of, kernels_of, written_in_python
 
 AS_IT_IS = "as compiled"
-"""In place of a compiler's name, where nothing is known of it."""
+"""Instead of a compiler's name, if it is not known."""
 
 
 @dataclass(frozen=True)
 class KernelCode:
-    """The code of `kernel`. `loaded`: the code of all kernels that were compiled with it; None where it is a file of its own."""
+    """The code of `kernel`. `loaded`: the code of all kernels that were compiled with it; None if it is a file of its own."""
 
     kernel: Kernel
     compiler: str
@@ -42,7 +42,7 @@ class KernelCode:
         return found
 
     def compiled_of(self, kernel: Kernel) -> CompiledObject | None:
-        """Return the code of a kernel that may call this one, translated, or None if it is none of the kernels with this code."""
+        """Return the translated code of a kernel that may call this one, or None if it is not in the same code."""
         if kernel.object_code is not None:
             return self._own if kernel is self.kernel else None
         if self.loaded is None or kernel.function not in self.loaded.code.names:
@@ -51,7 +51,7 @@ class KernelCode:
 
     @cached_property
     def _own(self) -> CompiledObject:
-        """The code of a file in a memory of its own: to count calls must not change what a run finds in that of its kernel."""
+        """The code of a file in separate memory, so that counting calls does not change what a run finds in its kernel's."""
         file = self.kernel.object_code
         assert isinstance(file, FileCode)
         return compiled_object(
@@ -60,7 +60,7 @@ class KernelCode:
 
     @property
     def places(self) -> Places:
-        """What its addresses are."""
+        """The kernels and lines that its addresses belong to."""
         return self.compiled.places
 
     @property
@@ -79,10 +79,10 @@ def find_code(
     profile: CompilerProfile,
     toolchain: Toolchain | None,
 ) -> KernelCode:
-    """Find the code of a kernel: with all those of `firmware` if it is one of them, or by itself. It is timed as `profile` has it.
+    """Find the code of a kernel: with all those of `firmware` if it is one of them, or by itself.
 
-    Raises ConfigError where there is neither kept code nor a compiler, and KernelError where the code has no function
-    for the kernel.
+    It has the timing of `profile`. Raises ConfigError if there is neither kept code nor a compiler, or if the code has
+    no function for the kernel.
     """
     timing = timing_of(profile)
     if kernel.object_code is not None:
@@ -96,7 +96,7 @@ def find_code(
         kernel, f"GCC {code.compiler} {LEVELS[profile.name]}", timing, LoadedCode(code, timing)
     )
     try:
-        found.compiled  # noqa: B018  # translated now, so that a kernel without a function is told before a run
+        found.compiled  # noqa: B018  # translated now, so that a kernel without a function is refused before a run
     except KernelError:
         callers = sorted({each.name for each in kernels if kernel.function in each.function.callees()})
         raise ConfigError(

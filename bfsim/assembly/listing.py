@@ -1,4 +1,4 @@
-"""A kernel's code as records: each instruction with its source line, its cycles and waits, and each loop with what bounds it."""
+"""A kernel's code as records: each instruction with its source line, cycles and waits, and each loop with what bounds it."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class _Listing:
 
     @cached_property
     def edges(self) -> list[Edge]:
-        """Ways within it. No case of a switch is the start of its function, to which computed jumps of others may lead."""
+        """Edges within it. Computed jumps of others may lead to its start, but no case of its own switches does."""
         first, within = self.kernel_code.routine.address, [each.start for each in self.blocks]
         return [
             each
@@ -90,7 +90,7 @@ class _Listing:
 
     @property
     def calls(self) -> int:
-        """How often control came to the kernel from elsewhere."""
+        """How often control entered the kernel from elsewhere."""
         first = self.kernel_code.routine.address
         return self._times({CountedEvent(first): 1}) - sum(
             self._times(times_gone(self.code, self.edges, each))
@@ -149,7 +149,7 @@ class _Listing:
         )
 
     def callees(self, blocks: Sequence[Block]) -> list[str]:
-        """Functions that blocks call, or go on in, each once."""
+        """Return the functions that blocks call or jump to, each once."""
         routine, places = self.kernel_code.routine, self.kernel_code.places
         found = dict[str, None]()
         for block in blocks:
@@ -172,7 +172,7 @@ class _Listing:
         return SourceText(file=function.file, line=function.first_line + at.line - 1, text=shown)
 
     def _waited(self, block: Block) -> list[tuple[Wait, int]]:
-        """Of each instruction of a block its longest wait, and the cycles that it waited in a run."""
+        """Return for each instruction of a block its longest wait, and the cycles that it waited in a run."""
         jumped = self.stalls.jumped[block.start]
         carried = {edge: waits for edge, waits in self.stalls.carried.items() if edge.target == block.start}
         times = {edge: self._times({CountedEvent(edge.target, along=edge): 1}) for edge in carried}
@@ -208,7 +208,7 @@ class _Listing:
 
 
 def bound_of(turn: Turn, chain: Chain) -> str:
-    """Say what bounds a loop: a chain of dependences that fills its turns, or what takes most of their cycles."""
+    """Return what bounds a loop: a chain of dependences that fills its iterations, or what takes most of their cycles."""
     if chain.cclk >= turn.issue_cclk + turn.jump_cclk and turn.stall_cclk:
         return CHAIN
     parts = {ISSUE: turn.issue_cclk, JUMPS: turn.jump_cclk, WAITS: turn.stall_cclk}
