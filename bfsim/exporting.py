@@ -1,4 +1,4 @@
-"""Kernels of firmware as a folder of C: for the robot's own firmware, and to be read."""
+"""Export the kernels of firmware as a folder of C: for the robot's own firmware, and for reading."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ clean:
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """What was written to `folder`: files by name, how many kernels, and how many lines of C; `left` are kernels of other languages."""
+    """What was written to `folder`: the names of the files, and the numbers of kernels and of lines of C.
+
+    `left`: kernels in other languages.
+    """
 
     folder: Path
     files: tuple[str, ...]
@@ -50,8 +53,8 @@ class Export:
 def export(firmware: str, folder: Path, *, line_directives: bool = False, force: bool = False) -> Export:
     """Write the kernels of `firmware` as C99 to `folder`, with a header and a makefile.
 
-    Raises ConfigError if a file of that name is there and `force` is not set: somebody may have changed it; and if `folder` is
-    a file. Raises FirmwareError if the firmware has no kernels in Python.
+    Raises ConfigError if `folder` is a file, or if it already has a file of such a name, which somebody may have changed,
+    and `force` is not set. Raises FirmwareError if the firmware has no kernels in Python.
     """
     if folder.exists() and not folder.is_dir():
         raise ConfigError(f"{folder} must be a folder to write the files of C to, not a file")
@@ -75,7 +78,7 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
 
 @contextmanager
 def _whole(folder: Path) -> Iterator[None]:
-    """Make a folder for what is written in the `with` block; after an error nothing is left of one that was not there before."""
+    """Make a folder for what the `with` block writes; after an error, remove it if it was new."""
     is_new = not folder.exists()
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""What kernels are built to: their object code where there is some, or else code as a compiler profile estimates it."""
+"""The results of building kernels: their object code if there is any, otherwise code as a compiler profile estimates it."""
 
 from __future__ import annotations
 
@@ -22,20 +22,19 @@ class Ready(Protocol):
     """The object code of kernels."""
 
     def compiled(self, function: Function, *, traced: bool = False) -> CompiledObject:
-        """Return that of a kernel ready to run; `traced`: its accesses to memory are reported."""
+        """Return the object code of a kernel, ready to run; `traced`: it reports its accesses to memory."""
 
     def code_bytes(self, function: Function) -> dict[str, int]:
-        """Return its size, and that of each function that it calls, by the names of kernels."""
+        """Return the bytes of a kernel's code and of each function that it calls, by the names of kernels."""
 
 
 @dataclass(frozen=True)
 class Build:
     """How the kernels of a run are built.
 
-    `objects`: kernels whose object code there is, others are as `profile` estimates them.
-    `code`: whose code it is, and which timing counts its cycles, in words, or why there is none; empty where `profile` is an
-    estimate. `digest`: of that code. `is_tried`: whether its kernels have been run with every index checked before; object code checks
-    none.
+    `objects`: kernels that have object code; the others are as `profile` estimates them. `code`: in words, whose code
+    it is and which timing counts its cycles, or why there is none; empty if `profile` is an estimate. `digest`: of that
+    code. `is_tried`: whether its kernels have already run with every index checked; object code checks none.
     """
 
     profile: CompilerProfile
@@ -51,24 +50,24 @@ class Build:
     def compiled(
         self, kernel: Kernel, *, traced: bool = False, files: LoadedFiles | None = None
     ) -> CompiledKernel | CompiledObject:
-        """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`.
+        """Return a kernel ready to run; `traced`: it reports its accesses outside L1. Raises as `Kernel.compile` does.
 
-        `files`: what the core that runs it has loaded.
+        `files`: what its core has loaded.
         """
         if kernel.function in self.objects:
             return self.objects[kernel.function].compiled(kernel.function, traced=traced)
-        # code that calls at each access: all of LLVM's effort takes seven times as long, and a frame with it a tenth less
+        # traced code calls at each access: all of LLVM's effort takes seven times as long and saves a tenth of a frame
         effort = Effort.REGISTERS if traced else Effort.ALL
         return kernel.compile(self.profile, traced=traced, effort=effort, files=files)
 
     def keep(self, kernel: Kernel, *, traced: bool) -> None:
-        """Have the cache on disk hold all that a kernel needs to be `compiled`: it is made now if it is not there."""
+        """Put into the cache on disk all that `compiled` needs for a kernel, and make it now if it is missing."""
         code = self.compiled(kernel, traced=traced)
         if not isinstance(code, CompiledKernel):
             _ = code.subroutine.translated
 
     def counters(self, kernel: Kernel) -> tuple[Counter, ...]:
-        """Return what is counted in a run and what it costs, callees included. Raises KernelError as `Kernel.counters`."""
+        """Return the counters of a run and what each costs, callees included. Raises as `Kernel.counters` does."""
         if kernel.function in self.objects:
             return self.objects[kernel.function].compiled(kernel.function).program.costs.counters
         return kernel.counters(self.profile)

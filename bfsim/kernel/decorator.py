@@ -42,8 +42,8 @@ _IN_PYTHON = ContextVar("_IN_PYTHON", default=False)
 class ObjectCode(Protocol):
     """The object code of a kernel that is not written in Python.
 
-    `files`: what it was made of, with their SHA-256. `compiler`: what compiled it; empty where the file is object code. `name`: that of
-    the file, and `data_bytes` what all its variables and tables take.
+    `files`: what it was made from, with their SHA-256. `compiler`: what compiled it; empty if the file is object code.
+    `name`: of the file. `data_bytes`: the size of all its variables and tables.
     """
 
     @property
@@ -61,9 +61,9 @@ class ObjectCode(Protocol):
     def compiled(
         self, profile: CompilerProfile, *, traced: bool = False, files: LoadedFiles | None = None
     ) -> CompiledObject:
-        """Return it ready to run, timed as `profile` has it; `traced`: its accesses to memory are reported.
+        """Return it ready to run, with the timing of `profile`; `traced`: it reports its accesses to memory.
 
-        `files`: what the core that runs it has loaded, if one does.
+        `files`: what its core has loaded, if it runs on one.
         """
 
 
@@ -72,18 +72,19 @@ class RunnableCall(Protocol):
 
     @property
     def stays_in_l1(self) -> bool:
-        """Whether no access of it can leave L1."""
+        """Whether all its accesses stay in L1."""
 
     def run(self, *arguments: Any) -> Work:
-        """Run the kernel now and say what it cost. Of `arguments`, only the numbers are read."""
+        """Run the kernel now and return its cost. Only the numbers among `arguments` are read."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Kernel:
     """A kernel. Calling it runs the compiled code on numpy arrays; `cost` returns the cycles of a call.
 
-    `definition` is the function as it was written. A kernel of another language has `object_code` instead, which runs as it
-    is; the profile says how it is timed. `own_code` finds the code that a profile's compiler makes of a kernel in Python.
+    `definition` is the function as it was written. A kernel of another language has `object_code` instead, which runs
+    as it is; the profile says how it is timed. `own_code` finds the code that a profile's compiler makes of a kernel in
+    Python.
     """
 
     function: Function
@@ -142,9 +143,9 @@ class Kernel:
         effort: Effort = Effort.ALL,
         files: LoadedFiles | None = None,
     ) -> CompiledKernel | CompiledObject:
-        """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`, and `ObjectCode.compiled` of `files`.
+        """Compile for `profile`, or take it from the cache on disk; see `jit.compile_kernel` and `ObjectCode.compiled`.
 
-        Raises KernelError where the kernel has floats and the profile has no library for them.
+        Raises KernelError if the kernel has floats and the profile has no library for them.
         """
         if self.object_code:
             return self.object_code.compiled(profile, traced=traced, files=files)
@@ -154,7 +155,7 @@ class Kernel:
         )
 
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
-        """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
+        """Return the counters of a run and what each costs, callees included. Raises KernelError as `compile` does."""
         if self.object_code:
             return self.object_code.compiled(profile).program.costs.counters
         self._refuse_floats(profile)
@@ -177,10 +178,10 @@ class Kernel:
         stack: NDArray[np.uint8] | None = None,
         memory: NDArray[np.uint8] | None = None,
     ) -> RunnableCall:
-        """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type.
+        """Bind `arrays`, in the order of the array parameters. Raises KernelError if one does not fit its type.
 
-        `first_site`: what the access trace calls the first site of the program. `stack`: memory whose accesses object code reports, too.
-        `memory`: of the board, where object code finds arrays that lie in it without a copy.
+        `first_site`: the number of the program's first site in the access trace. `stack`: memory whose accesses object
+        code reports, too. `memory`: the board's; object code uses arrays that lie in it without copying them.
         """
         for position, array in zip(self.array_positions, arrays, strict=True):
             self.arguments.check_array(position, array)
@@ -212,18 +213,19 @@ class Kernel:
 
     @cached_property
     def arrays_of(self) -> Callable[[Sequence[Any]], Any]:
-        """Picks the array arguments out of all: a tuple, or the argument itself when there is one."""
+        """Picks the array arguments out of all: a tuple, or the argument itself if there is only one."""
         return itemgetter(*self.array_positions) if self.array_positions else lambda _arguments: ()
 
     def sanitize(self, arguments: Sequence[Any]) -> None:
-        """Run the kernel as it is written, and undo what it stored (`sanitizer`)."""
+        """Run the kernel as written, and undo its stores (`sanitizer`)."""
         self.sanitizer([arguments[each] for each in self.array_positions])(arguments)
 
     def sanitizer(self, arrays: Sequence[NDArray[Any]]) -> Callable[[Sequence[Any]], None]:
-        """Return what runs the kernel on arrays as it is written, unoptimised, with every index and divisor checked, and undoes what it stored.
+        """Return a function that runs the kernel as written, with every index and divisor checked, and undoes its stores.
 
-        It is given the arguments of a call, of which it reads the numbers, and raises KernelError at the first index or divisor that is wrong,
-        even where the compiler would leave it out. Of object code nothing is checked.
+        It runs unoptimised, on `arrays`. It takes the arguments of a call, reads only the numbers, and raises
+        KernelError at the first wrong index or divisor, even one that the compiler would leave out. In object code
+        nothing is checked.
         """
         if self.object_code:
             return lambda _arguments: None
@@ -243,7 +245,7 @@ class Kernel:
         return sanitize
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
-        """Run on numpy arrays and ints, as the firmware would, but without a machine around it.
+        """Run on numpy arrays and ints, as firmware would, but without a machine around it.
 
         Returns what the kernel returns; arrays that it stores into are changed. Raises KernelError for arguments that do
         not fit, and FirmwareError in a main loop.
@@ -260,11 +262,12 @@ class Kernel:
         return self._run(arguments, self.compile(DEFAULT)).value
 
     def cost(self, *arguments: Any, profile: str = DEFAULT.name) -> int:
-        """Run as a call does, and return its CCLK cycles: those of its operations, callees included, and their interlocks.
+        """Run as a call does, and return its CCLK cycles: operations and their interlocks, callees included.
 
-        It is what the call takes with code and arrays in L1, without waits for memory: for a unit test. `profile` names
-        the compiler; with `gcc` and `gcc-adi` it is the cost of the code that GCC makes of the kernel, or with a warning an estimate where
-        there is none. Raises KernelError for arguments that do not fit, and ConfigError with what GCC says if it refuses.
+        A call takes these with code and arrays in L1, without waits for memory: for unit tests. `profile` names the
+        compiler; with `gcc` and `gcc-adi` it is the cost of the code that GCC makes of the kernel, or an estimate, with
+        a warning, if there is none. Raises KernelError for arguments that do not fit, and ConfigError with GCC's
+        message if GCC refuses the kernel.
         """
         self.arguments.check(arguments)
         compiler = profile_named(profile)
@@ -278,7 +281,7 @@ class Kernel:
             return call.run(*arguments)
 
     def _own(self, profile: CompilerProfile) -> CompiledObject | None:
-        """Return the code that the compiler of a profile makes of it, if that is what runs."""
+        """Return the code that a profile's compiler makes of it, if the profile runs that code."""
         if self.object_code or profile.name not in RUN_AS_COMPILED:
             return None
         code = self.own_code(self, profile) if self.own_code else None
@@ -297,9 +300,9 @@ class Kernel:
 
 
 def kernel(python: Callable[..., Any] | None = None, /, **options: object) -> Kernel:
-    """Make `python` a kernel. Raises KernelError, with file, line and caret, where it leaves the language.
+    """Make `python` a kernel. Raises KernelError, with file, line and caret, if it leaves the language.
 
-    There are no options: what is written in brackets is refused.
+    There are no options: anything in brackets is refused.
     """
     if python is None or options:
         raise KernelError(

@@ -1,4 +1,4 @@
-"""The names of what the cache keeps of a kernel: digests of its own source, of those that it calls, and of what makes code of them."""
+"""Names of a kernel's cache entries: digests of its source, of its callees, and of the tools that make code of them."""
 
 from __future__ import annotations
 
@@ -13,17 +13,20 @@ from bfsim.kernel.profile import CompilerProfile, Inlines
 
 
 def key(function: Function, profile: CompilerProfile, variant: str) -> str:
-    """Digest of all that an entry about `function` depends on; `variant` says what it is."""
+    """Return the digest of all that an entry about `function` depends on; `variant` says what the entry is."""
     return digest(variant, _source(function, profile))
 
 
 def estimate_key(function: Function) -> str:
-    """Digest of all that the estimate of `function` by itself depends on, in whatever profile and program."""
+    """Return the digest of all that the estimate of `function` alone depends on, whatever the profile and program."""
     return digest("estimate", tools(), *(each.digest for each in (function, *function.callees())))
 
 
 def program_key(functions: Iterable[Function], entries: Collection[str]) -> str:
-    """Digest of all that the C of kernels depends on, wherever their files lie; `entries`: symbols of those that something else calls."""
+    """Return the digest of all that the C of kernels depends on, wherever their files lie.
+
+    `entries`: symbols of kernels that something else calls.
+    """
     found = sorted(functions, key=lambda each: (each.file, each.first_line))
     files = {file: number for number, file in enumerate(dict.fromkeys(each.file for each in found))}
     rows = [
@@ -34,9 +37,9 @@ def program_key(functions: Iterable[Function], entries: Collection[str]) -> str:
 
 
 def compiled_with(function: Function, profile: CompilerProfile) -> tuple[Function, ...]:
-    """Return the kernels on which the code of `function` depends, callees first: its own program, and what else calls parts of it.
+    """Return the kernels on which the code of `function` depends, callees first: its program and other callers of its parts.
 
-    Where a compiler inlines within a file, other kernels of the file may call the same helpers.
+    If a compiler inlines within a file, other kernels of the file may call the same helpers.
     """
     program = (*function.callees(), function)
     if profile.inlines is not Inlines.FILE:
@@ -53,14 +56,14 @@ def compiled_with(function: Function, profile: CompilerProfile) -> tuple[Functio
 
 @cache
 def _source(function: Function, profile: CompilerProfile) -> str:
-    """Digest of what every entry about a kernel depends on."""
+    """Return the digest of what every entry about a kernel depends on."""
     program = (function, *compiled_with(function, profile))
     return digest(tools(), repr(profile), *(each.digest for each in program))
 
 
 @cache
 def _writer() -> str:
-    """Digest of the sources that write C: what the reader makes of kernels is in their own digests."""
+    """Return the digest of the sources that write C; what the reader makes of kernels is in the kernels' digests."""
     here = Path(__file__).parent
     names = ("constants.py", "function.py", "operators.py", "tree.py")
     found = [here / "types.py", *(here / "language" / each for each in names)]

@@ -82,7 +82,7 @@ COSTS: dict[Op, Cost] = {
     Op.BRANCH_NOT_TAKEN: Cost(1, 2), Op.BRANCH_TAKEN: Cost(9, 2),        # [SIM] decode_BRCC_0
     Op.BRANCH_NOT_TAKEN_BP: Cost(9, 2), Op.BRANCH_TAKEN_BP: Cost(5, 2),  # with (bp), predicted taken
     Op.JUMP: Cost(5, 2), Op.CALL: Cost(5, 4), Op.TAIL_CALL: Cost(5, 4), Op.RETURN: Cost(5, 2),     # [SIM] change of flow
-    Op.COPIED_BRANCH: Cost(0, 0),                               # what a copy of a branch costs more: the layout says
+    Op.COPIED_BRANCH: Cost(0, 0),                               # the extra cost of a copied branch: the layout says
     Op.LIBRARY: Cost(0, 0),                                     # inside a library routine: the profile says
     Op.NOP: Cost(1, 2),                                         # [SIM]
     Op.LINK: Cost(3, 4), Op.UNLINK: Cost(2, 4),                 # [SIM]
@@ -122,7 +122,7 @@ SCRATCH_DATA_REGISTERS = 4  # [GCC] R0-R3 are not saved by the callee
 SCRATCH_POINTER_REGISTERS = 3  # [GCC] P0-P2
 INDEX_REGISTERS = 4  # [PRM] I0-I3
 REGISTER_ARGUMENTS = 3  # [GCC] R0-R2, the others on the stack
-LOOP_END_BYTES = 6  # [GCC] doloop_end in bfin.md: its length for the end of a counted loop, which LSETUP then makes no code at all
+LOOP_END_BYTES = 6  # [GCC] length of doloop_end in bfin.md, the end of a counted loop, for which LSETUP needs no code at all
 HARDWARE_LOOPS = 2  # [PRM] LC0/LT0/LB0 and LC1/LT1/LB1
 
 # Interlocks in CCLK: a value loaded into, or moved from a data register to, a pointer register is used by the next
@@ -130,6 +130,6 @@ HARDWARE_LOOPS = 2  # [PRM] LC0/LT0/LB0 and LC1/LT1/LB1
 LOAD_TO_POINTER_STALL = 3  # [GCC] bfin_adjust_cost, [VANN]
 MOVE_TO_POINTER_STALL = 4  # [GCC] bfin_adjust_cost, [VANN]
 
-# An RTS too early in a function may return to a wrong place: compilers put NOPs before what is shorter
+# An RTS too early in a function may return to a wrong place: compilers put NOPs in front of an earlier one
 CYCLES_BEFORE_RETURN = 4  # [GCC] workaround_rts_anomaly: anomaly 05000371, which all silicon revisions have
-PRODUCT_BEFORE_RETURN = 5  # [GCC] of which a 32-bit product counts as so many
+PRODUCT_BEFORE_RETURN = 5  # [GCC] how many of these a 32-bit product counts as

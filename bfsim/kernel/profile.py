@@ -32,18 +32,18 @@ class LibraryRoutine:
 
 @dataclass(frozen=True, slots=True)
 class MemoryRoutine:
-    """A routine that fills or moves memory: cycles of a short piece, of each byte, and more where a piece is long enough for whole words."""
+    """A routine that fills or moves memory: cycles of a call, of each byte, and more if the piece has whole words."""
 
     cclk: int
     byte_cclk: int
     words_from: int
-    """Bytes from which on there are words."""
+    """The shortest piece with whole words, in bytes."""
     words_cclk: int
     block_cclk: int
-    """Each 16 bytes, from then on."""
+    """Cycles of each whole block of 16 bytes."""
 
     def of(self, nbytes: int) -> int:
-        """Return the cycles of a piece of so many bytes."""
+        """Return the cycles of a piece of `nbytes` bytes."""
         return (
             self.cclk
             + nbytes * self.byte_cclk
@@ -52,7 +52,7 @@ class MemoryRoutine:
         )
 
     def blocks_of(self, nbytes: int) -> int:
-        """Return what the whole blocks of a piece take."""
+        """Return the cycles of the whole blocks of a piece."""
         return nbytes // MEMORY_BLOCK_BYTES * self.block_cclk
 
 
@@ -63,7 +63,8 @@ MEMORY_BLOCK_BYTES = 16
 class Library:
     """Integer division. Remainders come from routines of their own.
 
-    `fill`, `move_bytes` and `move_words` (where both ends may lie at words): None where loops that fill or move stay loops.
+    `fill`, `move_bytes` and `move_words` (if both ends may be word-aligned): None if loops that fill or move stay
+    loops.
     """
 
     divide_signed: LibraryRoutine
@@ -123,7 +124,7 @@ class CompilerProfile:
     """Rules that are left out: those of another compiler, or to see what they are worth."""
 
     def applies(self, rule: Rule) -> bool:
-        """Whether a fitted rule is followed."""
+        """Whether a rule is followed."""
         return rule not in self.without
 
 
@@ -143,8 +144,8 @@ LIBGCC = Library(
     remainder_signed=LibraryRoutine(
         216, (*DIV_MIX, (Op.PUSH, 3), (Op.POP, 3), (Op.MUL32, 1), (Op.ALU, 1), (Op.CALL, 1), (Op.RETURN, 1))
     ),
-    fill=MemoryRoutine(60, 0, 4, 46, 5),  # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; where it begins at no multiple of four: 11 to 23 more, or 20 less of 4 to 6 bytes
-    move_bytes=MemoryRoutine(65, 2, 16, 8, 0),  # [libgcc] memmove of newlib to where it is at no multiple of four from: 1 byte 67, 15 bytes 95, 200 bytes 473; downwards 2 less
+    fill=MemoryRoutine(60, 0, 4, 46, 5),  # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; from no multiple of four on: 11 to 23 more, or 20 less for 4 to 6 bytes
+    move_bytes=MemoryRoutine(65, 2, 16, 8, 0),  # [libgcc] memmove of newlib by no multiple of four: 1 byte 67, 15 bytes 95, 200 bytes 473; downwards 2 less
     move_words=MemoryRoutine(80, 0, 16, 47, 10),  # [libgcc] by a multiple of four: 4 bytes 73, 12 bytes 89, 16 bytes 127, 28 bytes 158, 32 bytes 137, 800 bytes 617
 )  # fmt: skip
 ADI = Library(
@@ -152,7 +153,7 @@ ADI = Library(
     divide_unsigned=LibraryRoutine(47),     # [assumed] as signed
     remainder_signed=LibraryRoutine(51),    # [assumed] a division, a multiplication and a subtraction
     remainder_unsigned=LibraryRoutine(51),  # [assumed] the same
-    fill=None,                       # [assumed] no word of such calls in ADI's compiler manual
+    fill=None,                       # [assumed] ADI's compiler manual mentions no such calls
     move_bytes=None,
     move_words=None,
 )  # fmt: skip
@@ -187,7 +188,7 @@ GCC_O2 = CompilerProfile(
     library=LIBGCC, floats=LIBGCC_FLOATS, inlines=Inlines.FILE,
 )  # fmt: skip
 GCC = replace(GCC_O2, name="gcc")
-"""Kernels run as the code that GCC makes of them, instruction by instruction; those of which there is none are as GCC_O2."""
+"""Kernels run as the code that GCC makes of them, instruction by instruction; kernels without such code are as GCC_O2."""
 VDSP_O2 = CompilerProfile(
     name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
     library=ADI, floats=ADI_FLOATS, inlines=Inlines.FILE,  # [assumed] as GCC
@@ -210,13 +211,13 @@ GCC_ADI = replace(
 """The same code on Analog Devices' documented pipeline, with their library."""
 PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, GCC, GCC_ADI, VDSP_O2)}
 DEFAULT = GCC_ADI
-"""What is taken where no profile is named: real code where there is some, and documented times."""
+"""The profile if none is named: real code where there is some, and documented times."""
 RUN_AS_COMPILED = {GCC.name, GCC_ADI.name}
 """Profiles whose kernels run as their compiler's own code where there is some."""
 
 
 def profile_named(name: str) -> CompilerProfile:
-    """Return a profile by its name; raise ConfigError when there is none."""
+    """Return a profile by its name; raise ConfigError if there is none."""
     if name not in PROFILES:
         raise ConfigError(f"the compiler profile must be one of {', '.join(PROFILES)}, not {name!r}")
     return PROFILES[name]

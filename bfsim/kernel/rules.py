@@ -1,10 +1,10 @@
 """Rules of the estimate that can be left out, by name: what each says, whose behaviour it is, and what it was learnt from.
 
-`python benchmarks/accuracy.py --ablate` prints what each is worth. Two kinds were put in because of what GCC made of certain kernels:
-[fitted] ones, found by looking at GCC's code, and those that follow from GCC's own source or from the instruction set but that a
-single one of the measured kernels needs: without that kernel, nobody would have looked for them. The accuracy benchmark costs each
-kernel once more without the rules that it alone needs: `python benchmarks/accuracy.py --rules` finds again which kernels need each.
-Rules that are no switch name their source where they stand.
+`python benchmarks/accuracy.py --ablate` prints what each is worth. Two kinds come from GCC's code of certain kernels:
+[fitted] rules, found by looking at that code, and rules that follow from GCC's own source or from the instruction set,
+but that only one of the measured kernels needs: without that kernel, nobody would have looked for them. The accuracy
+benchmark also costs each kernel without the rules that it alone needs; `python benchmarks/accuracy.py --rules` finds
+anew which kernels need each rule. Rules that cannot be left out name their source where they stand.
 """
 
 from __future__ import annotations
@@ -221,7 +221,7 @@ GCC: dict[Rule, str] = {
 }
 """Where GCC 12 does so; the others are fitted to its code."""
 
-# The kernels that each rule was learnt from; of a rule that one kernel alone needs, that one.
+# The kernels that each rule was learnt from; if only one kernel needs a rule, that one.
 LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.LATE_EXTENSION: ("gauss3_row",),
     Rule.RELOAD_REGISTER: ("match_lines",),

@@ -87,7 +87,7 @@ class ArrayType:
 
 @dataclass(frozen=True, slots=True)
 class BoolType:
-    """What a comparison gives: good for `if`, `while`, `and`, `or`, `not`."""
+    """The result of a comparison: good for `if`, `while`, `and`, `or`, `not`."""
 
     def __str__(self) -> str:
         return "bool"
@@ -95,7 +95,7 @@ class BoolType:
 
 @dataclass(frozen=True, slots=True)
 class PairType:
-    """What an intrinsic with two results gives: two words, of which each is assigned to a name."""
+    """The result of an intrinsic with two results: two words, each of which is assigned to a name."""
 
     def __str__(self) -> str:
         return "pair"
@@ -119,7 +119,7 @@ NUMBERS: dict[str, Number] = {each.name: each for each in (i8, u8, i16, u16, i32
 
 
 def _array_of(element: Number, item: object) -> ArrayType:
-    """Return the type that `element[item]` names. Raises TypeError unless that is written u8[:]."""
+    """Return the type that `element[item]` names. Raises TypeError unless it is written like u8[:]."""
     if item != slice(None):
         raise TypeError(
             f"an array type must be written {element.name}[:]: one dimension, no size: a[y * width + x]"
@@ -129,13 +129,13 @@ def _array_of(element: Number, item: object) -> ArrayType:
 
 @cache
 def type_named(name: str) -> Number | ArrayType:
-    """Return the type of a parameter that is written so: "i32", "u8[:]"."""
+    """Return the type of a parameter by its name, such as "i32" or "u8[:]"."""
     element = NUMBERS[name.removesuffix("[:]")]
     return ArrayType(element) if name.endswith("[:]") else element
 
 
 def promoted(element: Number) -> Number:
-    """Type of `element` once loaded into a register: 32 bits wide, unsigned only for u32 (C's promotion)."""
+    """Return the type of `element` once loaded into a register: 32 bits wide, unsigned only for u32 (C's promotion)."""
     return element if element is u32 or isinstance(element, FloatType) else i32
 
 

@@ -39,7 +39,7 @@ class Comments:
 
 
 def c_comment(text: str, indent: str = "") -> list[str]:
-    """Return `text` as the lines of a comment in C. A blank line parts paragraphs; indented lines stay as they are."""
+    """Return `text` as the lines of a comment in C. A blank line separates paragraphs; indented lines stay as they are."""
     text = text.replace("*/", "* /").replace("/*", "/ *")
     if "\n" not in text and len(indent) + len(text) + 6 <= WIDTH:
         return [f"{indent}/* {text} */"]

@@ -1,4 +1,4 @@
-"""Where C declares the locals of a kernel: as far inside as they are used, with their first value where that can be."""
+"""Where C declares the locals of a kernel: as far inside as they are used, with their first value if possible."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Block = tuple[tree.Stmt, ...]
 class Declarations:
     """`with_value`: assignments that declare what they assign. `before`: names declared alone, by statement.
 
-    `counting`: loops whose own name counts the iterations. In Python a loop's name keeps its last value behind the loop and may
-    be assigned inside without any effect on the iterations; a loop of which that is asked counts with a name that only C has.
-    Statements are told apart by identity: two equal ones may stand in a kernel.
+    `counting`: loops whose own name counts the iterations. In Python a loop's name keeps its last value after the loop,
+    and may be assigned inside without any effect on the iterations; a loop that needs this counts with a name that only
+    C has. Statements are told apart by identity: a kernel may have two equal ones.
     """
 
     with_value: set[int] = field(default_factory=set)
@@ -40,7 +40,7 @@ Place = tuple[tuple[Block, int], ...]
 
 
 def _counting_loops(block: Block, outside: Place, parameters: set[str]) -> Iterator[tree.For]:
-    """The loops in `block` that assign their name nowhere else, and behind which its value is not read."""
+    """Yield the loops in `block` that assign their name nowhere else, and after which its value is not read."""
     for position, node in enumerate(block):
         place = (*outside, (block, position))
         if (
@@ -59,7 +59,7 @@ def _assigns(block: Block, name: str) -> bool:
 
 
 def _is_dead_behind(name: str, place: Place) -> bool:
-    """Whether no way from behind the statement at `place` reads `name` before it is assigned."""
+    """Whether no path from after the statement at `place` reads `name` before it is assigned."""
     block, position = place[-1]
     dead = _first_use(name, block[position + 1 :])
     if dead is not None or len(place) == 1:

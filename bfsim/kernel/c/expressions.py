@@ -1,4 +1,4 @@
-"""Expressions in C. A sign of C stands where it means the same; the rest are the functions of `operators.h`."""
+"""Expressions in C. An operator of C is used if it means the same; the rest are functions of `operators.h`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, i32, u32
 
 
 class Binds(IntEnum):
-    """How strongly parts of an expression hold together in C, the weakest first."""
+    """How strongly operators bind in C, the weakest first."""
 
     CHOICE = 0
     OR = 1
@@ -41,11 +41,11 @@ ROUNDS_DOWN = {"//": "floor_div", "%": "floor_mod"}
 TOWARDS_ZERO = {"quotient": "/", "remainder": "%"}
 HEXADECIMAL = re.compile("0[xX][0-9a-fA-F]+")
 CHAINS = frozenset("+*&|^")
-"""Signs after which no bracket is needed on the left."""
+"""Operators that need no brackets around the same operator on their left."""
 
 
 class Expressions:
-    """Prints the expressions of one kernel. `functions`: what kernels are called in C; `constants`: which names it may use."""
+    """Prints the expressions of one kernel. `functions`: kernels' names in C; `constants`: those that it may name."""
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class Expressions:
         self.names, self.functions, self.constants = names, functions, constants
 
     def text(self, node: tree.Expr, at_least: Binds = Binds.CHOICE) -> str:
-        """Return `node` in C, in brackets where it holds together less than `at_least`."""
+        """Return `node` in C, in brackets if it binds less than `at_least`."""
         text, binds = getattr(self, f"_{type(node).__name__.lower()}")(node)
         return f"({text})" if binds < at_least else str(text)
 
@@ -116,13 +116,13 @@ class Expressions:
         return self._called(node.op, node.left, node.right)
 
     def _shifted(self, node: tree.Binary) -> tuple[str, Binds]:
-        """C leaves open what the left shift of a negative number is, so it is shifted without its sign."""
+        """Shift to the left as unsigned: C does not define the left shift of a negative number."""
         bits = tree.Cast(node.left, u32, u32, node.line)
         shifted = tree.Binary("<<", bits, node.right, u32, node.line)
         return self._cast(tree.Cast(shifted, i32, i32, node.line))
 
     def _rounded_down(self, node: tree.Binary) -> tuple[str, Binds]:
-        """By a power of two, a shift and a mask round down, and need no correction."""
+        """Divide and round down: by a power of two, a shift or a mask does so without a correction."""
         divisor = int(node.right.value) if isinstance(node.right, tree.Const) else 0
         if divisor > 0 and divisor.bit_count() == 1:
             power = tree.Const(divisor.bit_length() - 1, i32, node.line)

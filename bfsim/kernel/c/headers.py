@@ -1,6 +1,7 @@
-"""What `operators.h` includes declares and defines beyond C99, in newlib 3.3 for the Blackfin and in glibc 2.36, as GCC reads them in its GNU mode.
+"""What the headers of `operators.h` declare and define beyond C99, in newlib 3.3 for the Blackfin and in glibc 2.36.
 
-Found by a compiler for each word of the preprocessed headers: those that a kernel of that name is refused for.
+As GCC reads them in its GNU mode. A compiler has tried each word of the preprocessed headers: these are the ones for
+which it refuses a kernel of that name.
 """
 
 _FUNCTIONS = """drem dremf dreml finite finitef finitel fpclassify gamma gamma_r gammaf gammaf_r gammal infinity infinityf isfinite
@@ -16,7 +17,7 @@ fsid_t gid_t id_t ino_t intmax_t intptr_t key_t ldiv_t lldiv_t loff_t max_align_
 register_t sigset_t size_t ssize_t suseconds_t time_t timer_t u_char u_int u_int8_t u_int16_t u_int32_t u_int64_t u_long u_quad_t
 u_short uid_t uint uintmax_t uintptr_t ulong ushort wchar_t wint_t"""
 DECLARED = frozenset((*_FUNCTIONS.split(), *_TYPES.split()))
-"""No kernel can be called so; a local of a kernel can."""
+"""No kernel can have these names; a local of a kernel can."""
 _MACROS = """BFIN BIG_ENDIAN BYTE_ORDER EXIT_FAILURE EXIT_SUCCESS FD_CLR FD_ISSET FD_SET FD_SETSIZE FD_ZERO FP_ILOGB0 FP_ILOGBNAN
 FP_INFINITE FP_NAN FP_NORMAL FP_SUBNORMAL FP_ZERO HUGE_VAL HUGE_VALF HUGE_VALL INFINITY LITTLE_ENDIAN MATH_ERREXCEPT MATH_ERRNO
 MAXFLOAT MB_CUR_MAX M_1_PI M_2_PI M_2_SQRTPI M_3PI_4 M_E M_INVLN2 M_IVLN10 M_LN10 M_LN2 M_LN2HI M_LN2LO M_LOG10E M_LOG2E M_LOG2_E
@@ -25,4 +26,4 @@ SIG_ATOMIC_MAX SIG_ATOMIC_MIN SIZE_MAX WCHAR_MAX WCHAR_MIN WCONTINUED WEXITED WE
 WIFSTOPPED WINT_MAX WINT_MIN WNOHANG WNOWAIT WSTOPPED WSTOPSIG WTERMSIG WUNTRACED bfin linux math_errhandling offsetof signgam
 suboptarg unix"""
 MACROS = frozenset(_MACROS.split())
-"""Nothing of a program can be called so."""
+"""Nothing in a program can have these names."""

@@ -23,7 +23,7 @@ HALVES = "halves.h"
 DATA_REGISTER = re.compile(r"\bR[0-7]\b(?!:)")
 FUNCTION = re.compile(r"^OPERATOR \w+ (\w+)\(", re.MULTILINE)
 FIXED = ("R1:0", "R3:2")
-"""Pairs of registers: what uses them needs its operands in these."""
+"""Pairs of registers: an instruction that uses them needs its operands in these."""
 PAIRED = {"R0", "R2"}
 BLACKFIN = "__bfin__"
 
@@ -83,7 +83,7 @@ def _result(intrinsic: Intrinsic) -> str:
 
 
 def _instructions(intrinsic: Intrinsic) -> Iterator[str]:
-    """Assembler, in GCC's words: the results first, with registers for what is between, then the parameters."""
+    """Yield assembler for GCC: the results first, with registers for intermediate values, then the parameters."""
     texts = [_assembler(each) for each in intrinsic.steps]
     mentioned = dict.fromkeys(name for each in texts for name in DATA_REGISTER.findall(each))
     inner = [each for each in mentioned if each not in {*intrinsic.inputs, *intrinsic.outputs}]
@@ -122,7 +122,7 @@ def _reads(text: str, inputs: Iterable[str]) -> bool:
 
 
 def _class(register: str, texts: list[str]) -> str:
-    """GCC's letter for the registers that may be taken: a product of a whole word goes to an even one."""
+    """Return GCC's letter for the registers that may be taken: a product of a whole word goes to an even one."""
     is_product = any(re.fullmatch(rf"{register} = R\d\.[LH] \* R\d\.[LH].*", each) for each in texts)
     return "D" if is_product and register == RESULT else "d"
 

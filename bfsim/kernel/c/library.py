@@ -1,4 +1,4 @@
-"""What the C library calls its own functions: a kernel of such a name would take its place wherever both are linked."""
+"""Names of the C library's functions: a kernel with such a name would replace the function wherever both are linked."""
 
 import re
 
@@ -18,11 +18,11 @@ clock difftime mktime time asctime ctime gmtime localtime strftime"""
 LIBRARY = frozenset(
     (*_OTHERS.split(), *(f"{name}{kind}" for name in _MATH.split() for kind in ("", "f", "l")))
 )
-"""[C99 7.1.3] Of a hosted implementation, but for the functions of wide characters and complex numbers."""
+"""[C99 7.1.3] Those of a hosted implementation, except functions of wide characters and complex numbers."""
 RESERVED = re.compile("_[_a-z]")
-"""[C99 7.1.3] So begin the names that a program leaves to the compiler's library; those of C++ are of programs (`_Z...`)."""
+"""[C99 7.1.3] The beginning of names that a program leaves to the compiler's library; `_Z...` is C++ of a program."""
 
 
 def is_of_library(name: str) -> bool:
-    """Whether a function in C is one of the compiler's library, by its name."""
+    """Whether a function in C belongs to the compiler's library, by its name."""
     return name in LIBRARY or RESERVED.match(name) is not None

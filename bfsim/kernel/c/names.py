@@ -61,7 +61,7 @@ KEYWORDS = [
     "while",
     "asm",  # of GNU C, as the next one
     "typeof",
-    "alignas",  # of C23, to which compilers go over
+    "alignas",  # of C23, to which compilers are moving
     "alignof",
     "bool",
     "constexpr",
@@ -86,7 +86,7 @@ WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 def c_type(kind: Value) -> str:
-    """Return the name in C of a type."""
+    """Return the name of a type in C."""
     if isinstance(kind, IntType):
         return f"{'' if kind.signed else 'u'}int{kind.bits}_t"
     if kind is PAIR:
@@ -101,7 +101,7 @@ def is_free(name: str) -> bool:
 
 
 def free_name(wanted: str, taken: Iterable[str] = ()) -> str:
-    """Return `wanted`, or what is like it and free."""
+    """Return `wanted`, or a similar name that is free."""
     name = wanted.lstrip("_") or "x"
     while not is_free(name) or name in taken:
         name += "_"
@@ -109,7 +109,7 @@ def free_name(wanted: str, taken: Iterable[str] = ()) -> str:
 
 
 class LocalNames:
-    """What the parameters and locals of one kernel are called in C, and the lengths that come with its arrays."""
+    """The names in C of the parameters and locals of one kernel, and of the lengths that come with its arrays."""
 
     def __init__(self, function: Function, functions: Iterable[str]) -> None:
         taken = set(functions)
@@ -125,7 +125,7 @@ class LocalNames:
         self._taken = taken
 
     def another(self, wanted: str) -> str:
-        """Return a new name for what only C needs."""
+        """Return a new name for something that only C needs."""
         name = free_name(wanted, self._taken)
         self._taken.add(name)
         return name
@@ -138,7 +138,7 @@ def _declared(function: Function) -> Iterator[str]:
 
 
 def parameter_list(function: Function, names: LocalNames) -> list[str]:
-    """Return the parameters in C: those of the kernel, then the length of every array that is asked for one."""
+    """Return the parameters in C: those of the kernel, then the length of every array whose length it asks for."""
     parts = []
     for each in function.parameters:
         if isinstance(each.type, ArrayType):

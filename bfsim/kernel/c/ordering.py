@@ -1,6 +1,6 @@
-"""The order of evaluation: Python goes from left to right, C as it likes.
+"""The order of evaluation: from left to right in Python, any order in C.
 
-That matters where one part of an expression is a call that writes to an array and another part reads. Such parts get a
+It matters if one part of an expression is a call that writes to an array and another part reads one. Such parts get a
 statement of their own, with a local that holds the value.
 """
 
@@ -65,7 +65,7 @@ class _Rewriter:
         return node
 
     def _while(self, node: tree.While) -> tree.While:
-        """What belongs before the test is done before each test."""
+        """Rewrite a `while`: what belongs before the test is done before each test."""
         outside, self.before = self.before, []
         test = self.expression(node.test)
         before, self.before = self.before, outside
@@ -99,7 +99,7 @@ class _Rewriter:
         return node
 
     def group(self, *parts: tree.Expr) -> tuple[tree.Expr, ...]:
-        """Rewrite what Python evaluates in this order, and C in any."""
+        """Rewrite parts that Python evaluates in this order, and C in any."""
         conflict = any(map(_writes, parts)) and sum(map(tree.reads_array, parts)) > 1
         found: list[tree.Expr] = []
         for number, each in enumerate(parts, start=1):
@@ -110,7 +110,7 @@ class _Rewriter:
         return tuple(found)
 
     def _logic(self, node: tree.Logic) -> tree.Expr:
-        """The right side is evaluated only when the left one does not decide."""
+        """Rewrite `and` or `or`: the right side is evaluated only if the left one does not decide."""
         left = self.expression(node.left)
         right, before = self._apart(node.right)
         if not before:

@@ -1,4 +1,4 @@
-"""A program of kernels as files of C: one for each Python file, a header for all, and the operators that C has not."""
+"""A program of kernels as files of C: one for each Python file, a header for all, and the operators that C lacks."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HEADERS = {name.removesuffix(".h") for name in (HEADER, OPERATORS, INTRINSICS)}
 
 @dataclass(frozen=True, slots=True)
 class CProgram:
-    """Kernels in C. `files`: texts by name. `names`: what each kernel is called. `static`: those that only their file calls."""
+    """Kernels in C. `files`: texts by name. `names`: the name of each kernel. `static`: those that only their file calls."""
 
     files: Mapping[str, str]
     names: Mapping[Function, str]
@@ -48,8 +48,8 @@ def c_program(
 ) -> CProgram:
     """Return `kernels` and what they call as C99.
 
-    A kernel is static if its Python file suggests so and no other kernel needs it; `entries` never are. With `place`, a
-    debugger and the compiler's messages point to where it says that a kernel is.
+    A kernel is static if its Python file suggests so and no other file's kernel needs it; `entries` never are. With
+    `place`, debuggers and the compiler's messages point to the place that it returns for a kernel.
     """
     functions = sorted(_with_callees(kernels), key=lambda each: (each.file, each.first_line))
     static = _static(functions) - frozenset(entries)
@@ -86,7 +86,7 @@ def _static(functions: Iterable[Function]) -> frozenset[Function]:
 
 
 def _names(functions: Iterable[Function], static: frozenset[Function]) -> dict[Function, str]:
-    """Kernels keep their names; of several with one name, those that other files see get their file's before it."""
+    """Return kernels' names in C: their own; with their file's before it if several share one that other files see."""
     functions = list(functions)
     many = Tally(each.name for each in functions)
     reserved = names_in_header(intrinsics_in(functions))
@@ -104,7 +104,7 @@ def _stem(file: str) -> str:
 
 
 def _stems(sources: Iterable[str]) -> dict[str, str]:
-    """Names of the C files, without ending: those of the Python files, numbered where two are alike."""
+    """Return the names of the C files, without ending: those of the Python files, numbered if two are alike."""
     found: dict[str, str] = {}
     for file in sources:
         stem, number = _stem(file), 2
@@ -172,7 +172,7 @@ def _source(
 
 
 def _constants(members: Iterable[Function], names: Mapping[Function, str]) -> dict[str, int | float]:
-    """Constants of the file that its kernels name, unless the name means something else in one of them too."""
+    """Return the constants of the file that its kernels name, unless the name also means something else in one of them."""
     taken = {*names.values(), *names_in_header(intrinsics_in(members))}
     wanted: dict[str, int | float] = {}
     for function in members:

@@ -33,7 +33,7 @@ def in_python(function: Function) -> Place:
 def signature(
     function: Function, functions: Mapping[Function, str], *, is_static: bool, end: str = ""
 ) -> list[str]:
-    """Return the head of a kernel's definition in C, line by line. `functions`: what kernels are called in C."""
+    """Return the head of a kernel's definition in C, line by line. `functions`: the names of kernels in C."""
     names = LocalNames(function, functions.values())
     head = f"{'static ' if is_static else ''}{result_type(function.result)} {functions[function]}("
     lines, indent = [head], " " * min(len(head), WIDTH // 2)
@@ -51,7 +51,7 @@ def signature(
 class Definition:
     """Prints the definition of one kernel; `lines` is its text.
 
-    `place` is what `#line` directives say, by which a debugger finds the source; none are printed without it.
+    `place`: what `#line` directives say, by which a debugger finds the source; without it none are printed.
     """
 
     def __init__(
@@ -127,7 +127,7 @@ class Definition:
         self.lines.append(f"{indent}{target} = {self._narrowed(node)};")
 
     def _narrowed(self, node: tree.Store) -> str:
-        """The value to be stored, with a cast where it changes its type."""
+        """Return the value to be stored, with a cast if its type changes."""
         if _fits(node.value, node.element):
             return self.expressions.text(node.value)
         return self.expressions.text(tree.Cast(node.value, node.element, node.element, node.line))
@@ -185,7 +185,7 @@ class Definition:
         self._loop(head, node.body, indent, taken)
 
     def _stepped(self, counter: str, step: int | tree.Local) -> str:
-        """What counts on at the end of an iteration."""
+        """Return the step of the counter at the end of an iteration."""
         if isinstance(step, tree.Local):
             return f"{counter} += {self.expressions.text(step)}"
         if abs(step) == 1:
@@ -193,7 +193,7 @@ class Definition:
         return f"{counter} {'+' if step > 0 else '-'}= {abs(step)}"
 
     def _stop(self, node: tree.For, indent: str) -> str:
-        """The end of a loop: Python evaluates it once, C each time, so what can change in the loop gets a name."""
+        """Return the end of a loop: Python evaluates it once, C each time, so one that may change gets a name."""
         changed = {each.name for each in tree.parts(node.body) if isinstance(each, (tree.Assign, tree.For))}
         changed.add(node.name)
         for each in tree.parts(node.stop):
@@ -212,7 +212,7 @@ class Definition:
 
 
 def _step(node: tree.Assign) -> tree.Binary | None:
-    """What is assigned, if it is the old value with something added, shifted or the like."""
+    """Return what is assigned, if it is the old value with something added, shifted or the like."""
     value = node.value
     if (
         not isinstance(value, tree.Binary)

@@ -1,1 +1,1 @@
-"""What a call of a kernel takes and what it leaves: arguments, `Work`, and the access trace."""
+"""The input and output of a kernel's call: arguments, `Work`, and the access trace."""

@@ -1,4 +1,4 @@
-"""The log of the access trace: what its entries say, and where the words of its state are."""
+"""The log of the access trace: the format of its entries, and the places of the words of its state."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ WRITE = 256  # `counters` adds it to an access's byte count when it writes
 KIND_BIT, STAMP_BIT = 28, 31
 OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
 LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET, FETCHES = range(8)
-"""What an entry is. FETCHES, the last one of a call, stands for all fetches of its code that no cache holds: their number takes the
-place of a stamp, and its site is that of the routine that is fetched first (`bus.state`)."""
+"""Kinds of entries. FETCHES, the last entry of a call, stands for all fetches of its code that no cache holds: their
+number takes the place of the stamp, and the site is that of the routine that is fetched first (`bus.state`)."""
 
-# Words of the state; the log stands behind them, and behind that the site of each of its entries (`call_paths`).
+# Words of the state; the log follows them, and then the site of each of its entries (`call_paths`).
 (
     FUNCTION,  # address of `trace_access`; compiled kernels call it
-    ARENA, END,  # host address of the arena, and of what is behind SDRAM and L2
+    ARENA, END,  # host addresses of the arena, and of the end of SDRAM and L2 in it
     ENTRIES,  # how many accesses there were
     ROOM,  # how many entries the log can have
     REGIONS,  # how many regions are cached
     LINE_BITS, SETS, WAYS,
-    KEPT,  # how many entries of earlier calls are kept in front of those of the next
+    KEPT,  # how many entries of earlier calls are kept before those of the next
 ) = range(10)  # fmt: skip
 MAX_REGIONS = 8
 FIRST_REGION = 10  # first offset, end and policy of each
 TAGS = (
     FIRST_REGION + 3 * MAX_REGIONS
-)  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
+)  # the lines of each set, the one used last first: number << 1 | whether changed; or EMPTY
 MAX_LINES = 2048
 LOG = TAGS + MAX_LINES
 ENTRY_WORDS = 2

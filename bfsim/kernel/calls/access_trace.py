@@ -1,8 +1,8 @@
-"""The access trace of the bound phase: what each access of a kernel outside L1 asks of the memories, access by access.
+"""The access trace of the bound phase: what each access of a kernel outside L1 asks of the memories.
 
-It runs inside the compiled kernel and writes a log; the machine plays the log against the rest of the chip and adds the waiting.
-Where a region is cached it keeps the tags of the core's data cache, and logs line fills and write-backs only.
-The stamp of an access is the cycle at which its block began, without any of the waiting.
+It runs inside the compiled kernel and writes a log; the machine plays the log against the rest of the chip and adds the
+waits. For cached regions it keeps the tags of the core's data cache, and logs only line fills, write-backs, and stores
+that are written through. The stamp of an access is the cycle at which its block began, waits not included.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class CacheSize:
 
 
 class AccessTrace:
-    """The access trace of one core; `traced_access.py` is its compiled part, which is made once a kernel touches memory outside L1."""
+    """The access trace of one core; its compiled part, `traced_access.py`, is made when a kernel first leaves L1."""
 
     def __init__(
         self,
@@ -74,10 +74,10 @@ class AccessTrace:
 
         `room`: where the state and the log go, LOG words and ENTRY_WORDS for each entry that the log can have.
         """
-        self._arena = arena  # the state has its address only
+        self._arena = arena  # kept alive, since the state has only its address
         self._state = room
         self._words: Any = room.data
-        self._at: int = room.ctypes.data  # numpy takes as long to find it as a short call
+        self._at: int = room.ctypes.data  # numpy takes as long to find it as a short call takes
         self._state[TAGS:LOG] = EMPTY
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
         self._room = self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
@@ -103,25 +103,25 @@ class AccessTrace:
         return self._at + self._state.itemsize * word
 
     def logs(self, address: int) -> bool:
-        """Whether accesses to memory at a host address are logged: whether it is outside of L1."""
+        """Whether accesses at a host address are logged, because it is outside L1."""
         return bool(self._state[ARENA] <= address < self._state[END])
 
     def drop(self) -> None:
-        """Keep nothing any more."""
+        """Drop all entries, those of earlier calls too."""
         self._words[ENTRIES] = self._words[KEPT] = 0
 
     def entries(self, count: int) -> NDArray[np.int64]:
-        """Return the first `count` entries of the log behind what is kept: those of the last call."""
+        """Return the first `count` entries after those that are kept: those of the last call."""
         first = LOG + self._words[KEPT]
         return self._state[first : first + count]
 
     def sites(self, count: int) -> NDArray[np.int64]:
-        """Return the sites of these entries."""
+        """Return the sites of those entries."""
         first = LOG + self._room + self._words[KEPT]
         return self._state[first : first + count]
 
     def check_room(self, count: int) -> None:
-        """Raise KernelError if a call must not log so many accesses."""
+        """Raise KernelError if the log has no room for `count` accesses of a call."""
         room = self._room - self._words[KEPT]
         if count > room:
             raise KernelError(
@@ -137,7 +137,7 @@ class AccessTrace:
         return any(first <= offset < end for first, end, _ in regions.tolist())
 
     def forget(self, first: int, nbytes: int) -> int:
-        """Invalidate the cached lines of `nbytes` from `first`, which are not written back; return how many that can be."""
+        """Invalidate the cached lines of `nbytes` from `first` without writing them back; return how many there can be."""
         if not self._state[SETS]:
             return 0
         bits = int(self._state[LINE_BITS])

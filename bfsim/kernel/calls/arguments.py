@@ -1,4 +1,4 @@
-"""What a call of a kernel must be given: arguments of its parameters' types, arrays that it can work on."""
+"""The arguments of a kernel's call: they must have the types of its parameters, and arrays must be ones it can work on."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from bfsim.kernel.types import ArrayType, FloatType, IntType
 
 
 class Arguments:
-    """The arguments of a kernel, which may be any that its parameters take."""
+    """The arguments that the parameters of a kernel take."""
 
     def __init__(self, function: Function) -> None:
         self._function = function
@@ -75,7 +75,7 @@ class Arguments:
 
     @cached_property
     def _elements(self) -> dict[int, tuple[np.dtype[Any], bool]]:
-        """Of each array parameter the type of its elements, and whether the kernel stores into it."""
+        """For each array parameter, the type of its elements and whether the kernel stores into it."""
         parameters = [(each, self._function.parameters[each]) for each in self.array_positions]
         return {
             position: (each.type.element.dtype, each.name in self._function.written)
@@ -84,7 +84,7 @@ class Arguments:
         }
 
     def _misfit(self, position: int, array: object) -> KernelError:
-        """Return what is wrong with an array for a parameter that does not take it."""
+        """Return the error that says why a parameter does not take an array."""
         parameter, (wanted, _) = self._function.parameters[position], self._elements[position]
         where = f"({parameter.name} of {self._function.name}, {self._function.place})"
         if not isinstance(array, np.ndarray):
@@ -102,11 +102,11 @@ class Arguments:
         return KernelError(f"{parameter.name} must {what} {where}")
 
     def check_overlaps(self, arrays: Sequence[NDArray[Any]]) -> None:
-        """Raise KernelError if an array that is written lies over one of wider or narrower elements, unless one is of bytes.
+        """Raise KernelError if a written array overlaps one of wider or narrower elements, unless either is of bytes.
 
         The compiled code may have loaded such an element before the store, as C compilers may.
         """
-        if len({each.itemsize for each in arrays} - {1}) < 2:  # of one width, beside bytes
+        if len({each.itemsize for each in arrays} - {1}) < 2:  # all of one width, except bytes
             return
         named = list(zip(self.array_positions, arrays, strict=True))
         for (position, one), (behind, other) in combinations(named, 2):

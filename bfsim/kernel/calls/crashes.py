@@ -1,7 +1,7 @@
-"""A crash in native code: standard error is told which kernel was running and what to do, and then the process ends as ever.
+"""A crash in native code: says on standard error which kernel was running and what to do; then the process ends as usual.
 
-The handler is machine code, because nothing of Python can run any more. It writes what Python has laid ready, and hands the
-signal on to whoever had it before. On systems other than POSIX there is none.
+The handler is machine code, because Python can no longer run. It writes what Python has prepared, and passes the signal
+on to the previous handler. On systems other than POSIX there is none.
 """
 
 from __future__ import annotations
@@ -63,13 +63,13 @@ tell:
 
 
 class _Signal(ctypes.Structure):
-    """A signal: the beginning of what is said, and who had the signal before."""
+    """A signal: the beginning of the message, and the previous handler."""
 
     _fields_ = (("text", ctypes.c_char_p), ("nbytes", ctypes.c_int64), ("before", ctypes.c_void_p))
 
 
 class _Watched(ctypes.Structure):
-    """A kernel in the list of those that may be running: the next one, the word that is not 0 then, the end of what is said."""
+    """A kernel that may be running: the next in the list, the word that is not 0 while it runs, the end of the message."""
 
     _fields_ = (
         ("next", ctypes.c_void_p),
@@ -80,11 +80,11 @@ class _Watched(ctypes.Structure):
 
 
 _kept: list[object] = []
-"""What the handler has the addresses of."""
+"""Objects whose addresses the handler has."""
 
 
 def take_signals() -> None:
-    """Hear of crashes from now on."""
+    """Report crashes from now on."""
     if os.name == "posix":
         _first()
 
@@ -117,7 +117,7 @@ def _first() -> ctypes.c_void_p:
 
 
 def _install() -> None:
-    """Take the signals of a crash, and remember who had them."""
+    """Take over the signals of a crash, and remember their handlers."""
     handler = machine_code.address_of("bfsim_tell_crash")
     table = (_Signal * SIGNAL_NUMBERS).from_address(machine_code.address_of("bfsim_signals"))
     system = ctypes.CDLL(None)

@@ -1,4 +1,4 @@
-"""What machine code takes from a call of Python's, and what it leaves, by what a kernel declares (`machine_code.calling`)."""
+"""What machine code takes from a call in Python and what it leaves, as the kernel declares it (`machine_code.calling`)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Check = Callable[[Sequence[object]], None]
 
 
 def words_of(function: Function, arrays: Iterable[Sequence[int]]) -> list[int | Taken]:
-    """Return what is handed over for the parameters: an array as the words of the next of `arrays`, a number in one word."""
+    """Return the words for the parameters: for an array, those of the next of `arrays`; for a number, one."""
     words: list[int | Taken] = []
     following = iter(arrays)
     for position, each in enumerate(function.parameters):
@@ -35,8 +35,8 @@ def words_of(function: Function, arrays: Iterable[Sequence[int]]) -> list[int | 
 def left_by(
     function: Function, access_trace: AccessTrace | None, check: Check, refuse: Callable[[int], NoReturn]
 ) -> Left:
-    """Return what a call leaves. One that fails raises KernelError: with what is wrong with its arguments, else by `refuse`, which is told why."""
-    work = Work(0, 0)  # one for all runs: to make it takes Python longer than to run a short kernel
+    """Return what a call leaves. If it fails, `check` raises KernelError for wrong arguments, else `refuse` with the reason."""
+    work = Work(0, 0)  # one for all runs: making one takes Python longer than running a short kernel
 
     def fail(*arguments: Any) -> NoReturn:
         if access_trace and work.issue_cclk == NO_ROOM:

@@ -32,7 +32,7 @@ def policy_of(state: State, offset: int) -> int:
 
 @native
 def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool, int]:
-    """Look for a line and make it the one used last; return whether it was there, and the changed line that left for it."""
+    """Look for a line and make it the one used last; return whether it was there, and the changed line that it replaced."""
     first, way = log.TAGS + line % state[log.SETS] * state[log.WAYS], 0
     last = state[log.WAYS] - 1
     while way < last and state[first + way] >> 1 != line:
@@ -40,7 +40,7 @@ def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool
     hit = state[first + way] >> 1 == line
     if not hit and not allocate:
         return False, log.EMPTY
-    if not hit:  # a way without a line comes before the line used longest ago
+    if not hit:  # an empty way is taken before the one used longest ago
         way = 0
         while way < last and state[first + way] != log.EMPTY:
             way += 1
@@ -73,7 +73,7 @@ def trace_access(at: State, address: int, access: int, stamp: int, site: int) ->
     if not state[log.ARENA] <= address < state[log.END]:
         return
     write, offset = access >= log.WRITE, address - state[log.ARENA]
-    if not state[log.REGIONS]:  # most boards cache none: no register need be saved for them
+    if not state[log.REGIONS]:  # most boards cache nothing: then no register need be saved
         write_entry(state, log.STORE if write else log.LOAD, offset, stamp, site)
         return
     policy = policy_of(state, offset)

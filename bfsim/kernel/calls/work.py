@@ -1,4 +1,4 @@
-"""`Work`: what one kernel call cost and touched. The one type in which `kernel/` and `machine/` meet."""
+"""`Work`: what one kernel call cost and touched. The one type where `kernel/` and `machine/` meet."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from bfsim.machine_code import left
 
 FLOAT = struct.Struct("<f")
 ISSUE_CCLK, STALL_CCLK, ACCESSES = left.ISSUE_CCLK, left.STALL_CCLK, left.ACCESSES
-"""Places of the numbers of a `Work`."""
+"""Places of the numbers in a `Work`."""
 
 
 def is_single(value: object) -> bool:
-    """Whether a value is a number that an IEEE single can hold, rounded; infinities and NaN are."""
+    """Whether a value is a number that an IEEE single can hold, rounded; infinities and NaN count."""
     if isinstance(value, bool) or not isinstance(value, (float, int, np.floating)):
         return False
     try:
@@ -30,7 +30,7 @@ def is_single(value: object) -> bool:
 class Work:
     """One kernel call, done natively: pixels are written already, time has not passed yet.
 
-    `value` is what the kernel returned. Its numbers are where machine code finds them.
+    `value` is what the kernel returned. The other numbers lie where machine code finds them.
     """
 
     __slots__ = ("_numbers", "at", "value")
@@ -40,7 +40,7 @@ class Work:
     ) -> None:
         self._numbers = (ctypes.c_int64 * 4)(issue_cclk, stall_cclk, accesses)
         self.at = ctypes.addressof(self._numbers)
-        """Their address."""
+        """The address of these numbers."""
         self.value = value
 
     @property
@@ -55,7 +55,7 @@ class Work:
 
     @property
     def accesses(self) -> int:
-        """How many accesses outside L1 the access_trace logged."""
+        """How many accesses outside L1 the access trace logged."""
         return self._numbers[ACCESSES]
 
 

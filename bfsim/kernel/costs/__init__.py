@@ -1,1 +1,1 @@
-"""What a kernel costs, as data: charges of blocks, what is counted in a run, and by which calls it is come to."""
+"""What a kernel costs, as data: the charges of blocks, what is counted in a run, and the call paths that lead to it."""

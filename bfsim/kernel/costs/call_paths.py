@@ -1,7 +1,8 @@
-"""Call paths of a program: a kernel that is called through two others, or with other arrays, is counted apart.
+"""Call paths of a program: a kernel that is called through two others, or with other arrays, is counted separately.
 
-A program's counts are a table laid out as its tree of calls: first those of a routine itself, then those of each that it calls.
-Where a callee's part begins depends on the caller's part alone, so that a call hands on its own place and a constant.
+A program's counts are a table laid out like its tree of calls: first those of a routine itself, then those of each
+callee. Where a callee's part begins depends only on where the caller's does, so a call passes on its own place plus a
+constant.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from bfsim.kernel.costs.routine_calls import RoutineCall
 from bfsim.kernel.ir.text import Entrance, SourceLine
 
 MOST_COUNTERS = 1000
-"""[ours] Of a program with more, the calls of a routine are counted together, whatever path they come by."""
+"""[ours] In a program with more, the calls of a routine are counted together, whatever their path."""
 
 
 class Site(NamedTuple):
@@ -39,9 +40,9 @@ class Offset(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CallPath:
-    """One way to a routine. `routines`: from the program's own to it. `arrays`: its array parameters, each with the program's.
+    """One path to a routine. `routines`: those from the program's first down to it.
 
-    `first`: where its counters and its sites begin.
+    `arrays`: its array parameters, each with that of the program. `first`: where its counters and its sites begin.
     """
 
     routines: tuple[str, ...]
@@ -50,9 +51,10 @@ class CallPath:
 
 
 class RoutineCosts(NamedTuple):
-    """What an event of a counter costs, and whom: a row for each counter and each routine that has a part of it.
+    """What a counter's event costs, by routine: a row for each counter and each routine that bears a part of it.
 
-    `symbols`: the routines. `counter` and `routine`: numbers of both, a row each. `costs`: calls, issue and stall cycles, a row each.
+    `symbols`: the routines. `counter` and `routine`: their numbers in each row. `costs`: calls, issue cycles and stall
+    cycles in each row.
     """
 
     symbols: tuple[str, ...]
@@ -62,9 +64,10 @@ class RoutineCosts(NamedTuple):
 
 
 class CountedAccesses(NamedTuple):
-    """So many accesses that an event of a counter makes at one site. `array`: the program's; each may be to that or to others, `among` in all.
+    """The number of `accesses` that a counter's event makes at one site.
 
-    `counter` and `site`: numbers of both.
+    `counter` and `site`: their numbers. `array`: the program's; each access may be to any of `among` arrays, this one
+    included.
     """
 
     counter: int
@@ -76,14 +79,14 @@ class CountedAccesses(NamedTuple):
 
 @dataclass(frozen=True)
 class Program:
-    """The kernel `symbol` and all that it calls, as it is counted: each counter once for each path to its routine."""
+    """The kernel `symbol` and all that it calls, as counted: each counter once for each path to its routine."""
 
     symbol: str
     costs: Costs
     arrays: tuple[str, ...]
     """The kernel's array parameters."""
     together: bool = False
-    """Whether the calls of a routine are counted together, whatever path they come by, by counters in the order of the costs."""
+    """Whether the calls of a routine are counted together, whatever their path, by counters in the order of the costs."""
     paths: tuple[CallPath, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -130,7 +133,7 @@ class Program:
 
     @cached_property
     def routine_costs(self) -> RoutineCosts:
-        """Whose calls and cycles each counter counts."""
+        """The routines whose calls and cycles each counter counts."""
         rows: dict[tuple[int, str], list[int]] = {}
         for number, _, counter in self.counted:
             for each in counter.enters:
@@ -151,7 +154,7 @@ class Program:
 
     @cached_property
     def accesses(self) -> tuple[CountedAccesses, ...]:
-        """What the events of its counters access in its arrays."""
+        """The accesses to its arrays by the events of its counters."""
         sites = {
             (path.first, site): number
             for path in self.paths
@@ -167,7 +170,7 @@ class Program:
         return tuple(CountedAccesses(*key, accesses) for key, accesses in found.items())
 
     def call_offsets(self, routine: str) -> tuple[Offset, ...]:
-        """Return, of each call that a routine makes, where the callee's part begins, from where the caller's does."""
+        """Return for each call of a routine where the callee's part begins, relative to the caller's."""
         calls = self.costs.calls.get(routine, ())
         if not calls or not self._has_tree:
             return (Offset(0, 0),) * len(calls)
@@ -186,13 +189,13 @@ class Program:
         return next(each.first for each in self.paths if each.routines[-1] == routine)
 
     def through(self, path: CallPath, line: SourceLine) -> tuple[str, ...]:
-        """Return the routines down to a line of one that `path` leads to, those that were inlined there included."""
+        """Return the routines down to a line of the one that `path` leads to, including those inlined there."""
         if line.routine == path.routines[-1]:
             return path.routines
         return (*path.routines, *self.costs.inlined.get(line.site, ())[1:], line.routine)
 
     def entered(self, path: CallPath, entrance: Entrance) -> tuple[str, ...]:
-        """Return the routines down to one that begins where `path` leads to, itself or inlined there."""
+        """Return the routines down to one that begins at the end of `path`: that routine itself, or one inlined there."""
         if entrance.symbol == path.routines[-1]:
             return path.routines
         return (*self.through(path, entrance.caller), entrance.symbol)
@@ -211,7 +214,7 @@ class Program:
         return {}
 
     def _size(self, routine: str) -> Offset:
-        """Return how many counters and sites a routine has, with all that it calls."""
+        """Return how many counters and sites a routine has, callees included."""
         if routine not in self._sizes:
             parts = [
                 self._own_size(routine),
@@ -223,7 +226,7 @@ class Program:
         return self._sizes[routine]
 
     def _tree(self) -> Iterator[CallPath]:
-        """Yield every path, each routine before those that it calls, as `call_offsets` has them."""
+        """Yield every path, each routine before its callees, in the layout of `call_offsets`."""
         top = CallPath((self.symbol,), {each: each for each in self.arrays}, Offset(0, 0))
         yield from self._below(top)
 
@@ -237,7 +240,7 @@ class Program:
             yield from self._below(CallPath((*path.routines, call.callee), arrays, begin))
 
     def _flat(self) -> Iterator[CallPath]:
-        """Yield one path to each routine, the first that is found."""
+        """Yield one path to each routine, the first one found."""
         waiting = [CallPath((self.symbol,), {each: each for each in self.arrays}, Offset(0, 0))]
         at, known = Offset(0, 0), {self.symbol}
         while waiting:

@@ -11,7 +11,7 @@ from bfsim.kernel.operations import COSTS, Op
 
 
 class Charge(NamedTuple):
-    """One operation, executed so many `times` per event; negative where a test moves a cost to its other side."""
+    """One operation, executed `times` per event; negative where a test moves a cost to its other side."""
 
     op: Op
     line: SourceLine
@@ -21,7 +21,7 @@ class Charge(NamedTuple):
     """Interlock cycles of one execution (0 in profiles without interlocks)."""
     times: int = 1
     routine: str = ""
-    """The routine of the run-time library that it is an operation of, such as "division"."""
+    """The routine of the run-time library that the operation is part of, such as "division"."""
 
 
 def charge(op: Op, line: SourceLine) -> Charge:
@@ -35,7 +35,7 @@ def instead(side: Iterable[Charge], other: Iterable[Charge]) -> tuple[Charge, ..
 
 
 def merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
-    """Add up like charges; what cancels out is left out."""
+    """Add up equal charges; those that cancel out are left out."""
     times: dict[Charge, int] = {}
     for each in charges:
         one = each._replace(times=1)
@@ -53,7 +53,7 @@ class Test:
 
 
 class Access(NamedTuple):
-    """A load or store of line `line` that the costed code makes: number `number`, from 0, of those that the IR has in block `label`."""
+    """A load or store by the costed code, in line `line`: number `number`, from 0, of those in block `label` of the IR."""
 
     array: str
     writes: bool
@@ -61,16 +61,16 @@ class Access(NamedTuple):
     number: int
     line: SourceLine
     fills: bool = False
-    """Whether a routine of the library makes it, which stores words."""
+    """Whether a routine of the library makes it, by storing words."""
     may_be: bool = False
-    """Whether the array is one of those that the instruction may access: its address decides."""
+    """Whether this is only one of the arrays that the instruction may access: its address decides."""
 
     turn: int = 0
     among: int = 1
-    """It may be to so many arrays, of which this is number `turn`: [assumed] each gets an equal part of the events."""
+    """How many arrays it may be to; this one is number `turn`. [assumed] Each gets an equal part of the events."""
 
     def times(self, events: int) -> int:
-        """Return how many of the events are to its array."""
+        """Return how many of the events access its array."""
         return (events + self.turn) // self.among
 
     @property

@@ -18,10 +18,10 @@ OPS = {each.value: each for each in Op}
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """What a kernel costs: `counters` of its routines, its own and those it calls, and how it comes from one to the other.
+    """What a kernel costs: the `counters` of its routines, callees included, and how they call each other.
 
-    `calls`: of each routine its calls of others, in the order of its text. `inlined`: through which routines an inlined call
-    came, by its number (`SourceLine.site`), the routine that it was inlined into first.
+    `calls`: the calls that each routine makes of others, in the order of its text. `inlined`: the routines through
+    which an inlined call came, by its number (`SourceLine.site`), beginning with the one that it was inlined into.
     """
 
     counters: tuple[Counter, ...] = ()
@@ -30,12 +30,12 @@ class Costs:
 
 
 def kept_costs(key: str, made: Callable[[], Costs]) -> Costs:
-    """Return the costs that the cache on disk keeps under a key, or those that are made now, which it keeps."""
+    """Return the costs that the cache on disk keeps under a key; make and keep them if there are none."""
     return _costs(store.kept(key, lambda: _rows(made())))
 
 
 def _rows(costs: Costs) -> dict[str, Any]:
-    """Return costs for JSON: lines, charges and accesses once each, and then by their numbers."""
+    """Return costs for JSON: each line, charge and access once, and elsewhere by its number."""
     lines, charges, accesses = _Numbered(), _Numbered(), _Numbered()
 
     def row(each: Counter) -> list[Any]:
@@ -57,7 +57,7 @@ def _rows(costs: Costs) -> dict[str, Any]:
 
 
 class _Numbered(dict[Any, int]):
-    """Things by which they were asked for, numbered in that order."""
+    """Numbers of things, in the order in which they are first asked for."""
 
     def __missing__(self, key: Any) -> int:
         return self.setdefault(key, len(self))

@@ -1,7 +1,7 @@
 """What is counted in a run: the execution of every block, and of every test whose sides cost differently.
 
-How often each counter's event happened, times its cycles, summed, is the time of the run: exactly the blocks
-that were costed are the blocks that are counted.
+The time of a run is the sum over all counters of events times cycles: the blocks that are counted are exactly those
+that were costed.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from bfsim.kernel.operations import Op
 class Counter:
     """An event that is counted: the execution of block `label`, or of its test `value` being true.
 
-    `charges`: what the event costs. `accesses`: those that the costed code makes. `enters`: the kernels that it enters, as the
-    first block of the routine does, and blocks where an inlined one begins.
+    `charges`: what the event costs. `accesses`: what the costed code accesses. `enters`: the kernels that it enters:
+    the routine in its first block, and an inlined one in the block where it begins.
     """
 
     routine: str
@@ -57,7 +57,7 @@ class Counter:
     def line_operations(self) -> tuple[tuple[SourceLine, str, int, int], ...]:
         """(source line, operation or routine of the run-time library, how many, issue cycles) per event.
 
-        A routine ran as often as the rarest of its operations, which each run of it has once.
+        A routine ran as often as its rarest operation, which runs once each time.
         """
         found: dict[tuple[SourceLine, str], tuple[dict[Op, int], int]] = {}
         for op, line, issue_cclk, _, times, routine in self.charges:

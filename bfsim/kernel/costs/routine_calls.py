@@ -14,7 +14,7 @@ POINTER = re.compile(r"\bptr (?:\w+ )*(%[\w.$-]+)")
 
 
 class RoutineCall(NamedTuple):
-    """A call of a routine; `arrays`: its parameters that are arrays, each with the caller's parameter that it gets."""
+    """A call of a routine; `arrays`: its array parameters, each with the caller's parameter that is passed for it."""
 
     callee: str
     arrays: tuple[tuple[str, str], ...]

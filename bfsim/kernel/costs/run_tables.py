@@ -1,4 +1,7 @@
-"""What a run must know of a program to count and to charge its calls, as the cache on disk keeps it: a small part of the costs, which reports read."""
+"""What a run needs to count and charge the calls of a program, as kept in the cache on disk: a small part of its costs.
+
+Reports read all of them.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,8 @@ from bfsim.kernel.costs.call_paths import CountedAccesses, Program, RoutineCosts
 class RunTables:
     """Tables of a program, as JSON has them.
 
-    `counters`: how many there are; `routines`: whose they are, each once. `site_routines`: that of each site's line. `costs` and `accesses`
-    as the program has them.
+    `counters`: how many there are; `routines`: those that they belong to, each once. `site_routines`: the routine of
+    each site's line. `costs` and `accesses`: as in `Program`.
     """
 
     counters: int
@@ -27,14 +30,14 @@ class RunTables:
 
     @cached_property
     def costs(self) -> RoutineCosts:
-        """Whose calls and cycles each counter counts."""
+        """The routines whose calls and cycles each counter counts."""
         symbols, counter, routine, costs = self.kept_costs
         counters, routines = (np.array(each, np.int64) for each in (counter, routine))
         return RoutineCosts(tuple(symbols), counters, routines, np.array(costs, np.int64).reshape(-1, 3))
 
     @cached_property
     def accesses(self) -> tuple[CountedAccesses, ...]:
-        """What the events of its counters access in its arrays."""
+        """The accesses to its arrays by the events of its counters."""
         return tuple(CountedAccesses(*each) for each in self.kept_accesses)
 
 

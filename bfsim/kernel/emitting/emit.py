@@ -1,7 +1,7 @@
 """Typed tree → LLVM IR, unoptimised: every local in a stack slot, one debug line per statement.
 
-An array is a plain pointer and its length; a call of another kernel is a real call (`noinline`), as the
-firmware's C would have it. Lengths follow their pointers in the parameter list.
+An array is a plain pointer and its length, which follows it in the parameter list. A call of another kernel is a real
+call (`noinline`), as in firmware written in C.
 """
 
 from __future__ import annotations
@@ -37,17 +37,19 @@ POINTER = ir.PointerType()
 def emit(
     function: Function, inlined: frozenset[InlinedCall] = frozenset(), *, one_way_back: bool = True
 ) -> ir.Module:
-    """Emit `function` and every kernel it calls as one module; calls that are to be inlined are marked so.
+    """Emit `function` and every kernel it calls as one module; mark the calls that are to be inlined.
 
-    `one_way_back`: whether each way round a `while` joins the others before the test, where GCC makes one loop of them (`subloops`).
+    `one_way_back`: whether all ways back to the test of a `while` join before it if GCC makes one loop of them
+    (`subloops`).
     """
     return _emitted(function, inlined, one_way_back=one_way_back)[0]
 
 
 def sites_of(function: Function) -> dict[str, Sites]:
-    """Return, by symbol, the sites in `function` and in every kernel it calls, in the order of their numbers.
+    """Return the sites in `function` and in every kernel it calls, by symbol, in the order of their numbers.
 
-    A number, from 1 on, is the column in the debug location of the instruction; what is none of them has column 0.
+    The number, from 1 on, is the column in the debug location of the site's instruction; other instructions have column
+    0.
     """
     return _emitted(function, frozenset(), one_way_back=True)[1]
 
@@ -105,7 +107,7 @@ def _emit_into(
     values.at(1)
     body = tree.body_of(function)
     for number, (name, kind) in enumerate(body.locals):
-        # the number outlives all passes: in which order variables are declared matters to a compiler
+        # the number outlives all passes: the order of declarations matters to a compiler
         values.slots[name] = builder.alloca(register_type(kind), name=f"{name}.v{number}")
     for name, value in scalars.items():
         builder.store(value, values.slots[name])
@@ -121,7 +123,7 @@ def _emit_into(
 def _name_arguments(
     target: ir.Function, function: Function
 ) -> tuple[dict[str, tuple[ir.Value, ir.Value]], dict[str, ir.Value]]:
-    """Name the arguments as the parameters, before anything else takes a name. Returns the arrays and the scalars."""
+    """Name the arguments after the parameters, before anything else takes a name. Return the arrays and the scalars."""
     arrays: dict[str, tuple[ir.Value, ir.Value]] = {}
     scalars: dict[str, ir.Value] = {}
     arguments = iter(target.args)
@@ -156,7 +158,7 @@ def _debug_scope(module: ir.Module, target: ir.Function, function: Function) -> 
 
 
 def _weight(body: tuple[tree.Stmt, ...]) -> int:
-    """Percent by which a side of an `if` is likely, as GCC guesses it from how the side ends."""
+    """Return how likely a side of an `if` is, in percent, as GCC guesses from how the side ends."""
     last = body[-1] if body else None
     return (
         CONTINUES
@@ -176,9 +178,9 @@ class _Statements:
     body: tuple[tree.Stmt, ...]
     one_way_back: bool
     loops: list[tuple[ir.BasicBlock, ir.BasicBlock]] = field(init=False, default_factory=list)
-    """Of each open loop: where `continue` and where `break` go."""
+    """For each open loop, where `continue` and `break` go."""
     leaving: dict[int, tuple[int, int]] = field(init=False, default_factory=dict)
-    """Weights of the tests that leave a loop which begins with the same test as the one around it, by their identity."""
+    """Weights of the tests that leave a loop which begins with the same test as the loop around it, by `id`."""
 
     def emit(self, body: tuple[tree.Stmt, ...]) -> None:
         """Emit statements one after the other."""
@@ -246,7 +248,7 @@ class _Statements:
         self.builder.position_at_end(after)
 
     def _for(self, node: tree.For) -> None:
-        """The counter is hidden: what the body assigns to the loop's name does not change the iterations, as in Python."""
+        """Emit a loop with a hidden counter: as in Python, assigning to the loop's name does not change the iterations."""
         builder = self.builder
         start, stop = self.values.value(node.start), self.values.value(node.stop)
         counter = self.values.entry_slot(I32, f"{node.name}.iteration")

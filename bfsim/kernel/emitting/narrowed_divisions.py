@@ -1,6 +1,7 @@
-"""Divisions that LLVM does in fewer bits, where it has dropped their names: they get them back, by the number of their place in the source.
+"""Divisions that LLVM narrowed, and whose names it dropped, get them back by the number of their site.
 
-Of a byte divided by 10, of which only a byte is wanted, LLVM makes a new division. In C, `//` and `%` are those of a function of ints.
+If a byte is divided by 10 and only a byte of the result is wanted, LLVM makes a new division in fewer bits. In C, `//`
+and `%` are a function of ints.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ NOTE = re.compile(r"^!(\d+) = (?:distinct )?!DILocation\(line: (\d+),(?: column:
 
 
 def with_rounded_names(text: str, function: Function) -> str:
-    """Return the module `text` of `function` and its callees with the name of `//` and `%` on each of them that was narrowed."""
+    """Return the module `text` of `function` and its callees, with the name of `//` and `%` on each that was narrowed."""
     rows = text.splitlines()
     if not any(NARROWED.match(row) for row in rows):
         return text
     rounded, prefix = _rounded_notes(rows, function), f"{ROUNDED}.narrowed"
-    while f"%{prefix}." in text:  # of those that have been narrowed before
+    while f"%{prefix}." in text:  # taken by divisions that were narrowed earlier
         prefix += "_"
     for start in [number for number, row in enumerate(rows) if DEFINE.match(row)]:
         end = rows.index("}", start)
@@ -36,7 +37,7 @@ def with_rounded_names(text: str, function: Function) -> str:
 
 
 def _rounded_notes(rows: list[str], function: Function) -> set[str]:
-    """The numbers of the notes of the places at which `//` or `%` of two i32 stands; of a place without a number, its line decides."""
+    """Return the numbers of the debug locations of `//` and `%` of two i32; without a column, the line decides."""
     symbols = {found[1]: found[2] for found in map(SUBPROGRAM.match, rows) if found}
     sites = sites_of(function)
     notes = set[str]()

@@ -1,7 +1,8 @@
-"""A `continue` that makes two loops of one: with whatever changes only behind it, what comes before it turns round a loop of its own.
+"""A `continue` that makes two loops of one: the statements before it become an inner loop.
 
-[find_subloop_latch_edge_by_ivs in cfgloop.cc of GCC 12] The way back of that loop comes before all others, and whatever it hands on, another
-way hands on otherwise. LLVM splits loops where its own rule holds, so one that GCC does not split is given one way back.
+[find_subloop_latch_edge_by_ivs in cfgloop.cc of GCC 12] The way back of the inner loop comes before all others, and
+every other way back hands on other values of the variables that it hands on. LLVM splits loops by a rule of its own, so
+a loop that GCC does not split is given one way back.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ def makes_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> bool:
             ways = _ways_back(loop.body[number + 1 :], frozenset(), to_next=True)
             return all(handed_on <= changed for changed in ways)
         if _continues(each):
-            return False  # whose way back does not come before the others
+            return False  # its way back does not come before the others
         before |= dict.fromkeys(_changed(each), False)
         if isinstance(each, tree.Assign):
             before[each.name] = isinstance(each.value, tree.Const)
@@ -32,10 +33,11 @@ def makes_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> bool:
 
 
 def end_of_subloop(loop: tree.While, function: Sequence[tree.Stmt]) -> tuple[tree.If, bool] | None:
-    """The test that ends an iteration of `loop`, if GCC makes two loops of one by it, and whether the loop within is left where it holds.
+    """Return the test at which GCC makes two loops of `loop`, and whether the inner one is left where it holds.
 
-    Of `if a[m] > x: high = m`, `else: low = m + 1`, a side that only says what variables are next leads back at once. The loop within begins
-    with the test of both, so neither is rotated. Behind the test of `loop` itself, that side leads out of it.
+    The test ends an iteration: in `if a[m] > x: high = m`, `else: low = m + 1`, a side that only sets variables for the next
+    iteration leads back at once. The inner loop begins with the test of both, so neither is rotated. If the test is that of
+    `loop` itself, that side leads out of it.
     """
     before, last = loop.body[:-1], loop.body[-1] if loop.body else None
     if not isinstance(last, tree.If) or any(map(_continues, loop.body)) or tree.alike(last.test, loop.test):
@@ -68,7 +70,7 @@ def _is_bare(statement: tree.Stmt) -> bool:
 def _ways_back(
     body: Sequence[tree.Stmt], changed: frozenset[str], *, to_next: bool
 ) -> Iterator[frozenset[str]]:
-    """Yield for each way from here to the next iteration what has been changed by then; `changed` has been before.
+    """Yield the variables changed on each path from here to the next iteration; `changed` are changed already.
 
     `to_next`: whether the end of `body` leads there.
     """
@@ -89,7 +91,7 @@ def _ways_back(
 
 
 def _is_carried(name: str, loop: tree.While, function: Sequence[tree.Stmt]) -> bool:
-    """Whether an iteration, or what comes behind the loop, reads what an iteration before has left in a variable."""
+    """Whether a later iteration, or the code after the loop, reads what an iteration left in a variable."""
     if name == MEMORY:
         return True
     behind = (each for each in _behind(loop, function) if _is_use(each, name))
@@ -97,7 +99,7 @@ def _is_carried(name: str, loop: tree.While, function: Sequence[tree.Stmt]) -> b
 
 
 def _behind(loop: tree.While, function: Sequence[tree.Stmt]) -> Iterator[object]:
-    """Yield the parts of a function behind a loop, in source order."""
+    """Yield the parts of a function after a loop, in source order."""
     inside = {id(each) for each in tree.parts(loop)}
     parts = iter(tree.parts(tuple(function)))
     for each in parts:
@@ -122,7 +124,7 @@ def _is_read_first(nodes: Iterable[object], name: str) -> bool:
 
 
 def _changed(node: object) -> frozenset[str]:
-    """The variables that statements assign to."""
+    """Return the variables that statements assign to."""
     names = set()
     for each in tree.parts(node):
         if isinstance(each, (tree.Assign, tree.For)):

@@ -1,4 +1,4 @@
-"""Expressions of the typed tree → LLVM IR, as `emit` has them: where each stands, and what of them can go wrong in a run."""
+"""Expressions of the typed tree → LLVM IR, for `emit`: where each stands, and which of them can go wrong in a run."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from bfsim.kernel.types import FloatType, IntType, Number, u32
 InlinedCall = tuple[str, str, int]
 """Symbols of caller and callee, and the line in the caller."""
 Site = tree.Load | tree.Store | tree.Binary | tree.For
-"""An access, a division or a loop with a step that is no constant: what can go wrong in a run."""
+"""An access, a division, or a loop whose step is not constant: what can go wrong in a run."""
 I1, I32 = ir.IntType(1), ir.IntType(32)
 WRAPPING = (
-    "wrapping"  # names negated u32: an i32 that was negative is positive then, for it does not overflow in C
+    "wrapping"  # names negations of u32; that of a negative i32 is positive, for it does not overflow in C
 )
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
 # [predict.def of GCC 12] hit rates 67 % (continue) and 66 % (early return); both sides even otherwise
@@ -51,7 +51,7 @@ class Values:
     _line: int = field(init=False, default=1)
 
     def at(self, line: int, site: int = 0) -> None:
-        """Let what is emitted from now on stand in a line of the kernel."""
+        """Make a line of the kernel the source of what is emitted from now on."""
         self._line = line
         self.builder.debug_metadata = self.builder.module.add_debug_info(
             "DILocation", {"line": line, "column": site if site <= MOST_SITES else 0, "scope": self.scope}
@@ -59,7 +59,7 @@ class Values:
 
     @contextmanager
     def site(self, node: Site) -> Iterator[None]:
-        """Number what is emitted inside as `node`."""
+        """Give what is emitted inside the number of the site `node`."""
         self.sites.append(node)
         self.at(self._line, len(self.sites))
         yield
@@ -71,7 +71,7 @@ class Values:
             branch.set_weights(self.weights)
 
     def entry_slot(self, kind: ir.Type, name: str = "") -> ir.Value:
-        """Return a slot at the head of the first block: behind a call that is inlined, LLVM would leave it in memory."""
+        """Return a slot at the head of the first block: after an inlined call, LLVM would leave it in memory."""
         entry = self.builder.function.entry_basic_block
         before = next((each for each in entry.instructions if each.opname != "alloca"), None)
         with self.builder.goto_block(entry):
@@ -94,7 +94,7 @@ class Values:
         return self.arrays[node.array][1]
 
     def address(self, array: str, element: Number, index: tree.Expr) -> ir.Value:
-        """Emit where an element is."""
+        """Emit the address of an element."""
         pointer, _ = self.arrays[array]
         return self.builder.gep(pointer, [self.value(index)], source_etype=ir.IntType(element.bits))
 
@@ -179,7 +179,7 @@ class Values:
         return self.builder.icmp_signed(node.op, left, right)
 
     def _logic(self, node: tree.Logic) -> ir.Value:
-        """The right side runs only when the left one does not decide."""
+        """Emit `and` or `or`: the right side runs only if the left one does not decide."""
         slot = self._decided(node.left)
         more, after = (self.builder.append_basic_block(name) for name in (node.op, "decided"))
         left = self.builder.load(slot, typ=I1)
@@ -195,7 +195,7 @@ class Values:
         return self.builder.load(slot, typ=I1)
 
     def _decides_alone(self, op: str) -> bool:
-        """Whether the left side of `and` or `or` may lead to a `continue` by itself: else the hint is the right one's.
+        """Whether the left side of `and` or `or` alone may lead to a `continue`: if not, the hint belongs to the right side.
 
         [predict_paths_leading_to in predict.cc of GCC 12.] The hint of a `return` stays with both sides.
         """
@@ -212,7 +212,7 @@ class Values:
         return self.builder.not_(self.value(node.operand))
 
     def _choose(self, node: tree.Choose) -> ir.Value:
-        """Only the chosen side runs, as in Python."""
+        """Emit a choice: only the chosen side runs, as in Python."""
         slot = self.entry_slot(register_type(node.type), "chosen")
         yes, no, after = (self.builder.append_basic_block(name) for name in ("yes", "no", "chosen"))
         self.builder.cbranch(self.value(node.test), yes, no)
@@ -224,7 +224,7 @@ class Values:
         return self.builder.load(slot, typ=register_type(node.type))
 
     def _intrinsiccall(self, node: tree.IntrinsicCall) -> ir.Value:
-        """A call of a function without a body, until the code is compiled for the host: to LLVM, one that only computes."""
+        """Emit a call of a function that gets its body when the code is compiled for the host; to LLVM it only computes."""
         intrinsic = node.intrinsic
         target = self.builder.module.globals.get(intrinsic.symbol)
         if target is None:
@@ -254,7 +254,7 @@ class Values:
         return result
 
     def _entered(self, node: tree.KernelCall) -> tuple[str, ...]:
-        """Say where the code of a kernel begins that is to be inlined; return what LLVM is to be told of its call."""
+        """Mark where the code of an inlined kernel begins; return the attributes of its call for LLVM."""
         callee = node.callee.symbol
         if (self.function.symbol, callee, node.line) not in self.inlined:
             return ()
@@ -262,17 +262,17 @@ class Values:
         return ("alwaysinline",)
 
     def steps(self, node: tree.For, *bounds: ir.Value) -> None:
-        """Say where a loop begins whose start, stop and step are to be checked."""
+        """Mark the beginning of a loop whose start, stop and step are to be checked."""
         with self.site(node):
             self._mark(STEPS, *bounds)
 
     def hold(self) -> None:
-        """Say that the loop that begins here is not to be rotated."""
+        """Mark the loop that begins here as one that is not to be rotated."""
         self._mark(HOLDS)
         self.builder.module.globals[HOLDS].attributes.add("noduplicate")
 
     def _mark(self, name: str, *given: ir.Value) -> None:
-        """Emit a call that does nothing: it stays in its block, and stands in nothing's way."""
+        """Emit a call that does nothing: it stays in its block and hinders no other instruction."""
         mark = self.builder.module.globals.get(name)
         if mark is None:
             kind = ir.FunctionType(ir.VoidType(), [each.type for each in given])
@@ -283,7 +283,7 @@ class Values:
 
 
 def _is_within_word(count: tree.Expr) -> bool:
-    """Whether the source itself says that a value is shifted by less than a word: by a number, or by the low bits of something."""
+    """Whether the source shows that a value is shifted by less than a word: by a constant, or by low bits of something."""
     if isinstance(count, tree.Cast):
         return isinstance(count.to, IntType) and count.to.bits == WORD_BITS and _is_within_word(count.operand)
     if isinstance(count, tree.Binary) and count.op == "&":

@@ -1,4 +1,4 @@
-"""The rows that count: what a routine's counters are in the text of its IR, from their allocation to where their counts go."""
+"""The rows of IR that count: a routine's counters, from their allocation until they hand over their counts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.kernel.host_code.entry import settle
 from bfsim.kernel.host_code.tracing import CLOCK
 
 TABLE = "%.bf.table"
-"""The part of the table of counts that a routine is handed."""
+"""The part of the table of counts that a routine is given."""
 SWITCH = re.compile(r"^  switch (i\d+) ")
 
 
@@ -26,7 +26,7 @@ class NumberedCounter:
 
 
 class CounterRows:
-    """Those of a program. `derived`: counters, by their numbers, that are sums of others, and are not counted themselves."""
+    """The rows of a program. `derived`: counters, by number, that are sums of others and are not counted themselves."""
 
     def __init__(self, program: Program, derived: Mapping[int, Sum]) -> None:
         self.program, self.derived = program, derived
@@ -38,7 +38,7 @@ class CounterRows:
             place.append(NumberedCounter(number, counter))
 
     def _slots_of_counters(self) -> dict[int, int]:
-        """Of each counter, its place in the part of the table that its routine is handed."""
+        """Return the place of each counter in the part of the table that its routine is given."""
         next_slot = {routine: self.program.base(routine).counter for routine in self.program.own}
         found = {}
         for number, counter in enumerate(self.counters):
@@ -58,19 +58,19 @@ class CounterRows:
         return [(number, each) for number, each in enumerate(self.counters) if each.routine == routine]
 
     def allocations(self, routine: str) -> list[str]:
-        """Return what makes the counters of a routine, at its beginning."""
+        """Return the rows that make the counters of a routine, at its beginning."""
         counted = self.counted(routine)
         slots = [f"  %.bf.{number} = alloca i64" for number in counted]
         return slots + [f"  store i64 0, ptr %.bf.{number}" for number in counted]
 
     def begin_block(self, here: Sequence[NumberedCounter]) -> Iterator[str]:
-        """Yield what counts a block."""
+        """Yield the rows that count a block."""
         for each in here:
             if each.counter.value is None and each.number not in self.derived:
                 yield from _add(each.number, "1")
 
     def tests(self, here: Sequence[NumberedCounter], terminator: str) -> Iterator[str]:
-        """Yield what counts the tests at the end of a block."""
+        """Yield the rows that count the tests at the end of a block."""
         for place in here:
             number = place.number
             if place.counter.value is None or number in self.derived:
@@ -81,7 +81,7 @@ class CounterRows:
             yield from _add(number, f"%.bf.{number}.true")
 
     def leave(self, routine: str, place: str, *, is_top: bool) -> list[str]:
-        """Hand over the counts of one run of a routine, at one of its exits."""
+        """Return the rows that hand over the counts of one run of a routine, at one of its exits."""
         mine = [(number, each, f"%{place}.mine.{number}") for number, each in self._of(routine)]
         rows = [
             f"  {events} = load i64, ptr %.bf.{number}"
@@ -117,7 +117,7 @@ def _add(number: int, amount: str) -> list[str]:
 
 
 def pass_time(here: Sequence[NumberedCounter], terminator: str) -> list[str]:
-    """Move the clock of a traced call past a block: its cycles, and those of the edge that it leaves by."""
+    """Move the clock of a traced call past a block, by its cycles and those of the edge that it leaves by."""
     rows = []
     for place in here:
         cclk = place.counter.issue_cclk + place.counter.stall_cclk

@@ -18,7 +18,7 @@ Sum = tuple[tuple[int, int], ...]
 
 
 def derived(routine: Routine, counters: Sequence[Counter]) -> dict[int, Sum]:
-    """Return, by the number of a counter of `routine`, the sum of counted ones that it is."""
+    """Return the counters of `routine` that are sums of counted ones: the sums, by the number of the counter."""
     flow = ControlFlow(routine)
     blocks = {
         each.label: number
@@ -38,7 +38,7 @@ def derived(routine: Routine, counters: Sequence[Counter]) -> dict[int, Sum]:
 
 
 def _like_blocks_before(flow: ControlFlow, blocks: dict[str, int]) -> dict[int, Sum]:
-    """Blocks of one loop of which each way through the first passes the second, and the other way round."""
+    """Return the blocks that run exactly when an earlier block of the same loop runs, with its sum."""
     found: dict[int, Sum] = {}
     always_behind = flow.post_dominators
     for label in flow.order:
@@ -58,7 +58,7 @@ def _like_blocks_before(flow: ControlFlow, blocks: dict[str, int]) -> dict[int, 
 
 
 def _comes_again(flow: ControlFlow, label: str, without: str) -> bool:
-    """Whether a way leads from a block back to it that does not pass another one: a loop may have several ways back."""
+    """Whether a path leads from a block back to it without passing another one: a loop may have several ways back."""
     reached, waiting = {without}, [label]
     while waiting:
         for way in flow.blocks[waiting.pop()].successors:
@@ -71,7 +71,7 @@ def _comes_again(flow: ControlFlow, label: str, without: str) -> bool:
 
 
 def _side(flow: ControlFlow, label: str, counted: dict[str, Sum]) -> Sum | None:
-    """How often the condition at the end of a block is true."""
+    """Return how often the condition at the end of a block is true."""
     ways = flow.blocks[label].successors
     if len(set(ways)) != 2:
         return None

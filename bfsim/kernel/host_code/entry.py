@@ -1,9 +1,10 @@
-"""The entry point of a compiled kernel: what is called for Python, and how events become totals and cycles.
+"""The entry point of a compiled kernel: the function behind a call in Python, which turns events into totals and cycles.
 
-An entry is called by `machine_code.caller` with the address of its arguments and of the numbers that it leaves: issue and interlock cycles
-of the call, and its value. Its arguments are 64-bit words: the address of the totals (one word per counter), then pointer and length of
-each array, each integer (or the bits of a float), and in traced kernels the access_trace's state and the number of their first site.
-It returns 0. A guard that fails comes back to it from wherever it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
+`machine_code.caller` calls it with the addresses of its arguments and of the numbers that it leaves: issue and
+interlock cycles of the call, and its value. Its arguments are 64-bit words: the address of the totals (one word per
+counter), then pointer and length of each array, each integer (or the bits of a float), and in traced kernels the state
+of the access trace and the number of their first site. It returns 0. A guard that fails comes back to it from wherever
+it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from bfsim.kernel.types import ArrayType, FloatType, Number
 from bfsim.machine_code.left import FAILED, ISSUE_CCLK, STALL_CCLK, VALUE
 
 FIRST_ARGUMENT = 1
-"""The first word of the arguments behind the totals."""
+"""The first word of the arguments after the totals."""
 STALL_SHIFT = 32
-"""Of the cycles that are added up, the lower half is issue cycles and the upper one interlock cycles."""
+"""In the sum of cycles, the lower half is issue cycles and the upper half interlock cycles."""
 RETURN = "@bfsim.return"
 """Where `setjmp` keeps the way back from a guard."""
 
@@ -61,7 +62,7 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
 
 
 def entry_point(function: Function, program: Program, entry: str, *, traced: bool, checked: bool) -> str:
-    """Return the entry point of `function`: call it, settle what its callees counted, leave the cycles and the value."""
+    """Return the entry point: it calls `function`, settles what callees counted, and leaves cycles and value."""
     counters = program.counters
     called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
     rows = [
@@ -98,7 +99,7 @@ def entry_point(function: Function, program: Program, entry: str, *, traced: boo
 
 
 class _Words:
-    """The words of the arguments, which are taken one after the other by `rows`."""
+    """The words of the arguments; `rows` take them one after the other."""
 
     def __init__(self, rows: list[str]) -> None:
         self._rows = rows
@@ -113,7 +114,7 @@ class _Words:
         return f"%a{number}"
 
     def handed(self, kind: Number | ArrayType) -> list[str]:
-        """Return what a function is handed for a parameter of a type."""
+        """Return what a function is given for a parameter of a type."""
         if isinstance(kind, ArrayType):
             return [f"ptr {self.take('ptr')}", f"i32 {self.take('i32')}"]
         word = self.take("i64")
@@ -150,7 +151,7 @@ def _leave(value: str, number: int) -> list[str]:
 
 
 def _begin(entry: str, *, checked: bool) -> list[str]:
-    """Say that the kernel runs. A guard that fails comes back here, and leaves with what it has noted."""
+    """Mark the kernel as running. A guard that fails comes back here and leaves with its note."""
     running = f"  store volatile i64 1, ptr @{running_name(entry)}"
     if not checked:
         return [running]

@@ -1,4 +1,4 @@
-"""What a guard has noted → the error for the person who wrote the kernel: file and line, kernel, array, index and length."""
+"""A guard's note → the error for the author of the kernel: file and line, kernel, array, index and length."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def _way(guarded: Guarded, guard: Guard, note: Sequence[int]) -> Iterator[Source
 
 
 def _sites(guard: Guard, known: Sites) -> Sites:
-    """Return what `guard` stands before: one access or division, several of which the compiler has made one, or none.
+    """Return what `guard` checks: one access or division, several that the compiler has merged into one, or none.
 
-    There is none where it has made one of accesses in several kernels, which it inlined.
+    There is none if it has merged accesses in several kernels, which it inlined.
     """
     here, is_inlined = guard.places[0], len(guard.places) > 1
     if here.site:

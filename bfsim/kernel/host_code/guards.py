@@ -1,10 +1,10 @@
 """Guards, written into the text of the optimised IR: they check every index before its access, every divisor, and every step.
 
-In code that was not optimised they check by how much is shifted, too. LLVM changes the upper bits of that where it leaves the lower five alone.
+In unoptimised code they check shift counts, too; in optimised code LLVM may have changed all but the lower five bits.
 
-The IR has been costed by then: guards cost the host time, and the Blackfin nothing. An access goes to the element that its
-distance from the array's first one names, counted modulo 2**32 as the chip's registers count, and only if the array has it.
-The first guard that fails notes its number and two values, and the whole call of the kernel ends there.
+The IR has been costed by then: guards cost the host time, and the Blackfin nothing. An access goes to the element at
+its distance from the array's first one, modulo 2**32 as in the chip's registers, and only if the array has that
+element. The first guard that fails notes its number and two values, and the whole call of the kernel ends there.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ JUMP_WORDS = 128  # no C library's jmp_buf has more
 
 
 class Shift:
-    """Stands for one in a guard: it has no number in the source, as what else is guarded has."""
+    """Stands for a shift in a guard; unlike everything else that is guarded, it has no number in the source."""
 
 
 Node = type[tree.Load | tree.Store | tree.Binary | tree.For | tree.KernelCall | Shift]
@@ -129,7 +129,7 @@ right:
 class SourcePlace:
     """A place in the source. `site` is the number of an access or division in `routine` (see `emit.sites_of`).
 
-    It is 0 where there is none, or where LLVM has merged several; `line` is 0 where it has merged several lines.
+    It is 0 if there is none or LLVM has merged several; `line` is 0 if LLVM has merged several lines.
     """
 
     routine: str
@@ -139,9 +139,10 @@ class SourcePlace:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """What a number in the note stands for, as `node` says: an access, a division, a loop in steps, or a call of another kernel.
+    """What a number in the note stands for: an access, a division, a loop in steps, or a call of another kernel (`node`).
 
-    `places`: where it is; if that was inlined, then where that was called, and so on. `array`: the parameter, if it is one.
+    `places`: its place; if that was inlined, then the place of the inlined call, and so on. `array`: the parameter that
+    it accesses, if that is known.
     """
 
     node: Node
@@ -156,7 +157,7 @@ def note_name(entry: str) -> str:
 
 
 class Guarded:
-    """The module `text` with guards, for the entry point `entry`; `shifts`: of shifts, too, for nothing was optimised."""
+    """The module `text` with guards, for the entry point `entry`; `shifts`: of shifts, too, since nothing was optimised."""
 
     def __init__(self, text: str, entry: str, *, shifts: bool) -> None:
         rows = text.splitlines()
@@ -210,10 +211,10 @@ class Guarded:
 
     def _body(self, pointers: Pointers, body: list[str]) -> Iterator[str]:
         checked: dict[tuple[str, str], str] = {}
-        mask = None  # in the row before
+        mask = None  # that of the row before
         for row in body:
             if LABEL.match(row):
-                checked = {}  # what was checked in this block already
+                checked = {}  # what this block has checked already
             if (access := ACCESS.match(row)) and not pointers.is_local(access[3]):
                 pointer = access[3], access[2]
                 if pointer not in checked:

@@ -1,11 +1,10 @@
 """Counters, written into the very text of the optimised IR that was costed.
 
-Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it
-to the trip count, so that counting costs next to nothing. The kernel itself then adds its counts to the
-caller's totals; those of its callees go to a table on the entry point's stack, which every function is handed:
-once callees are inlined, the table dissolves into registers, and a loop around them can still be vectorised. What a function
-is handed is its own part of the table, for the path by which it was called (`call_paths`).
-Names that are added begin with a dot, which a name of the kernel cannot.
+Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it to the trip
+count, so that counting costs next to nothing. The kernel itself then adds its counts to the caller's totals; those of
+its callees go to a table on the entry point's stack, which is passed to every function: once callees are inlined, the
+table dissolves into registers, and a loop around them can still be vectorised. Each function is given its own part of
+the table, for its call path (`call_paths`). Added names begin with a dot, which a name of the kernel cannot do.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from bfsim.kernel.intrinsics.meaning import defined
 from bfsim.kernel.ir.reading import DEFINE, ENTRY, KERNEL_CALL, LABEL, STEPPING, read_module
 from bfsim.kernel.language.function import Function
 
-# [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
-# for what it inlines there, and the program runs no faster.
+# [ours] In a program with this many counters, a routine with this many of them is not inlined on the host: if it is, LLVM
+# takes twice as long, and the program runs no faster.
 LARGE_PROGRAM_COUNTERS, LARGE_ROUTINE_COUNTERS = 60, 6
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
 LEFT_OUT = ("!", "attributes", "target", "source_filename", ";")
@@ -44,8 +43,8 @@ def instrument(
 ) -> str:
     """Return the module `text` with the counters of `program` and the entry point `entry`.
 
-    With `traced`, every access that was costed is also reported to the access trace that the argument block names. With `checked`,
-    every index and divisor is checked (`guards`), and of code that is `as_written`, and not optimised, every shift.
+    With `traced`, every access that was costed is also reported to the access trace in the arguments. With `checked`,
+    every index and divisor is checked (`guards`), and in unoptimised code, `as_written`, every shift.
     """
     counters = program.costs.counters
     counter_rows = CounterRows(program, _derived(text, counters))
@@ -83,7 +82,7 @@ class _Rewriter:
         self.here = list[NumberedCounter]()
         """Counters of the block that is being rewritten."""
         self.offsets: Iterator[Offset] = iter(())
-        """Of the calls of other kernels that the routine still makes."""
+        """Offsets of the calls of other kernels that are still to come in the routine."""
         self.at_first_block, self.behind_phis = False, True
         self.calls = self.exits = 0
 
@@ -140,8 +139,8 @@ class _Rewriter:
             yield row
 
     def _call(self, row: str, callee: str) -> Iterator[str]:
-        """Hand a callee its part of the table, for the path that leads through here."""
-        offset = next(self.offsets, Offset(0, 0))  # without counters there is nothing to hand on
+        """Give a callee its part of the table, for the call path through here."""
+        offset = next(self.offsets, Offset(0, 0))  # without counters there is nothing to pass on
         self.calls += 1
         table, site = f"{TABLE}.{self.calls}", f"{SITE}.{self.calls}"
         yield f"  {table} = getelementptr i64, ptr {TABLE}, i64 {offset.counter}"
@@ -153,17 +152,17 @@ class _Rewriter:
             yield from take_clock(f"return{self.calls}")
 
     def _handed(self, table: str, site: str) -> str:
-        """What a routine is handed behind its own arguments."""
+        """Return what a routine is given after its own arguments."""
         return f"ptr {table}, i64 {site}" if self.tracing else f"ptr {table}"
 
     def _is_large(self) -> bool:
-        """Whether the routine is to stay one, wherever it is called."""
+        """Whether the routine must not be inlined."""
         is_part = len(self.rows.counters) >= LARGE_PROGRAM_COUNTERS
         return is_part and len(self.rows.counted(self.routine)) >= LARGE_ROUTINE_COUNTERS
 
 
 def _with(row: str, head: str, handed: str) -> str:
-    """Hand more to a function, behind its other arguments."""
+    """Pass more to a function, after its other arguments."""
     start = row.index(head) + len(head)
     end = _closing(row, start)
     separator = ", " if row[start:end].strip() else ""
@@ -171,7 +170,7 @@ def _with(row: str, head: str, handed: str) -> str:
 
 
 def _closing(row: str, start: int) -> int:
-    """Position of the parenthesis that closes the one before `start`."""
+    """Return the position of the parenthesis that closes the one before `start`."""
     depth = 1
     for position in range(start, len(row)):
         depth += {"(": 1, ")": -1}.get(row[position], 0)

@@ -36,15 +36,15 @@ class CompiledKernel:
     entry: int
     program: Program
     tables: RunTables
-    """What a run must know of the program."""
+    """What a run needs to know of the program."""
     failure: Callable[[], KernelError]
-    """Returns what a guard has noted in the last call; see `guards`."""
+    """Returns the error for a guard's note in the last call; see `guards`."""
     functions: tuple[Function, ...]
     """The kernel and all that it calls."""
 
     @property
     def counters(self) -> tuple[Counter, ...]:
-        """What is counted, in the order of the totals: each counter as often as there are paths to its routine."""
+        """The counters in the order of the totals: each once for each path to its routine."""
         return self.program.counters
 
     def new_totals(self) -> NDArray[np.int64]:
@@ -65,8 +65,8 @@ def compile_kernel(
     """Compile `function`, or take it from the cache on disk; once per process.
 
     `traced` kernels report every access to the access trace; without `counted` there are no counters
-    (the floor that benchmarks compare with) and every call costs 0 cycles; without `checked` no index and no divisor
-    is checked, which must be known to be right. Code that runs a few times is there sooner with less `effort`; its
+    (the floor that benchmarks compare with) and every call costs 0 cycles; without `checked` indices and divisors are
+    not checked and must be known to be right. Code that runs only a few times is ready sooner with less `effort`; its
     results and counts are the same.
     """
     key = function_keys.key(
@@ -99,7 +99,7 @@ def compile_kernel(
 
 
 def _failure(function: Function, profile: CompilerProfile, entry: str) -> KernelError:
-    """Return what the guards of a loaded kernel have noted."""
+    """Return the error that the guards of a loaded kernel have noted."""
     from bfsim.kernel.estimate.costing import optimised  # few kernels fail
     from bfsim.kernel.host_code.failures import failure
     from bfsim.kernel.host_code.guards import Guarded, note_name

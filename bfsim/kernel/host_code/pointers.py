@@ -1,9 +1,9 @@
 """Where the pointers of a routine point: into which array, and how far from its first element.
 
-Every pointer into an array gets companions, written into the text of the IR behind it: the array, its length, and the
+Every pointer into an array gets companions, written into the text of the IR after it: the array, its length, and the
 distance in bytes. They are joined where pointers are joined. The IR has 32-bit pointers, so that LLVM may add up
 distances in any order; on the host they have 64 bits and never wrap.
-Names that are added begin with a dot, which a name of the kernel cannot.
+Added names begin with a dot, which a name of the kernel cannot do.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ class Pointers:
         names = [each.split()[-1] for each in parameters.split(", ") if each]
         self._arrays = {each for each in names if f"{each}.len" in names}
         self._moved: dict[str, str] = {}
-        """Of a pointer that is another one moved: the other one."""
+        """For a pointer that is another one moved, the other one."""
         self._joined: dict[str, list[str]] = {}
-        """Of a pointer that is one of several: all of them."""
+        """For a pointer that is one of several, all of them."""
         self._locals: set[str] = set()
         for row in rows:
             if found := ELEMENT_ADDRESS.match(row):
@@ -58,7 +58,7 @@ class Pointers:
                 self._locals.add(found[1])
 
     def is_local(self, pointer: str) -> bool:
-        """Whether `pointer` points to a local of the routine, or into a compiler's own table, and into no array."""
+        """Whether `pointer` points to a local of the routine or into a compiler's own table, not into an array."""
         while pointer in self._moved:
             pointer = self._moved[pointer]
         return pointer in self._locals or pointer.startswith("@")
@@ -83,7 +83,7 @@ class Pointers:
         return found[1:] if found in self._arrays else None
 
     def companions(self, row: str) -> Iterator[str]:
-        """Yield the rows behind `row` that say where the pointer in it points; none if it has no pointer into an array."""
+        """Yield the rows after `row` that compute where its pointer points; none if it has no pointer into an array."""
         if (found := ELEMENT_ADDRESS.match(row)) and not self.is_local(found[3]):
             yield from self._distance(found)
         elif found := JOIN.match(row):
@@ -116,14 +116,14 @@ class Pointers:
 
 
 def nbytes_of(kind: str) -> int:
-    """Size of a type of the IR: an integer, a float, or a vector of these."""
+    """Return the size of a type of the IR in bytes: an integer, a float, or a vector of these."""
     if found := VECTOR.fullmatch(kind):
         return int(found[1]) * nbytes_of(found[2])
     return FLOAT_BYTES if kind == "float" else int(kind[1:]) // 8
 
 
 def _arms(join: re.Match[str]) -> list[tuple[str, str]]:
-    """(pointer, label of the block that it comes from) of each arm of a join; a select has no labels."""
+    """Return (pointer, label of the block that it comes from) for each arm of a join; a select has no labels."""
     if join["arms"]:
         return ARM.findall(join["arms"])
     return [(each, "") for each in SIDE.findall(join["sides"])]

@@ -29,7 +29,10 @@ class PreparedCall:
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
     ) -> None:
-        """`arrays`: in the order of the array parameters. `totals`: one word per counter. `first_site`: what the access trace calls the first site."""
+        """`arrays`: in the order of the array parameters. `totals`: one word per counter.
+
+        `first_site`: the number of the first site in the access trace.
+        """
 
         def refuse(_failure: int) -> NoReturn:
             raise compiled.failure()
@@ -37,10 +40,10 @@ class PreparedCall:
         words = words_of_entry(function, arrays, totals, access_trace, first_site)
         called = Called(
             compiled.entry, 0, (arrays, totals, access_trace)
-        )  # the words have only their addresses
+        )  # kept alive, since the words have only their addresses
         left = left_by(function, access_trace, check, refuse)
         self.stays_in_l1 = access_trace is None
-        """Whether no access of it can leave L1."""
+        """Whether all its accesses stay in L1."""
         self.run: Callable[..., Work] = bound_call(
             called,
             words,
@@ -48,7 +51,7 @@ class PreparedCall:
             left,
             log_of(access_trace) if access_trace else None,
         )
-        """Runs the kernel now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
+        """Runs the kernel now and returns its cost, which is valid until the next run. It reads only the numbers."""
 
 
 def words_of_entry(

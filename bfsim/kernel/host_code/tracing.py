@@ -1,7 +1,8 @@
-"""Reports to the access trace, written into the text of the optimised IR: one for each access that was costed, where it was costed.
+"""Reports to the access trace, written into the text of the optimised IR: one for each costed access, where it was costed.
 
-Nothing else is reported: neither what the costed code leaves out, nor what it does once where the IR does it twice. An array lies in
-one memory, so whether that is outside of L1 is asked once in a call; the loops of the others run as if nothing was traced.
+Nothing else is reported: no access that the costed code leaves out, and only one where it makes one of two in the IR.
+An array lies in one memory, so each call asks once whether that is outside L1; loops over other arrays run as if
+untraced.
 """
 
 from __future__ import annotations
@@ -16,13 +17,13 @@ from bfsim.kernel.ir.reading import DEFINE, LABEL
 
 POINTER = re.compile(r"ptr (%[\w.$-]+)")
 ELEMENT = re.compile(r"^  (%[\w.$-]+) = (?:getelementptr |call ptr @bfsim\.element)[^%]*(%[\w.$-]+)")
-"""The address of an element, and of what it is an element of."""
+"""Matches the address of an element, and the address that it is computed from."""
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
 FLOAT_BYTES = 4
 CLOCK = "%.bf.clock"
-"""The cycles of a traced call until the present block, while the routine runs: a local of its own, which LLVM keeps in a register."""
+"""The cycles of a traced call up to the current block: a local of the routine that runs, which LLVM keeps in a register."""
 SITE = "%.bf.site"
-"""In a routine: the first of its sites, on the path by which it was called."""
+"""In a routine: the first of its sites, on its call path."""
 ROUTINES = f"""
 define internal i1 @bfsim.is_outside(ptr %array) alwaysinline {{
   %state = load ptr, ptr @bfsim.state
@@ -64,7 +65,7 @@ done:
 class Tracing:
     """The reports of one module: `begin` a block, then ask for those `before` its first row, and `at` each of its rows.
 
-    What is reported `needs` to be known when a routine begins.
+    `needs` are what a routine must find out for them when it begins.
     """
 
     def __init__(self, text: str, program: Program) -> None:
@@ -82,18 +83,18 @@ class Tracing:
         self._told = 0
 
     def needs(self, routine: str) -> Iterator[str]:
-        """Yield what takes the clock of a routine over, and asks which of its arrays are outside of L1."""
+        """Yield the rows that take over the clock for a routine and ask which of its arrays are outside L1."""
         yield f"  {CLOCK} = alloca i64"
         yield from take_clock("begins")
         for array in self._arrays[routine]:
             yield f"  {_is_outside(array)} = call i1 @bfsim.is_outside(ptr {array})"
 
     def begin(self, routine: str, label: str) -> None:
-        """Go on with another block."""
+        """Begin another block."""
         self._routine, self._label, self._number = routine, label, -1
 
     def before(self) -> Iterator[str]:
-        """Yield the reports of what the IR accesses in other blocks."""
+        """Yield the reports of accesses that the IR makes in other blocks."""
         for each in self._here():
             if each.label != self._label:
                 yield from self._report(each)
@@ -116,7 +117,7 @@ class Tracing:
         pointer, size = self._calls[self._routine, access.label, access.number]
         site = f"i64 {SITE}, i64 {self._sites[self._routine, Site(access.line, access.array)]}"
         array = self._array_of.get((self._routine, pointer), "")
-        place = f"i1 {_is_outside(array) if array else 'true'}, ptr {pointer}"  # what reports are made to looks again
+        place = f"i1 {_is_outside(array) if array else 'true'}, ptr {pointer}"  # the access trace tests again
         if access.fills:
             yield f"  call void @bfsim.trace_fill({place}, i64 {stamp}, {site})"
         else:
@@ -124,13 +125,13 @@ class Tracing:
 
 
 def hand_clock(where: str) -> list[str]:
-    """Leave the clock of a routine to others: the one that it calls, or that has called it."""
+    """Return the rows that hand the clock over to another routine: a callee, or the caller."""
     name = f"{CLOCK}.{where}"
     return [f"  {name} = load i64, ptr {CLOCK}", f"  store i64 {name}, ptr @bfsim.clock"]
 
 
 def take_clock(where: str) -> list[str]:
-    """Take the clock from others."""
+    """Return the rows that take the clock over from another routine."""
     name = f"{CLOCK}.{where}"
     return [f"  {name} = load i64, ptr @bfsim.clock", f"  store i64 {name}, ptr {CLOCK}"]
 
@@ -140,7 +141,7 @@ def _is_outside(array: str) -> str:
 
 
 def _arrays(text: str) -> tuple[dict[str, list[str]], dict[tuple[str, str], str]]:
-    """Return the arrays of each routine, and by routine and address in which of them that is; not of one that may be in several."""
+    """Return the arrays of each routine, and by routine and address the array of each address that can be in only one."""
     arrays: dict[str, list[str]] = {}
     array_of: dict[tuple[str, str], str] = {}
     routine = ""
@@ -155,7 +156,7 @@ def _arrays(text: str) -> tuple[dict[str, list[str]], dict[tuple[str, str], str]
 
 
 def _calls(text: str) -> Iterator[tuple[tuple[str, str, int], tuple[str, int]]]:
-    """Of each access, by routine, block and number in it: its pointer; its bytes, and WRITE more if it writes."""
+    """Yield each access by routine, block and number in it: its pointer; its bytes, and WRITE more if it writes."""
     routine = label = ""
     number = -1
     for row in text.splitlines():

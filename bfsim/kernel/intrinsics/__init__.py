@@ -7,13 +7,13 @@ from bfsim.kernel.intrinsics.intrinsic import PREFIX, Intrinsic
 from bfsim.kernel.intrinsics.rows import ROWS
 
 INTRINSICS: dict[object, Intrinsic] = {each.python: each for each in ROWS}
-"""By the function of Python that each is."""
+"""Intrinsics by their functions in Python."""
 TO_THE_RIGHT: dict[object, Intrinsic] = {
     fract.shr_fr1x16: INTRINSICS[fract.shl_fr1x16],
     fract.shr_fr1x32: INTRINSICS[fract.shl_fr1x32],
     fract.shr_fr2x16: INTRINSICS[fract.shl_fr2x16],
 }
-"""Shifts that are those to the left by the number with the other sign."""
+"""Shifts to the right, each with the shift to the left that does the same with the negative number."""
 BY_NAME = {each.name: each for each in ROWS}
 
 __all__ = ["BY_NAME", "INTRINSICS", "PREFIX", "TO_THE_RIGHT", "Intrinsic"]

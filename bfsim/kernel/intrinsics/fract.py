@@ -1,7 +1,7 @@
 """Fractions and pairs of them, as Python has them: the functions of VisualDSP++'s `fract_math.h`, `fr2x16_math.h` and `i2x16_math.h`.
 
-A `fract16` is a half of a word, 1.15; a `fract32` a word, 1.31; a `fract2x16` a word of two `fract16`. Everything saturates, but for
-what says that it wraps. Of a parameter that is a half, the lower 16 bits count, as in C.
+A `fract16` is a half of a word, 1.15; a `fract32` a word, 1.31; a `fract2x16` a word of two `fract16`. Everything
+saturates, except what is said to wrap. Of a parameter that is a half, the lower 16 bits count, as in C.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ def _of_both(half: Callable[[int, int], int], x: int, y: int) -> int:
 
 
 def _rounded(product: int) -> int:
-    """Return the upper half of a product, rounded, a half to the even one: ASTAT's RND_MOD is 0 behind a reset."""
+    """Return the upper half of a product, rounded, ties to even: ASTAT's RND_MOD is 0 after a reset."""
     return product + HALF - 1 + (product >> 16 & 1) >> 16
 
 
@@ -33,12 +33,12 @@ def sub_fr1x16(x: int, y: int) -> int:
 
 
 def mult_fr1x16(x: int, y: int) -> int:
-    """Return x * y, cut off."""
+    """Return x * y, truncated."""
     return nearest(2 * low(x) * low(y) >> 16, 16)
 
 
 def multr_fr1x16(x: int, y: int) -> int:
-    """Return x * y, rounded; what lies in the middle to the even one."""
+    """Return x * y, rounded, ties to even."""
     return nearest(_rounded(2 * low(x) * low(y)), 16)
 
 
@@ -53,7 +53,7 @@ def abs_fr1x16(x: int) -> int:
 
 
 def min_fr1x16(x: int, y: int) -> int:
-    """Return the lesser one."""
+    """Return the smaller one."""
     return min(low(x), low(y))
 
 
@@ -63,18 +63,18 @@ def max_fr1x16(x: int, y: int) -> int:
 
 
 def shl_fr1x16(x: int, places: int) -> int:
-    """Return x shifted to the left, to the right by less than 0. Of `places` the lowest six bits count."""
+    """Return x shifted to the left, or to the right if `places` is negative; only its lowest six bits count."""
     by = count(places)
     return nearest(low(x) << by, 16) if by >= 0 else low(x) >> -by
 
 
 def shr_fr1x16(x: int, places: int) -> int:
-    """Return x shifted to the right, to the left by less than 0."""
+    """Return x shifted to the right, or to the left if `places` is negative."""
     return shl_fr1x16(x, -places)
 
 
 def norm_fr1x16(x: int) -> int:
-    """Return by how much x can be shifted to the left and keep its sign: 0 to 15."""
+    """Return how far x can be shifted to the left and keep its sign: 0 to 15."""
     return sign_bits(low(x), 16)
 
 
@@ -89,7 +89,7 @@ def sub_fr1x32(x: int, y: int) -> int:
 
 
 def mult_fr1x32(x: int, y: int) -> int:
-    """Return the `fract32` that two `fract16` make."""
+    """Return the product of two `fract16` as a `fract32`."""
     return nearest(2 * low(x) * low(y), 32)
 
 
@@ -104,7 +104,7 @@ def abs_fr1x32(x: int) -> int:
 
 
 def min_fr1x32(x: int, y: int) -> int:
-    """Return the lesser one."""
+    """Return the smaller one."""
     return min(x, y)
 
 
@@ -114,23 +114,23 @@ def max_fr1x32(x: int, y: int) -> int:
 
 
 def shl_fr1x32(x: int, places: int) -> int:
-    """Return x shifted to the left, to the right by less than 0. Of `places` the lowest six bits count."""
+    """Return x shifted to the left, or to the right if `places` is negative; only its lowest six bits count."""
     by = count(places)
     return nearest(x << by, 32) if by >= 0 else x >> -by
 
 
 def shr_fr1x32(x: int, places: int) -> int:
-    """Return x shifted to the right, to the left by less than 0."""
+    """Return x shifted to the right, or to the left if `places` is negative."""
     return shl_fr1x32(x, -places)
 
 
 def norm_fr1x32(x: int) -> int:
-    """Return by how much x can be shifted to the left and keep its sign: 0 to 31."""
+    """Return how far x can be shifted to the left and keep its sign: 0 to 31."""
     return sign_bits(x, 32)
 
 
 def round_fr1x32(x: int) -> int:
-    """Return the `fract16` that is nearest; what lies in the middle goes up."""
+    """Return the nearest `fract16`, ties up."""
     return nearest(x + HALF >> 16, 16)
 
 
@@ -165,17 +165,17 @@ def sub_fr2x16(x: int, y: int) -> int:
 
 
 def mult_fr2x16(x: int, y: int) -> int:
-    """Return both products, cut off."""
+    """Return both products, truncated."""
     return _of_both(mult_fr1x16, x, y)
 
 
 def multr_fr2x16(x: int, y: int) -> int:
-    """Return both products, rounded; what lies in the middle to the even one."""
+    """Return both products, rounded, ties to even."""
     return _of_both(multr_fr1x16, x, y)
 
 
 def negate_fr2x16(x: int) -> int:
-    """Return both with the other sign."""
+    """Return both halves negated."""
     return sub_fr2x16(0, x)
 
 
@@ -185,7 +185,7 @@ def abs_fr2x16(x: int) -> int:
 
 
 def min_fr2x16(x: int, y: int) -> int:
-    """Return the lesser upper and the lesser lower half."""
+    """Return the smaller upper and the smaller lower half."""
     return _of_both(min, x, y)
 
 
@@ -195,12 +195,12 @@ def max_fr2x16(x: int, y: int) -> int:
 
 
 def shl_fr2x16(x: int, places: int) -> int:
-    """Return both shifted to the left, to the right by less than 0. Of `places` the lowest six bits count."""
+    """Return both shifted to the left, or to the right if `places` is negative; only its lowest six bits count."""
     return halves(shl_fr1x16(high(x), places), shl_fr1x16(x, places))
 
 
 def shr_fr2x16(x: int, places: int) -> int:
-    """Return both shifted to the right, to the left by less than 0."""
+    """Return both shifted to the right, or to the left if `places` is negative."""
     return shl_fr2x16(x, -places)
 
 

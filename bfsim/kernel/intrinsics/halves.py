@@ -1,4 +1,4 @@
-"""Words, their halves and their bytes, as Python's integers: what the meanings of the intrinsics are written with."""
+"""Words, their halves and their bytes, as Python's integers: the means by which intrinsics are written in Python."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def of_octets(b0: int, b1: int, b2: int, b3: int) -> int:
 
 
 def count(number: int) -> int:
-    """Return by how much a register shifts to the left: its lowest six bits, with their sign."""
+    """Return how far a register shifts to the left: its lowest six bits, with their sign."""
     return signed(number, 6)
 
 

@@ -12,7 +12,7 @@ from bfsim.kernel.operations import Op
 from bfsim.kernel.types import PAIR, IntType, PairType
 
 RESULT, LOWER = "R4", "R5"
-"""Registers that a row gives its result to; of two results R5 is the lower one. A multiplier writes whole words to even registers."""
+"""Registers of a row's result; R5 has the lower one of two. A multiplier writes whole words to even registers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +26,11 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Intrinsic:
-    """A row. Its name and its parameters' are those of `python`, which says what it computes, in Python's integers.
+    """A row. `python` has the names of it and of its parameters, and says what it computes, in Python's integers.
 
-    `takes`: types of its parameters; of a narrow one only so many bits count. `gives`: of its result; a pair is two words. `steps`: what
-    the Blackfin executes; parameters are in `registers` before it. `c`: an expression of C99 for other processors, with the functions
-    of `halves.h`.
+    `takes`: types of its parameters; of a narrow one, only its own bits count. `gives`: the type of its result; a pair
+    is two words. `steps`: what the Blackfin executes, with the parameters in `registers` before. `c`: an expression of
+    C99 for other processors, with the functions of `halves.h`.
     """
 
     python: Callable[..., object]
@@ -46,12 +46,12 @@ class Intrinsic:
 
     @property
     def name(self) -> str:
-        """What kernels and C call it."""
+        """Its name in kernels and in C."""
         return self.python.__name__
 
     @property
     def symbol(self) -> str:
-        """What it is called in LLVM's IR."""
+        """Its name in LLVM's IR."""
         return f"{PREFIX}{self.name}"
 
     @cached_property

@@ -20,7 +20,7 @@ I32, I64 = ir.IntType(32), ir.IntType(64)
 
 
 def result_type(intrinsic: Intrinsic) -> ir.Type:
-    """Return the type of what it gives; the upper word of a pair is the upper half."""
+    """Return the type of its result; the upper word of a pair is the upper half."""
     return ir.IntType(intrinsic.gives.bits) if isinstance(intrinsic.gives, IntType) else I64
 
 

@@ -1,9 +1,9 @@
 """The intrinsics, a row each, with the instructions that VisualDSP++ documents for them.
 
-Names and results: ADI's headers of VisualDSP++ 5.0 (`fract_math.h`, `fr2x16_base.h`, `i2x16_math.h`, `video.h`, `builtins.h`), and of
-GCC 12 (`bfin_init_builtins` in gcc/config/bfin/bfin.cc); instructions: programming reference, chapters 14, 15, 18 and 19. `mac_i2x16`
-and `mac_fr2x16` are ours: VisualDSP++ finds that instruction in plain C. Where the headers leave open which result of a pair is the
-first, it is that which the assembler writes first.
+Names and results: ADI's headers of VisualDSP++ 5.0 (`fract_math.h`, `fr2x16_base.h`, `i2x16_math.h`, `video.h`,
+`builtins.h`), and of GCC 12 (`bfin_init_builtins` in gcc/config/bfin/bfin.cc); instructions: programming reference,
+chapters 14, 15, 18 and 19. `mac_i2x16` and `mac_fr2x16` are ours: VisualDSP++ finds that instruction in plain C. If the
+headers leave open which result of a pair is the first, it is the one that the assembler writes first.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def _shifted(does: str, **operands: Operand) -> tuple[Step, ...]:
 
 
 def _aligned(index: str) -> Step:
-    """Have the four bytes of a pair of registers be those of the lower one."""
+    """Take the four bytes of the lower one of a pair of registers."""
     return Step("set_register", {"d": index, "i": 0}, Op.IMM)
 
 

@@ -1,8 +1,8 @@
 """Four bytes at once, as Python has them: the functions of VisualDSP++'s `video.h`, and `ones` and `clip`.
 
-In VisualDSP++ the operands are eight bytes and a pointer whose lowest bits say which four of them are meant. Here they are these four,
-a word: `align8`, `align16` and `align24` take it from two. The lowest byte of a word is the first in memory. What has two results
-returns both, the upper one first.
+In VisualDSP++ the operands are eight bytes and a pointer whose lowest bits say which four of them are meant. Here they
+are just these four, a word: `align8`, `align16` and `align24` take it from two. The lowest byte of a word is the first
+in memory. Functions with two results return both, the upper one first.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def avg_i4x8(x: int, y: int) -> int:
 
 
 def avg_i4x8_t(x: int, y: int) -> int:
-    """Return four means of bytes, cut off (BYTEOP1P)."""
+    """Return four means of bytes, truncated (BYTEOP1P)."""
     b0, b1, b2, b3 = (one + other >> 1 for one, other in _pairs(x, y))
     return of_octets(b0, b1, b2, b3)
 
@@ -85,7 +85,7 @@ def avg_i2x8_lo(x: int, y: int) -> int:
 
 
 def avg_i2x8_lot(x: int, y: int) -> int:
-    """Return the means of two by two bytes, cut off, as the low bytes of two halves (BYTEOP2P)."""
+    """Return the means of two by two bytes, truncated, as the low bytes of two halves (BYTEOP2P)."""
     return halves(*_squares(x, y, 0))
 
 
@@ -96,7 +96,7 @@ def avg_i2x8_hi(x: int, y: int) -> int:
 
 
 def avg_i2x8_hit(x: int, y: int) -> int:
-    """Return the means of two by two bytes, cut off, as the high bytes of two halves (BYTEOP2P)."""
+    """Return the means of two by two bytes, truncated, as the high bytes of two halves (BYTEOP2P)."""
     upper, lower = _squares(x, y, 0)
     return halves(upper << 8, lower << 8)
 

@@ -1,1 +1,1 @@
-"""LLVM IR as data: read, written, and its control flow; what every pass of the estimate stands on."""
+"""LLVM IR as data: read, written, and its control flow; the base of every pass of the estimate."""

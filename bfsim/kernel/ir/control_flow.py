@@ -1,8 +1,4 @@
-"""Loops of an optimised routine: which there are, which count, and which values walk along with them.
-
-A compiler for the Blackfin turns a counted loop into a hardware loop and an address that moves by a
-constant per iteration into a post-incremented pointer; this file finds both.
-"""
+"""The control flow of a routine: its blocks, dominators and loops, and where values are defined and used."""
 
 from __future__ import annotations
 
@@ -14,17 +10,17 @@ from functools import cached_property
 from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine
 
 NEAR_OVERFLOW = (1 << 31) - (1 << 16)
-"""Who compares with so large a number asks whether an i32 is about to wrap."""
+"""A comparison with a number this large tests whether an i32 is about to wrap."""
 COPIED = ".copied"
-"""Ends the names of what is copied from the header of a loop to stand in front of it: a label, and values."""
+"""Suffix of the names of copies of a loop's header that stand in front of the loop: a label, and values."""
 BACK = ".back"
-"""Ends the label of a block without code in which ways back to the header of a loop come together: the code has none, and goes back from each."""
+"""Suffix of the label of an empty block that joins ways back to a loop's header; in the code, each goes back itself."""
 BEFORE_TESTS = ".hoisted"
-"""Ending of the names of what is computed or loaded before a test, as both of its sides do."""
+"""Suffix of the names of values that are computed or loaded before a test, because both of its sides do so."""
 EITHER = ".either"
-"""Ending of the names of addresses that are chosen, of which each side computes its own."""
+"""Suffix of the names of chosen addresses, of which each side computes its own."""
 OUTER = ".outer"
-"""Ends the label that LLVM gives the outer of two loops which it has made of one."""
+"""Suffix of the label that LLVM gives the outer of two loops that it has made of one."""
 
 
 @dataclass(slots=True)
@@ -49,7 +45,7 @@ class Loop:
 
 @dataclass
 class ControlFlow:
-    """Control flow of one routine. `joins_split`: whether two loops that LLVM has made of one are taken for that one (`is_split`)."""
+    """Control flow of one routine. `joins_split`: whether two loops that LLVM has made of one count as one (`is_split`)."""
 
     routine: Routine
     joins_split: bool = True
@@ -90,7 +86,7 @@ class ControlFlow:
 
     @cached_property
     def dominators(self) -> dict[str, frozenset[str]]:
-        """Of each block: the blocks that every way to it passes."""
+        """For each block, the blocks that every path to it passes."""
         every = frozenset(self.blocks)
         entry = self.routine.blocks[0].label
         found = dict.fromkeys(self.blocks, every) | {entry: frozenset({entry})}
@@ -108,7 +104,7 @@ class ControlFlow:
 
     @cached_property
     def post_dominators(self) -> dict[str, frozenset[str]]:
-        """Of each block: the blocks that every way from it passes."""
+        """For each block, the blocks that every path from it passes."""
         every = frozenset(self.blocks)
         found = {
             label: every if self.blocks[label].successors else frozenset({label}) for label in self.blocks
@@ -148,7 +144,7 @@ class ControlFlow:
     def blocks_before(
         self, first: Iterable[str], found: Collection[str], inside: Collection[str] | None = None
     ) -> set[str]:
-        """Return `found` and the other blocks inside, or in all, from which ways lead to the first ones, none through what is found already."""
+        """Return `found` and the blocks (`inside`) from which a path leads to the first ones without passing `found`."""
         before, waiting = set(found), [*first]
         while waiting:
             for each in self.predecessors[waiting.pop()]:
@@ -158,7 +154,7 @@ class ControlFlow:
         return before
 
     def innermost(self, label: str) -> Loop | None:
-        """Smallest loop around a block."""
+        """Return the smallest loop around a block."""
         return next((loop for loop in self.loops if label in loop.blocks), None)
 
     def is_invariant(self, value: str, loop: Loop) -> bool:
@@ -166,13 +162,13 @@ class ControlFlow:
         return value not in self.defined or self.defined[value][0] not in loop.blocks
 
     def instruction(self, value: str) -> Instruction | None:
-        """Where `value` is computed; None for parameters and constants."""
+        """Return the instruction that computes `value`; None for parameters and constants."""
         place = self.defined.get(value)
         return place[1] if place else None
 
     @cached_property
     def order(self) -> tuple[str, ...]:
-        """Labels in reverse post-order: a block before those it leads to, but for back edges."""
+        """Labels in reverse post-order: a block before those it leads to, except by back edges."""
         found: list[str] = []
         entry = self.routine.blocks[0].label
         seen, open_visits = {entry}, [(entry, iter(reversed(self.blocks[entry].successors)))]
@@ -188,13 +184,13 @@ class ControlFlow:
         return tuple(reversed(found))
 
     def tested(self, label: str) -> str:
-        """Return the block with the test that an empty block is one side of; any other block itself, as one that ends with a test."""
+        """Return the block with the test that an empty block is one side of; for any other block, that block itself."""
         block, before = self.blocks[label], self.predecessors[label]
         is_empty = len(block.instructions) == 1 and len(set(block.successors)) == 1 and len(before) == 1
         return before[0] if is_empty else label
 
     def is_overflow_guard(self, block: BasicBlock) -> bool:
-        """Whether a block only tests if a sum would wrap: in C, where signed sums may not, there is no such test."""
+        """Whether a block only tests if a sum would wrap: there is no such test in C, where signed sums may not wrap."""
         operands = block.terminator.operands
         test = self.instruction(operands[0]) if block.terminator.opcode == "br" and operands else None
         if test is None or test.opcode != "icmp" or not {"eq", "ne"} & set(test.text.split()[:3]):
@@ -203,37 +199,37 @@ class ControlFlow:
         return bound.isdigit() and int(bound) >= NEAR_OVERFLOW
 
     def around(self, loop: Loop) -> Loop | None:
-        """The loop directly around `loop`."""
+        """Return the loop directly around `loop`."""
         return next((each for each in self.loops if loop in each.inner), None)
 
     def is_split(self, loop: Loop) -> bool:
-        """Whether LLVM has made two loops of one with a `continue`: this is the inner one, its test is at the top."""
+        """Whether this is the inner of two loops that LLVM has made of one with a `continue`; its test is at the top."""
         return self.joins_split and f"{loop.header}{OUTER}" in self.blocks
 
     def ending(self, loop: Loop) -> str:
-        """The block whose test ends `loop`."""
+        """Return the block whose test ends `loop`."""
         if loop.counting:
             return loop.counting
         return loop.header if self.is_split(loop) else loop.latch
 
     def loops_of(self, label: str) -> list[Loop]:
-        """Loops around a block, the innermost first."""
+        """Return the loops around a block, the innermost first."""
         return [loop for loop in self.loops if label in loop.blocks]
 
     def entering(self, loop: Loop) -> str:
-        """The block from which `loop` is entered."""
+        """Return the block from which `loop` is entered."""
         return next(each for each in self.predecessors[loop.header] if each not in loop.blocks)
 
     def inside(self, loop: Loop) -> list[str]:
-        """Labels of the blocks of `loop`, in order: what is decided must not depend on the order of a set."""
+        """Return the labels of the blocks of `loop`, in order: no decision may depend on the order of a set."""
         return [label for label in self.order if label in loop.blocks]
 
     def exits(self, loop: Loop) -> list[str]:
-        """Blocks of `loop` that can leave it."""
+        """Return the blocks of `loop` that can leave it."""
         return [label for label in self.inside(loop) if set(self.blocks[label].successors) - loop.blocks]
 
     def root(self, pointer: str) -> str:
-        """Array parameter (or other origin) that `pointer` points into."""
+        """Return the array parameter (or other origin) that `pointer` points into."""
         seen: set[str] = set()
         while pointer in self.defined and pointer not in seen:
             seen.add(pointer)
@@ -247,7 +243,10 @@ class ControlFlow:
         return pointer
 
     def always_run(self, loop: Loop) -> frozenset[str]:
-        """The blocks that run whenever `loop` is entered: no way leaves it before them [last_always_executed_block in tree-predcom.cc of GCC 12]."""
+        """Return the blocks that run whenever `loop` is entered: no path leaves it before them.
+
+        [last_always_executed_block in tree-predcom.cc of GCC 12]
+        """
         return frozenset.intersection(*(self.dominators[each] for each in (loop.latch, *self.exits(loop))))
 
     def every_iteration(self, label: str, loop: Loop) -> bool:
@@ -256,9 +255,9 @@ class ControlFlow:
 
 
 def pointee_nbytes(instruction: Instruction) -> int:
-    """Bytes that an index of 1 moves a `getelementptr`; 1 for anything else."""
+    """Return the bytes by which an index of 1 moves a `getelementptr`; 1 for anything else."""
     if instruction.opcode != "getelementptr":
         return 1
-    # of an array type, its element: the last index counts
+    # for an array type, that of its element: the last index counts
     element = re.search(r"i(\d+)\]*,", instruction.text)
     return int(element.group(1)) // 8 if element else 1

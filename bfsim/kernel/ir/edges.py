@@ -26,14 +26,14 @@ def come_to_from(block: BasicBlock, old: str, new: str) -> BasicBlock:
 
 
 def without_way(phi: Instruction, label: str) -> Instruction:
-    """Return a phi that does not expect block `label` any more; any other instruction as it is."""
+    """Return a phi without its value from block `label`; any other instruction as it is."""
     if phi.opcode != "phi":
         return phi
     return with_values(phi, {way: value for way, value in arms_of(phi).items() if way != label})
 
 
 def put_between(blocks: dict[str, BasicBlock], source: str, label: str, between: str) -> None:
-    """Put an empty block on the way from block `source` to block `label`."""
+    """Put an empty block on the edge from block `source` to block `label`."""
     branch = blocks[source].terminator
     jump = Instruction(None, "br", f"br label %{label}", (), branch.line, location=branch.location)
     blocks[source] = going_to(blocks[source], label, between)
@@ -42,7 +42,7 @@ def put_between(blocks: dict[str, BasicBlock], source: str, label: str, between:
 
 
 def join_before(blocks: dict[str, BasicBlock], sources: list[str], label: str, between: str) -> None:
-    """Put one empty block on the ways from all of `sources` to block `label`, on which the same values come to its phis."""
+    """Put one empty block on the edges from all of `sources` to block `label`, by which the same values come to its phis."""
     first, *others = sources
     put_between(blocks, first, label, between)
     for each in others:
@@ -53,7 +53,7 @@ def join_before(blocks: dict[str, BasicBlock], sources: list[str], label: str, b
 
 
 def bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: str) -> None:
-    """Lead all that goes to an empty block on to where it leads."""
+    """Make all that goes to an empty block go to where that leads."""
     for each in before:
         *rows, branch = blocks[each].instructions
         text = re.sub(rf"label %{re.escape(label)}(?![\w.$-])", f"label %{end}", branch.text)
@@ -72,7 +72,7 @@ def bypass(blocks: dict[str, BasicBlock], before: list[str], label: str, end: st
 
 
 def with_arms(block: BasicBlock, gone: Collection[str], labels: Iterable[str]) -> BasicBlock:
-    """Return a block that is come to from `labels` in place of the blocks that are `gone`, all of which bring the same values."""
+    """Return a block that is entered from `labels` instead of the blocks that are `gone`, which all bring the same values."""
     rows = []
     for phi in block.instructions:
         if phi.opcode == "phi":

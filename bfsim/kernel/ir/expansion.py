@@ -1,9 +1,9 @@
-"""Where in its block GCC makes a statement that one other alone wants: together with that one [tree-ssa-ter.cc of GCC 12].
+"""Where in its block GCC makes a statement that only one other uses: together with that one [tree-ssa-ter.cc of GCC 12].
 
-So are loads, unless a store or a call comes between. Of two operands, the first is made first, or that of a sum or product that costs
-more [reorder_operands in cfgexpand.cc]. These are statements of the IR, asked for before there are operations: whether a load comes before
-or behind the step of its pointer decides which operations there are. The operations are put into that order once they are chosen
-(`estimate/registers/expansion_order.py`).
+So it does with loads, unless a store or a call comes between. Of two operands, the first is made first, or in a sum or
+product the costlier one [reorder_operands in cfgexpand.cc]. These are statements of the IR, before there are
+operations: whether a load comes before or after the step of its pointer decides which operations there are. The
+operations are put into that order once they are chosen (`estimate/registers/expansion_order.py`).
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import COMMUTATIVE, Instruction
 
 EITHER_WAY = (*COMMUTATIVE, "call")
-"""Whose operands may change places; what is called and has operations of its own is a minimum or a maximum."""
+"""Opcodes whose operands may change places; a call with operands made here is a minimum or a maximum."""
 FREE = ("zext", "sext", "trunc", "getelementptr")
-"""What costs nothing [estimate_num_insns in tree-inline.cc]."""
+"""Opcodes that cost nothing [estimate_num_insns in tree-inline.cc]."""
 FIXED = {"phi", "store", "br", "switch", "ret"}
 
 
 class Expansion:
-    """The order of the block `label`. `stepping`: a load that is made where it stands, since its pointer is stepped right behind it."""
+    """The order of the block `label`. `stepping`: a load that stays in place, since its pointer is stepped right after it."""
 
     def __init__(self, flow: ControlFlow, label: str, stepping: Instruction | None = None) -> None:
         self._flow, self._stepping = flow, stepping
@@ -29,7 +29,7 @@ class Expansion:
         self._places = {id(each): place for place, each in enumerate(self._rows)}
 
     def place(self, each: Instruction) -> int:
-        """Return which row of the block a statement of it is made with."""
+        """Return the row of the block with which a statement of it is made."""
         while (user := self._wanting(each)) is not None:
             each = user
         return self._places[id(each)]
@@ -39,7 +39,7 @@ class Expansion:
         return [one for each in self._rows if self._wanting(each) is None for one in self._made(each)]
 
     def _wanting(self, each: Instruction) -> Instruction | None:
-        """The statement that one is made with."""
+        """Return the statement with which another is made."""
         users = self._flow.users.get(each.result or "", [])
         is_apart = each is self._stepping or each.opcode in FIXED or each.is_call
         if is_apart or id(each) not in self._places or len(users) != 1:

@@ -1,4 +1,4 @@
-"""LLVM's passes for the fixed generic target, on which nothing depends on the host."""
+"""LLVM's passes for the fixed generic target, so that nothing depends on the host."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from llvmlite import ir
 from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE
 
 OF_MEMORY = ".reg2mem"
-"""In the names of values that were in memory while ways past tests were made (`register_to_memory`): jumps were threaded there, or tables made."""
+"""In the names of values that are in memory while jumps are threaded or tables made (`register_to_memory`)."""
 
 
 def parsed(module: ir.Module) -> llvm.ModuleRef:
-    """Return an emitted module as LLVM has it.
+    """Return an emitted module parsed by LLVM.
 
-    "no-builtins": a loop that fills or copies stays a loop, whose iterations can be counted. "optforfuzzing": branches stay
-    branches; what a compiler for the Blackfin makes of them is for the lowering to say. "willreturn": an intrinsic whose result nothing
-    needs is left out.
+    "no-builtins": a loop that fills or copies stays a loop, whose iterations can be counted. "optforfuzzing": branches
+    stay branches; the lowering decides what a compiler for the Blackfin makes of them. "willreturn": an intrinsic whose
+    result nothing needs is left out.
     """
     module.triple, module.data_layout = GENERIC_TRIPLE, str(_machine().target_data)
     text = str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"')
@@ -27,7 +27,7 @@ def parsed(module: ir.Module) -> llvm.ModuleRef:
 
 
 def run(names: Sequence[str], module: llvm.ModuleRef) -> None:
-    """Run passes whose like every optimising compiler has, but none that reorders sums or merges branches."""
+    """Run passes that every optimising compiler has in some form, none of which reorders sums or merges branches."""
     passes = llvm.create_new_module_pass_manager()
     for name in names:
         getattr(passes, f"add_{name}_pass")()

@@ -8,6 +8,6 @@ FOLLOWING = ".following"
 
 
 def goes_along(flow: ControlFlow, value: str) -> bool:
-    """Whether a value goes along: a narrow one is extended wherever it is compared."""
+    """Whether a value goes along with an index: a narrow one is extended wherever it is compared."""
     each = flow.instruction(value)
     return each is not None and each.opcode == "phi" and any(arm.endswith(FOLLOWING) for arm in each.operands)

@@ -15,7 +15,7 @@ def preheader_of(loop: Loop) -> str:
 
 
 def with_preheaders(routine: Routine) -> Routine:
-    """Return `routine` with a preheader for each loop that begins right behind another one, or on one side of a test."""
+    """Return `routine` with a preheader for each loop that begins right after another one, or on one side of a test."""
     flow = ControlFlow(routine)
     for loop in sorted(flow.loops, key=lambda each: each.header):
         before = [each for each in flow.predecessors[loop.header] if each not in loop.blocks]
@@ -25,7 +25,7 @@ def with_preheaders(routine: Routine) -> Routine:
 
 
 def _needs_one(flow: ControlFlow, loop: Loop, before: str) -> bool:
-    """Whether the block `before`, from which alone a loop is entered, belongs to another loop, or does not always lead to it."""
+    """Whether the only block `before` a loop belongs to another loop, or does not always lead to this one."""
     return flow.innermost(before) is not flow.around(loop) or len(set(flow.blocks[before].successors)) > 1
 
 

@@ -1,6 +1,6 @@
 """LLVM IR read: from LLVM's own text, the functions of a module and where their code comes from.
 
-Of the notes behind an instruction, its source line and its branch weights are kept.
+Of the notes on an instruction, its source line and its branch weights are kept.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def read_module(text: str) -> tuple[Routine, ...]:
 
 
 def inlined_through(text: str) -> dict[int, tuple[str, ...]]:
-    """Return through which routines each inlined call came, by its number: the one that it was inlined into comes first."""
+    """Return the routines through which each inlined call came, by its number, beginning with the one it was inlined into."""
     lines_of = _source_lines(text)
     found: dict[int, tuple[str, ...]] = {}
     for site in {line.site for line in lines_of.values()} - {0}:
@@ -88,9 +88,10 @@ def placed_rows(text: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _source_lines(text: str) -> dict[str, SourceLine]:
-    """Return the source line of each note of one, by the note's number.
+    """Return the source lines that notes name, by the note's number.
 
-    Line 0 is LLVM's word for code merged from several lines: it is no note, so that the code stays with the line before it.
+    Line 0 is LLVM's mark of code merged from several lines: it is left out, so that the code stays with the line before
+    it.
     """
     routines = {found[1]: found[2] for found in map(SUBPROGRAM.match, text.splitlines()) if found}
     notes = [found for found in map(LOCATION.match, text.splitlines()) if found and found[2] != "0"]
@@ -102,7 +103,7 @@ def _matches(pattern: re.Pattern[str], text: str) -> list[tuple[str, str]]:
 
 
 def _joined(body: list[str]) -> list[str]:
-    """Put the cases of a switch, which LLVM writes on lines of their own, behind it."""
+    """Join the cases of a switch, which LLVM writes on lines of their own, to its first line."""
     rows: list[str] = []
     for row in body:
         if row.startswith(("    i", "  ]")):
@@ -135,7 +136,7 @@ def _blocks(
 
 
 def _number(note: re.Pattern[str], row: str) -> str:
-    """Return the number of the note of a kind behind a row, empty where there is none."""
+    """Return the number of a row's note of a kind; '' if there is none."""
     found = note.search(row)
     return found.group(1) if found else ""
 

@@ -1,7 +1,7 @@
-"""LLVM IR as data: functions, blocks and instructions, each with its text, and how they are said anew with other names and values.
+"""LLVM IR as data: functions, blocks and instructions, each with its text, written anew with other names and values.
 
-Passes of our own (`rewrites`) take a routine and return another one; what is costed, and what is compiled for the host, is read from
-the text that they leave (`reading`, `writing`).
+Our own passes (`rewrites`) take a routine and return another one. The text that they leave is what is costed, and what
+is compiled for the host (`reading`, `writing`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
 INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
 NO_HINT = (1 << 20, 1)
-"""Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
+"""Weights of a branch about which the source says nothing; LLVM takes the first side for certain."""
 LEAVES = (11, 189)
 """Weights of a branch whose first side leaves one of two loops that begin with the same test [PRED_LOOP_EXIT in predict.def of GCC 12, of two exits]."""
 TRUTHS = {"false": 0, "true": 1}
@@ -30,22 +30,22 @@ COMMUTATIVE = ("add", "mul", "and", "or", "xor")
 """Operations whose operands may change places."""
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
            "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
-"""Relations by those of the same two values the other way round."""
+"""Each relation and the same one with its values in the other order."""
 INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
             "ult": "uge", "uge": "ult", "ule": "ugt", "ugt": "ule", "eq": "ne", "ne": "eq"}  # fmt: skip
-"""Relations by those that hold where they do not."""
+"""Each relation and its opposite."""
 ENTERS = "bfsim.enters."
-"""Before the symbol of a kernel, names a call that does nothing, where the code of that kernel begins, which is inlined."""
+"""Prefix, before a kernel's symbol, of a call that does nothing and marks where the code of that inlined kernel begins."""
 STEPS = "bfsim.steps"
-"""A call that does nothing, with start, stop and step of the loop behind it, whose step is no constant: `guards` checks them."""
+"""A call that does nothing, with start, stop and step of the next loop if its step is not constant: `guards` checks them."""
 HOLDS = "bfsim.holds"
-"""A call that does nothing, in the header of a loop that is not to be rotated, until loops are."""
+"""A call that does nothing, in the header of a loop that is not to be rotated; it stays until loops are rotated."""
 OF_VARIABLE = "cut.variable"
-"""In the name of what a store cuts off a local variable, and of what LLVM makes of that: in C the variable is a whole word until then."""
+"""In the name of a local variable that a store narrows, and of what LLVM makes of it: until then it is a whole word in C."""
 COUNTS = "shift.count"
-"""In the name of a mask that the language puts on what a value is shifted by: the shifter does it, where one of the source is an operation."""
+"""In the name of the language's mask on a shift count: the shifter applies it, but a mask in the source is an operation."""
 HIDES = "bfsim.hides"
-"""A call that returns its number, of which LLVM is to know nothing."""
+"""A call that returns its number, so that LLVM knows nothing of it."""
 
 
 class SourceLine(NamedTuple):
@@ -74,7 +74,7 @@ class Instruction:
     operands: tuple[str, ...]
     line: SourceLine
     weights: tuple[int, ...] = ()
-    """Of a branch: how likely each side is, where the source gives a hint."""
+    """For a branch, how likely each side is, if the source gives a hint."""
     location: str = ""
     """Number of the note that has its source line."""
     hint: str = ""
@@ -89,7 +89,7 @@ class Instruction:
 
     @property
     def is_division(self) -> bool:
-        """Whether the Blackfin has no instruction for it, but a routine in the run-time library."""
+        """Whether it is a routine of the run-time library, since the Blackfin has no instruction for it."""
         return self.opcode in ("sdiv", "udiv", "srem", "urem")
 
     @property
@@ -105,12 +105,12 @@ class Instruction:
 
     @property
     def is_mark(self) -> bool:
-        """Whether it is no code, and only says what is to be checked here."""
+        """Whether it is not code, but marks a place, such as one where something is to be checked."""
         return self.opcode == "call" and any(f"@{each}(" in self.text for each in (STEPS, HOLDS))
 
     @property
     def is_computation(self) -> bool:
-        """Whether it is a call by which LLVM, or the kernel language, writes an operation."""
+        """Whether it is a call that stands for an operation of LLVM or of the kernel language."""
         names = ("@llvm.", f"@{PREFIX}", f"@{HIDES}")
         return self.opcode == "call" and any(each in self.text for each in names)
 
@@ -134,7 +134,7 @@ class BasicBlock:
     label: str
     instructions: tuple[Instruction, ...]
     enters: tuple[Entrance, ...] = ()
-    """Of the inlined kernels whose code begins here."""
+    """Those of inlined kernels whose code begins here."""
 
     def rows(self) -> Iterator[str]:
         """The block as LLVM's text."""
@@ -153,7 +153,7 @@ class BasicBlock:
 
     @property
     def successors(self) -> tuple[str, ...]:
-        """Labels that the terminator can go to: of a branch the true side first, of a switch the default first."""
+        """Labels that the terminator can go to: for a branch the true side first, for a switch the default first."""
         return tuple(each[1:] for each in TARGET.findall(self.terminator.text))
 
     @property
@@ -172,7 +172,7 @@ class Routine:
 
 
 def without_marks(routine: Routine) -> Routine:
-    """Return `routine` as the Blackfin has it, which checks nothing."""
+    """Return `routine` without marks, as for the Blackfin, which checks nothing."""
     blocks = (
         replace(block, instructions=tuple(each for each in block.instructions if not each.is_mark))
         for block in routine.blocks
@@ -181,7 +181,7 @@ def without_marks(routine: Routine) -> Routine:
 
 
 def each_arm(phi: Instruction) -> list[tuple[str, str]]:
-    """Return (value, label of the block it comes from) of a phi; of a block that leads there by two cases of a switch, twice."""
+    """Return each (value, label of its block) of a phi; twice if that block leads there by two cases of a switch."""
     return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]
 
 
@@ -191,24 +191,24 @@ def arms_of(phi: Instruction) -> dict[str, str]:
 
 
 def phi_of(result: str, kind: str, arms: Iterable[tuple[str, str]], at: Instruction) -> Instruction:
-    """Return the phi of values of an LLVM type, each with the label of its block, of the same place in the source as `at`."""
+    """Return the phi of values of an LLVM type, each with the label of its block, at the same place in the source as `at`."""
     arms = [*arms]
     text = ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
     return written(result, f"phi {kind} {text}", tuple(value for value, _ in arms), at)
 
 
 def with_each_arm(phi: Instruction, arms: Iterable[tuple[str, str]]) -> Instruction:
-    """Return a phi of other values, each with the label of the block that it comes from."""
+    """Return a phi with other values, each with the label of the block that it comes from."""
     return phi_of(phi.result or "", phi.text.split()[1], arms, phi)
 
 
 def with_values(phi: Instruction, arms: Mapping[str, str]) -> Instruction:
-    """Return a phi of other values, by the labels of the blocks that they come from."""
+    """Return a phi with other values, by the labels of the blocks that they come from."""
     return with_each_arm(phi, ((value, label) for label, value in arms.items()))
 
 
 def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
-    """Return an instruction that reads what `names` has in place of the values named there."""
+    """Return an instruction that reads other values in place of those in `names`, as it says."""
     if not any(name in names for name in each.operands):
         return each
     text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
@@ -216,17 +216,17 @@ def renamed(each: Instruction, names: Mapping[str, str]) -> Instruction:
 
 
 def written(result: str, text: str, operands: tuple[str, ...], at: Instruction) -> Instruction:
-    """Return the instruction `text`, of the same place in the source as the instruction `at`."""
+    """Return the instruction `text`, at the same place in the source as the instruction `at`."""
     return Instruction(result, text.split(maxsplit=1)[0], text, operands, at.line, location=at.location)
 
 
 def is_number(value: str) -> bool:
-    """Whether a value is an integer of the text."""
+    """Whether a value is an integer in the text."""
     return value.lstrip("-").isdigit()
 
 
 def is_constant(value: str) -> bool:
-    """Whether a value is an integer of the text, or a truth."""
+    """Whether a value is an integer or a truth value in the text."""
     return is_number(value) or value in TRUTHS
 
 
@@ -237,7 +237,7 @@ def predicate(compare: Instruction) -> str:
 
 
 def type_of(each: Instruction) -> str:
-    """Return the type of what an instruction computes, in LLVM's words."""
+    """Return the type of an instruction's result, in LLVM's words."""
     if each.opcode in ("icmp", "fcmp"):
         return "i1"
     if each.opcode == "getelementptr":

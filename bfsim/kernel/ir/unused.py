@@ -10,7 +10,7 @@ from bfsim.kernel.ir.text import Routine
 
 
 def without_unused(routine: Routine, opcodes: Collection[str]) -> Routine:
-    """Return `routine` without those of its instructions with these `opcodes` that nothing uses, nor what only they use."""
+    """Return `routine` without the instructions of these `opcodes` that nothing uses, or that only such ones use."""
     while True:
         users = ControlFlow(routine).users
         blocks = tuple(
@@ -32,7 +32,7 @@ def without_unused(routine: Routine, opcodes: Collection[str]) -> Routine:
 def without_dead_code(routine: Routine, kept: str) -> Routine:
     """Return `routine` without what no store, call or branch needs, such as variables that only wait for their own next value.
 
-    `kept`: in the names of what stays.
+    `kept`: values whose names contain this stay.
     """
     made = {each.result or "": each for block in routine.blocks for each in block.instructions if each.result}
     waiting = [

@@ -1,4 +1,4 @@
-"""Value numbering: values that are computed in the same way from the same ones are one, by the name of the first."""
+"""Value numbering: values computed in the same way from the same values are one, by the name of the first."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ COMPUTED = {
     "getelementptr", "add", "sub", "mul", "shl", "lshr", "ashr", "and", "or", "xor", "sext", "zext", "trunc",
 }  # fmt: skip
 FLAGS = frozenset({"nuw", "nsw", "exact", "disjoint", "nneg", "inbounds"})
-"""What LLVM knows of a result, which makes no other value of it."""
+"""What LLVM knows of a result; it does not change the value."""
 
 
 class ValueNumbers:
-    """Names of values, of which those of `add` come in an order in which each is there before it is used, but for phis."""
+    """Names of equal values. Instructions are added in an order in which each value comes before its uses, except in phis."""
 
     def __init__(self) -> None:
         self._first: dict[str, str] = {}
@@ -30,5 +30,5 @@ class ValueNumbers:
             self._first[each.result] = self._computed.setdefault(key, each.result)
 
     def equate(self, value: str, first: str) -> None:
-        """Note that a value is one that was there before."""
+        """Note that a value equals an earlier one."""
         self._first[value] = first

@@ -1,4 +1,4 @@
-"""LLVM IR written: the text of a module, with other functions in it or with a name for every value."""
+"""LLVM IR written: the text of a module, with other bodies of its functions or with a name for every value."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ NOTE = re.compile(r"^!(\d+) = ", re.MULTILINE)
 
 
 def with_names(text: str) -> str:
-    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change.
+    """Return a module in which every value and block has a name: LLVM numbers the others by order, which passes change.
 
-    The names are other ones than those of an earlier time.
+    The names differ from those of earlier calls.
     """
     mark = ".n"
     while f"%{mark}" in text:
@@ -27,7 +27,7 @@ def with_names(text: str) -> str:
 def write_module(text: str, routines: Sequence[Routine]) -> str:
     """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies.
 
-    Weights that stand in no note yet are noted.
+    Weights that no note has yet get one.
     """
     notes = dict[tuple[int, ...], str]()
     first = max(map(int, NOTE.findall(text)), default=-1) + 1

@@ -16,7 +16,7 @@ from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i32
 
 @dataclass(slots=True)
 class Assignments:
-    """Reads those of one kernel."""
+    """Reads the assignments of one kernel."""
 
     scope: KernelScope
     _hidden: set[str] = field(default_factory=set)  # names of the locals that only the compiled code has
@@ -71,14 +71,14 @@ class Assignments:
         return name
 
     def held(self, value: tree.Expr, stem: str, before: list[tree.Stmt]) -> tree.Local:
-        """Return a new local that only the compiled code has, which holds `value` from behind the statements `before` on."""
+        """Append to `before` a new local that only the compiled code has and that holds `value`; return it."""
         name = self.hidden_name(stem)
         self.scope.locals[name] = i32
         before.append(tree.Assign(name, value, value.line))
         return tree.Local(name, i32, value.line)
 
     def _set_both(self, target: ast.Tuple, value: ast.expr) -> list[tree.Stmt]:
-        """Assign the two results of an intrinsic, by way of a local that only the compiled code has."""
+        """Assign the two results of an intrinsic, through a local that only the compiled code has."""
         scope, names = self.scope, [each for each in target.elts if isinstance(each, ast.Name)]
         fits = len(names) == len(target.elts) == 2 and names[0].id != names[1].id
         pair = None if isinstance(value, ast.Tuple) else scope.expression(value)

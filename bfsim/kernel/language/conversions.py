@@ -1,4 +1,4 @@
-"""Numbers of one type in the place of those of another: which literals may be, and what is refused.
+"""Numbers of one type where another is expected: which literals convert, and what is refused.
 
 An int literal takes the type of the other side; mixing i32 and u32 is refused, because C and Python disagree about what it means.
 """
@@ -22,7 +22,7 @@ def as_number(source: KernelSource, node: ast.expr, value: tree.Expr) -> tree.Ex
 
 
 def refuse_nothing(source: KernelSource, node: ast.expr, value: tree.Expr) -> None:
-    """Refuse what is no single value: a pair, or a kernel that returns nothing."""
+    """Refuse anything but a single value: a pair, or a call of a kernel that returns nothing."""
     if value.type is PAIR:
         source.refuse(node, "this intrinsic has two results", "assign them first: `upper, lower = ...`")
     if value.type is None:
@@ -30,7 +30,7 @@ def refuse_nothing(source: KernelSource, node: ast.expr, value: tree.Expr) -> No
 
 
 def as_type(source: KernelSource, node: ast.expr, value: tree.Expr, wanted: IntType | None) -> tree.Expr:
-    """Return a value that must be an integer of the type `wanted`; one of the source becomes it."""
+    """Return a value that must be an integer of the type `wanted`; a constant of the source is given that type."""
     if wanted is None or value.type is wanted:
         return value
     if isinstance(value, tree.Const) and isinstance(value.value, int):
@@ -70,7 +70,7 @@ def common_type(source: KernelSource, right_node: ast.expr, left: tree.Expr, rig
 
 
 def is_of_source(value: tree.Expr) -> bool:
-    """Whether a value is an integer of the source, or a choice of two: it takes the type that is wanted."""
+    """Whether a value is an integer constant of the source, or a choice of two: it takes whatever type is wanted."""
     if isinstance(value, tree.Choose):
         return is_of_source(value.yes) and is_of_source(value.no)
     return isinstance(value, tree.Const) and isinstance(value.value, int)

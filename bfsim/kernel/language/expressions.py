@@ -1,7 +1,7 @@
 """Expressions of the kernel language: Python AST → typed tree.
 
-All integer arithmetic is 32 bits wide and wraps; see `conversions` for what goes with what. Mixing integers and floats is refused,
-because the conversion is a call that should be seen.
+All integer arithmetic is 32 bits wide and wraps; `conversions` says which types go together. Mixing integers and floats
+is refused, because the conversion is a call that should be seen.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Expressions(Names):
         return result
 
     def integer(self, node: ast.expr, wanted: IntType | None = None) -> tree.Expr:
-        """Read an expression that must be an integer; a literal becomes `wanted`, anything else must be it."""
+        """Read an expression that must be an integer; a literal becomes `wanted`, anything else must have that type."""
         result = self.expression(node)
         if isinstance(result.type, IntType):
             return as_type(self.source, node, result, wanted)
@@ -137,7 +137,7 @@ class Expressions(Names):
     def _pair(
         self, left_node: ast.expr, left: tree.Expr, right_node: ast.expr, right: tree.Expr
     ) -> tuple[tree.Expr, tree.Expr, Number]:
-        """Both sides of a comparison or a choice in one type."""
+        """Return both sides of a comparison or a choice in one type."""
         left, right = as_number(self.source, left_node, left), as_number(self.source, right_node, right)
         if f32 in (left.type, right.type):
             if left.type is not right.type:
@@ -192,7 +192,7 @@ class Expressions(Names):
         return result
 
     def _compared(self, op: str, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr]:
-        """Both sides of a comparison: two numbers, or two truth values that are equal or not."""
+        """Read both sides of a comparison: two numbers, or two truth values that are equal or not."""
         left, right = self.expression(left_node), self.expression(right_node)
         if left.type is BOOL and right.type is BOOL and op in ("==", "!="):
             return left, right
@@ -200,7 +200,7 @@ class Expressions(Names):
         return left, right
 
     def _boolop(self, node: ast.BoolOp) -> tree.Expr:
-        """`and` or `or` where its value is used: Python's is one of the two sides, which must be a truth value then."""
+        """Read `and` or `or` used as a value: Python's value is one of the sides, so both must be truth values."""
         return self._joined(node, self._truth_value)
 
     def _joined(self, node: ast.BoolOp, read: Callable[[ast.expr], tree.Expr]) -> tree.Expr:
@@ -245,7 +245,7 @@ class Expressions(Names):
         return tree.Load(name, element, self.index(node), promoted(element), node.lineno)
 
     def array_of(self, node: ast.Subscript) -> tuple[str, Number]:
-        """Name and element type of the array that `node` indexes."""
+        """Return the name and element type of the array that `node` indexes."""
         if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
             name = ast.unparse(node.value.value)
             self.source.refuse(node, "an array has one dimension and no shape", f"write len({name})")
@@ -282,7 +282,7 @@ def _are_ints(*values: tree.Expr) -> bool:
 
 
 def _written(op: str, left: tree.Const, right: tree.Const, result: tree.Const) -> str:
-    """An operation on constants as it is written, if it names one, and C has the operator and room for the result."""
+    """Return an operation on constants as written if it names one, and C has the operator and room for the result."""
     named = any(each.written and not each.written.startswith("0") for each in (left, right))
     if op not in ALIKE or not named or any(each.type is not i32 for each in (left, right, result)):
         return ""

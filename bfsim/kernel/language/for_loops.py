@@ -1,4 +1,4 @@
-"""`for` of the kernel language: over a range, an array or an enumerated one, read as a counter between two bounds."""
+"""`for` of the kernel language: over a range, an array or enumerate(array), read as a counter between two bounds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Bounds = tuple[tree.Expr, tree.Expr, int | tree.Local]
 
 
 class Counted(NamedTuple):
-    """What a loop counts, from a start to before a stop by a step, what is done `before` it, and its statements."""
+    """A loop as a counter, from a start to before a stop by a step; its statements, and what is done `before` it."""
 
     counter: str
     bounds: Bounds
@@ -26,7 +26,7 @@ class Counted(NamedTuple):
 
 @dataclass(slots=True)
 class ForLoops:
-    """Reads what those of one kernel count."""
+    """Reads the heads of the `for` loops of one kernel."""
 
     scope: KernelScope
     assignments: Assignments
@@ -66,7 +66,7 @@ class ForLoops:
         return self._stepping(node, node.target.id, bounds, call.args[-1])
 
     def _stepping(self, node: ast.For, name: str, bounds: list[tree.Expr], written: ast.expr) -> Counted:
-        """Read a loop whose step is `written`: a constant, or a number that is found once, before the loop."""
+        """Read a loop whose step is `written`: a constant, or a number computed once, before the loop."""
         start, stop, step = bounds
         if isinstance(step, tree.Const):
             if step.value == 0:
@@ -83,7 +83,9 @@ class ForLoops:
         if isinstance(step, tree.Local) and step.name not in changed:
             return Counted(name, (start, stop, step), node.body, [])
         before: list[tree.Stmt] = []
-        if tree.calls_in(tuple(bounds)):  # start and stop come first: a call may change what the others read
+        if tree.calls_in(
+            tuple(bounds)
+        ):  # start and stop are computed first: a call may change what the others read
             start, stop = (
                 self.assignments.held(each, "value", before) if tree.reads_array(each) else each
                 for each in (start, stop)

@@ -1,4 +1,4 @@
-"""A kernel as everybody knows it: what it is called, where it stands, what it takes and calls. What it does is a tree of its own."""
+"""A kernel as others see it: its name, its place, its parameters and its callees. What it does is in a separate tree."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class Parameter:
 class Function:
     """A whole kernel. `symbol` is its name in the machine code.
 
-    `file`, `first_line` and `source` say where it stands, `names` what the names of its file mean.
-    A kernel `is_static`, as C calls it, if other kernels of its file name it and nothing else there does: the file's main loops
-    do not run it. Whether another file imports it is not looked at.
-    `calls`: the kernels that it calls itself, each once, in source order. `written`: array parameters that it, or a kernel called
-    by it, stores into; `measured`: those whose length is asked for, which comes with them in C. `digest`: of all that its code
-    depends on but its callees. `read`: reads its body, which few runs need (`tree.body_of`).
+    `file`, `first_line` and `source` say where it stands; `names`: the meanings of the names in its file. A kernel
+    `is_static`, in C's sense, if other kernels of its file name it and nothing else there does, so the file's main
+    loops do not run it. Imports by other files do not count. `calls`: the kernels that it calls itself, each once, in
+    source order. `written`: array parameters that it or its callees store into; `measured`: those whose length they ask
+    for, which C passes along. `digest`: of all that its code depends on except its callees. `read`: reads its body,
+    which few runs need (`tree.body_of`).
     """
 
     name: str

@@ -23,7 +23,7 @@ from bfsim.kernel.types import Number
 
 
 class Read(NamedTuple):
-    """What is read of a `def`."""
+    """A `def` as the kernel language reads it."""
 
     parameters: tuple[Parameter, ...]
     result: Number | None
@@ -31,7 +31,7 @@ class Read(NamedTuple):
 
 
 def read_definition(source: KernelSource, outer: Mapping[str, object], python: FunctionType) -> Read:
-    """Read the `def` that Python has made `python` of; `outer` is what its names mean but its own. Raises KernelError."""
+    """Read the `def` behind `python`; `outer` is what all names but its own mean. Raises KernelError."""
     definition = parsed(source.text)
     if not isinstance(definition, ast.FunctionDef) or definition.name != python.__name__:
         source.refuse(definition, "a kernel must be a plain `def`", "write def, not lambda or async def")
@@ -55,7 +55,7 @@ def read_definition(source: KernelSource, outer: Mapping[str, object], python: F
 
 
 def parsed(text: str) -> ast.AST:
-    """Parse one definition, which may be indented. What cannot be parsed alone, as a lambda's line, is no node."""
+    """Parse one definition, which may be indented. A line that cannot be parsed alone, such as a lambda's, becomes `pass`."""
     try:
         if not text[0].isspace():
             return ast.parse(text).body[0]
@@ -83,7 +83,7 @@ def _check_names(source: KernelSource, definition: ast.FunctionDef, code: CodeTy
 
 
 def _first_use(definition: ast.FunctionDef, name: str) -> ast.AST:
-    """Return where a definition names a variable first."""
+    """Return the first place where a definition names a variable."""
     names = [each for each in ast.walk(definition) if isinstance(each, (ast.Name, ast.arg))]
     uses = [each for each in names if name == (each.id if isinstance(each, ast.Name) else each.arg)]
     return min(uses, key=lambda each: (each.lineno, each.col_offset), default=definition)

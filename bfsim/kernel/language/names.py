@@ -1,4 +1,4 @@
-"""What names and constants mean inside one kernel: parameters, locals seen so far, and what it can read of its module."""
+"""What names and constants mean inside one kernel: parameters, locals seen so far, and what it can read from its module."""
 
 from __future__ import annotations
 
@@ -16,12 +16,16 @@ from bfsim.kernel.language.refusal import KernelSource
 from bfsim.kernel.types import BOOL, ArrayType, Value, f32, i32, u32
 
 BEYOND_F32 = 3.4028235677973366e38
-"""What is as large is infinite in single precision; what is smaller is rounded to the largest at most."""
+"""Numbers from here on are infinite in single precision; smaller ones are rounded to at most the largest."""
 
 
 @dataclass(slots=True)
 class Names:
-    """`outer` is what names of the module mean; `own` are all names that Python keeps for the function `kernel` itself, wherever it assigns them."""
+    """The names of the function `kernel`.
+
+    `outer`: what the names of the module mean. `own`: all names that are local to the function, wherever it assigns
+    them.
+    """
 
     source: KernelSource
     outer: Mapping[str, object]
@@ -30,10 +34,10 @@ class Names:
     arrays: dict[str, ArrayType] = field(default_factory=dict)
     locals: dict[str, Value] = field(default_factory=dict)
     assigned: set[str] = field(default_factory=set)
-    """Locals that hold a value on every way to the statement being read."""
+    """Locals that hold a value on every path to the statement being read."""
 
     def is_builtin(self, node: ast.Name, function: object) -> bool:
-        """Whether a name means this function of Python, and nothing of the kernel's or the module's own."""
+        """Whether a name means this function of Python, and is not redefined by the kernel or the module."""
         return node.id not in self.own and self.outer.get(node.id) is function
 
     def _constant(self, node: ast.Constant) -> tree.Expr:
@@ -52,7 +56,7 @@ class Names:
         return tree.Compare("!=", one, tree.Const(0, i32, node.lineno), BOOL, node.lineno)
 
     def _hexadecimal(self, node: ast.Constant) -> str:
-        """A hexadecimal number as it is written; '' for others."""
+        """Return a hexadecimal number as written; '' for others."""
         written = self.source.text_of(node).replace("_", "")
         return written if re.fullmatch("0[xX][0-9a-fA-F]+", written) else ""
 
@@ -97,7 +101,7 @@ class Names:
         )
 
     def _require_defined(self, node: ast.Name) -> None:
-        """Refuse a name that nobody has, by those that are nearest."""
+        """Refuse a name that is not defined, and suggest the nearest ones."""
         if node.id not in (*self.own, *self.outer):
             near = get_close_matches(node.id, [*self.arrays, *self.own], n=2)
             instead = f"; near it are {', '.join(near)}" if near else ""
@@ -108,7 +112,7 @@ class Names:
             )
 
     def _named(self, node: ast.expr, constant: float, name: str) -> tree.Expr:
-        """A constant of the module; `name`: what C calls it, if it has a name there."""
+        """Read a constant of the module; `name`: what C calls it, if it has a name there."""
         if isinstance(constant, bool):
             return self._truth(node, value=constant, written=name)
         if isinstance(constant, float):
@@ -116,7 +120,7 @@ class Names:
         return replace(self._literal(node, constant), written=name)
 
     def _attribute(self, node: ast.Attribute) -> tree.Expr:
-        """A member of an enumeration of integers, `Mode.RUN`."""
+        """Read a member of an enumeration of integers, `Mode.RUN`."""
         name = node.value.id if isinstance(node.value, ast.Name) else ""
         members = {} if name in self.own else members_of(self.outer.get(name))
         if node.attr in members:

@@ -1,4 +1,4 @@
-"""Operators of the kernel language, and what else Python has, in words."""
+"""Operators of the kernel language, and the rest of Python's syntax in words."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def instead_of(name: str) -> str:
 
 
 def in_words(node: ast.AST) -> str:
-    """What `node` is, in words."""
+    """Return what `node` is, in words."""
     names = {"listcomp": "comprehensions", "setcomp": "comprehensions", "dictcomp": "comprehensions",
              "generatorexp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists", "set": "sets",
              "dict": "dictionaries", "lambda": "lambda", "namedexpr": "`:=`", "starred": "`*` before a value",

@@ -1,7 +1,7 @@
-"""From a Python function to a kernel: its text and what the names in it mean → what the language makes of it.
+"""From a Python function to a kernel: its text and the meanings of its names → what the language makes of it.
 
-What was read once, and not refused, is kept in the cache under a digest of all that decided how it was understood. Most starts
-find every kernel there, and read the bodies only of those that must be compiled.
+A kernel that was read and not refused is kept in the cache, under a digest of all that decided how it was understood.
+Most starts find every kernel there, and read the bodies only of those that must be compiled.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from bfsim.kernel.language.language import Read
 
 WORD = re.compile(r"[\w\x80-\U0010ffff]+")
-"""All names of a text and more, such as the words of comments."""
+"""Matches all names in a text, and more, such as the words of comments."""
 HALVES = (high_of_fr2x16, low_of_fr2x16)
 FUNCTIONS: tuple[Any, ...] = (
     *INTRINSICS,
@@ -46,7 +46,7 @@ FUNCTIONS: tuple[Any, ...] = (
     sqrt,
 )
 MEANINGS = {id(each): f"{each.__module__}.{each.__qualname__}" for each in FUNCTIONS}
-"""Of the functions that the language knows."""
+"""Full names of the functions that the language knows, by `id`."""
 
 
 class _Known(NamedTuple):
@@ -105,7 +105,7 @@ def read_kernel(python: Callable[..., Any]) -> Function:
 
 
 def _meant(text: str, names: Mapping[str, Any]) -> dict[str, Any]:
-    """Return those of a file's `names`, and of Python's own, that a text may use, in the order in which it does."""
+    """Return those of a file's `names` and of Python's own that a text may use, in the order of the text."""
     words, own = dict.fromkeys(WORD.findall(unicodedata.normalize("NFKC", text))), vars(builtins)
     return {
         each: names[each] if each in names else own[each] for each in words if each in names or each in own
@@ -113,7 +113,7 @@ def _meant(text: str, names: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _meaning(value: object) -> str:
-    """Return what decides how a name is understood that stands for `value`; nothing for what no kernel can use."""
+    """Return as text what `value` means to a kernel that names it; '' if no kernel can use it."""
     if (constant := constant_of(value)) is not None:
         return constant.hex() if isinstance(constant, float) else repr(constant)
     if members := members_of(value):

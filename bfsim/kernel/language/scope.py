@@ -18,7 +18,7 @@ from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i16, i32, 
 
 
 class KernelScope(Expressions):
-    """What a kernel's expressions are read in, calls among them."""
+    """Reads all expressions of one kernel, calls included."""
 
     __slots__ = ()
 
@@ -46,7 +46,7 @@ class KernelScope(Expressions):
         return self._of_python(node, target)
 
     def _of_python(self, node: ast.Call, target: object) -> tree.Expr:
-        """A call of one of the few functions of Python, or of those that stand for C's."""
+        """Read a call of one of the few known functions of Python, or of those that stand for C's."""
         if target is len:
             return self._length(node)
         known = OF_TWO.get(target) if callable(target) else None
@@ -72,7 +72,7 @@ class KernelScope(Expressions):
         self.source.refuse(node, f"a kernel cannot call {ast.unparse(node.func)} like this", advice)
 
     def _of_two(self, node: ast.Call, op: str) -> tree.Expr:
-        """An operation on two numbers that is written as a function; a minimum of more is that of two at a time, from the left."""
+        """Read an operation on two numbers written as a function; a minimum of more takes two at a time, from the left."""
         *others, last = node.args
         if len(others) == 1:
             return self._arithmetic(node, op, others[0], last)
@@ -81,7 +81,7 @@ class KernelScope(Expressions):
         return self._arithmetic(node, op, ast.copy_location(ast.Call(node.func, others, []), node), last)
 
     def _called(self, node: ast.Call) -> str:
-        """Return the name of what is called; refuse what can never be."""
+        """Return the name of the called function; refuse what can never be called."""
         name = node.func.id if isinstance(node.func, ast.Name) else ""
         own = getattr(builtins, name, None)
         if own is not None and name not in (*BUILT_IN, *self.own) and self.outer.get(name) is own:
@@ -112,7 +112,7 @@ class KernelScope(Expressions):
         return name
 
     def _refuse_unnamed(self, node: ast.Call) -> NoReturn:
-        """Refuse a call of what is no plain name, such as a method or a function of numpy."""
+        """Refuse a call by anything but a plain name, such as of a method or a function of numpy."""
         if not isinstance(node.func, ast.Attribute):
             self.source.refuse(node, "a kernel calls by name", "write the name of a kernel or a function")
         last = node.func.attr
@@ -123,7 +123,7 @@ class KernelScope(Expressions):
         )
 
     def _letter(self, node: ast.Call) -> tree.Expr:
-        """The number of a character, which is a constant."""
+        """Read the number of a character, which must be a constant."""
         letter = (
             node.args[0].value if len(node.args) == 1 and isinstance(node.args[0], ast.Constant) else None
         )
@@ -171,7 +171,7 @@ class KernelScope(Expressions):
         return tree.Unary("-", value, i32, node.lineno)
 
     def _half(self, node: ast.Call, *, upper: bool) -> tree.Expr:
-        """One half of a pair, which needs no instruction of its own."""
+        """Read one half of a pair, which needs no instruction of its own."""
         pair = self.integer(node.args[0], i32)
         if upper:
             return tree.Binary(">>", pair, tree.Const(16, i32, node.lineno), i32, node.lineno)

@@ -11,11 +11,11 @@ from bfsim.kernel.language.scope import KernelScope
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32
 
 SCALARS = (i32, u32, f32)
-"""Types of numbers that are computed with."""
+"""The types of numbers that a kernel computes with."""
 
 
 def parameters_of(scope: KernelScope, definition: ast.FunctionDef) -> tuple[Parameter, ...]:
-    """Read the parameters of a kernel, and tell `scope` of them. Raises KernelError."""
+    """Read the parameters of a kernel, and add them to `scope`. Raises KernelError."""
     arguments = definition.args
     for each in (arguments.vararg, *arguments.kwonlyargs, arguments.kwarg, *arguments.defaults):
         if each is not None:
@@ -47,7 +47,7 @@ def _is_all(index: ast.expr) -> bool:
 
 
 def named_type(outer: Mapping[str, object], node: ast.expr | None) -> Number | ArrayType | None:
-    """Type named by an annotation, or None when it names none."""
+    """Return the type named by an annotation, or None if it names none."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         with suppress(SyntaxError):
             node = ast.parse(node.value, mode="eval").body

@@ -1,7 +1,7 @@
-"""An assignment to several targets → assignments of one each, which do the same: `a, b = b, a` and `a = b = 0`.
+"""An assignment to several targets → assignments to one each that do the same: `a, b = b, a` and `a = b = 0`.
 
-As in Python all values are found before the first target gets its own, and targets get theirs from left to right. A value
-goes by way of a local that only the compiled code has where a target before it would change what it reads.
+As in Python, all values are computed before any target is assigned, and targets are assigned from left to right. A
+value goes through a local that only the compiled code has if an earlier target would change what it reads.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Pair = tuple[ast.expr, ast.expr]
 
 
 def together(targets: Sequence[ast.expr], values: Sequence[ast.expr], hidden: Hidden) -> list[Pair]:
-    """Return in order what `targets = values` assigns, value for value."""
+    """Return what `targets = values` assigns, in order."""
     pairs = list(zip(targets, values, strict=True))
     if not any(_reads(value, targets[:number]) for number, value in enumerate(values)):
         return pairs
@@ -26,7 +26,7 @@ def together(targets: Sequence[ast.expr], values: Sequence[ast.expr], hidden: Hi
 
 
 def each_alike(targets: Sequence[ast.expr], value: ast.expr, hidden: Hidden) -> list[Pair]:
-    """Return in order what `first = second = ... = value` assigns, the value found once."""
+    """Return what `first = second = ... = value` assigns, in order; the value is computed once."""
     if _is_literal(value):
         return [(target, value) for target in targets]
     first, *others = targets

@@ -1,4 +1,4 @@
-"""Statements of the kernel language, read one after the other: which locals have a value, and whether a way leads past."""
+"""Statements of the kernel language, read in order: which locals have a value, and whether a path leads past each."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ STATEMENTS = {
 
 @dataclass(slots=True)
 class Statements:
-    """Reads those of one kernel. `ended`: no way leads past the statement just read."""
+    """Reads the statements of one kernel. `ended`: no path leads past the statement just read."""
 
     scope: KernelScope
     result: Number | None
     ended: bool = False
     breaks: list[list[set[str]]] = field(default_factory=list)
-    """Of each open loop: the locals that hold a value at each `break` that leaves it."""
+    """For each open loop, the locals that hold a value at each `break` that leaves it."""
     assignments: Assignments = field(init=False)
     loops: ForLoops = field(init=False)
 
@@ -53,7 +53,7 @@ class Statements:
         return tuple(found)
 
     def statement(self, node: ast.stmt) -> list[tree.Stmt]:
-        """Read one, which may be several in the tree."""
+        """Read one statement, which may become several in the tree."""
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
         if method is None:
             name = ast.unparse(node).split()[0].rstrip(":")

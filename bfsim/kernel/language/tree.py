@@ -16,7 +16,7 @@ from bfsim.kernel.types import FloatType, IntType, Number, Value
 
 @dataclass(frozen=True, slots=True)
 class Const:
-    """A number. `written`: how the source has it, where that says more (`MASK`, `2 * WIDTH`, `0xFF`) and C reads it alike."""
+    """A number. `written`: as in the source, if that says more (`MASK`, `2 * WIDTH`, `0xFF`) and means the same in C."""
 
     value: int | float
     type: Number
@@ -187,7 +187,7 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class For:
-    """`for name in range(start, stop, step)`; step is a constant other than 0, or a local that the loop leaves as it is."""
+    """`for name in range(start, stop, step)`; step is a constant other than 0, or a local that the loop does not change."""
 
     name: str
     start: Expr
@@ -198,7 +198,7 @@ class For:
 
     @property
     def goes_up(self) -> bool:
-        """Whether the counter grows: what is no constant must be positive."""
+        """Whether the counter grows; a step that is not constant must be positive."""
         return isinstance(self.step, Local) or self.step > 0
 
 
@@ -239,14 +239,14 @@ class Body:
 
 @cache
 def body_of(function: Function) -> Body:
-    """Return what a kernel does."""
+    """Return the body of a kernel."""
     body = function.read()
     assert isinstance(body, Body)
     return body
 
 
 def first_float(function: Function) -> int | None:
-    """Line of the first float in a kernel itself, counted like every `line`; None without floats."""
+    """Return the line of the first float in a kernel itself, counted like every `line`; None without floats."""
     kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)
     lines = [
         each.line
@@ -260,29 +260,29 @@ def first_float(function: Function) -> int | None:
 
 
 def calls_in(node: object) -> list[KernelCall]:
-    """Every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
+    """Return every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
     return [each for each in parts(node) if isinstance(each, KernelCall)]
 
 
 def reads_array(node: object) -> bool:
-    """Whether `node`, a part of a tree, loads an element or calls a kernel, which may."""
+    """Whether `node`, a part of a tree, loads an element, or calls a kernel, which may do so."""
     return any(isinstance(each, (Load, KernelCall)) for each in parts(node))
 
 
 def measured_arrays(body: Body) -> frozenset[str]:
-    """Array parameters whose length a body, or a kernel called by it, asks for."""
+    """Return the array parameters whose length a body, or a kernel called by it, asks for."""
     return _arrays(body, Length, lambda callee: callee.measured)
 
 
 def written_arrays(body: Body) -> frozenset[str]:
-    """Array parameters that a body, or a kernel called by it, stores into."""
+    """Return the array parameters that a body, or a kernel called by it, stores into."""
     return _arrays(body, Store, lambda callee: callee.written)
 
 
 def _arrays(
     body: Body, kind: type[Length | Store], of: Callable[[Function], frozenset[str]]
 ) -> frozenset[str]:
-    """Arrays that a body has in a `kind` of node, or gives to a kernel as one `of` its parameters."""
+    """Return the arrays that a body has in a `kind` of node, or passes to a kernel as one `of` its parameters."""
     nodes = list(parts(body.block))
     found = {each.array for each in nodes if isinstance(each, kind)}
     for call in nodes:
@@ -309,11 +309,11 @@ def parts(node: object) -> Iterator[object]:
 
 
 def alike(one: Expr, other: Expr) -> bool:
-    """Whether two expressions are written alike, but for where they stand."""
+    """Whether two expressions are written alike, wherever they stand."""
     return [*map(_said, parts(one))] == [*map(_said, parts(other))]
 
 
 def _said(part: object) -> tuple[object, ...]:
-    """What a part of an expression says beside its operands."""
+    """Return what a part of an expression says besides its operands."""
     own = (getattr(part, each, None) for each in ("name", "array", "op", "to", "callee", "intrinsic"))
     return (type(part), *own, part.value if isinstance(part, Const) else None)

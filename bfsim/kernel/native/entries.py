@@ -1,8 +1,8 @@
-"""Compiled Python: what looks at every access to a memory or at every word on a bus.
+"""Compiled Python: functions that look at every access to a memory or at every word on a bus.
 
-Numba makes LLVM IR of it (`numba_ir`). That of the present sources comes with bfsim (`benchmarks/keep_native.py` makes it), so numba is
-needed only after a change of them. The machine code is made, kept and loaded as that of kernels. Its name in the cache is a digest
-of all files that hold such parts: a change in one file never meets code that was compiled against another one.
+Numba makes LLVM IR of them (`numba_ir`). The IR of the current sources comes with bfsim (`benchmarks/keep_native.py`
+makes it), so numba is needed only after a change. Machine code is made of it, kept and loaded as for kernels. Its name
+in the cache is a digest of all files with such functions, so code never meets numbers or functions of another version.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from bfsim.kernel.keys import tools
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 ROOMS = ("kernel", "machine")
-"""Folders of bfsim with compiled parts; those of one use numbers and functions of the other."""
+"""Folders of bfsim with compiled parts; one uses numbers and functions of the other."""
 
 _parts: list[Callable[..., Any]] = []
-"""What entries may call."""
+"""Functions that entries may call."""
 
 
 def native(function: Function) -> Function:
@@ -35,13 +35,13 @@ def native(function: Function) -> Function:
 
 
 def words_at(address: Any) -> Any:
-    """Return the array at an address that an entry was given. In plain Python it is given the array itself."""
+    """Return the array at an address that an entry was given; in plain Python it is given the array itself."""
     return address
 
 
 @dataclass(frozen=True)
 class NativeEntry:
-    """A function that machine code can call: as it was written, and numba's names for the types of its result and arguments."""
+    """A function that machine code can call: as written, and numba's names for the types of its result and arguments."""
 
     python: Callable[..., Any]
     result: str
@@ -67,7 +67,7 @@ class NativeEntry:
         return machine_code.address_of(self.symbol)
 
     def digest(self) -> str:
-        """Return the name under which its IR is kept: a digest of what that is made of."""
+        """Return the name under which its IR is kept: a digest of what that is made from."""
         from bfsim.kernel.native.sources import source_of  # most starts find all machine code
 
         made_by = Path(__file__).with_name("numba_ir.py").read_text(encoding="utf-8")

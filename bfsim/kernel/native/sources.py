@@ -1,4 +1,4 @@
-"""What a native entry is made of: its functions without their words, and the numbers that they use.
+"""What a native entry is made from: its functions without their words, and the numbers that they use.
 
 Nothing else can change its code: neither another function of the same files nor a comment.
 """
@@ -47,7 +47,7 @@ def _bare(function: FunctionType) -> ast.FunctionDef:
 
 
 def _used(function: FunctionType, tree: ast.FunctionDef) -> Iterator[tuple[str, object]]:
-    """Yield what a function uses from outside: its name there, and what it is."""
+    """Yield the names that a function uses from outside, with their values."""
     outside = {name: function.__globals__.get(name) for name in function.__code__.co_names}
     for each in ast.walk(tree):
         if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name):

@@ -31,7 +31,7 @@ from bfsim.machine_code.left import FAILED
 class ObjectCall:
     """A kernel's object code bound to its arrays.
 
-    The Blackfin's memory has a window on that of a board; other arrays are copied there for each call, and back.
+    The Blackfin's memory has a window on the board's; other arrays are copied there for each call, and back.
     """
 
     def __init__(
@@ -45,10 +45,11 @@ class ObjectCall:
         stack: NDArray[np.uint8] | None = None,
         memory: NDArray[np.uint8] | None = None,
     ) -> None:
-        """`arrays`: in the order of the array parameters. `check` raises the error when the arguments of a call are wrong.
+        """`arrays`: in the order of the array parameters. `check` raises the error if the arguments of a call are wrong.
 
-        `access_trace` is told of accesses to arrays, by traced code; it calls the code's first site `first_site`. `stack`: where the
-        stack is, if its accesses are told, too. `memory`: that of the board, if all arrays lie in it.
+        `access_trace` gets the accesses of traced code to arrays; `first_site`: the number of the code's first site in
+        it. `stack`: where the stack is, if its accesses are reported, too. `memory`: the board's, if all arrays lie in
+        it.
         """
         function = code.function
         parts, addresses = _places(code, arrays, memory)
@@ -59,7 +60,7 @@ class ObjectCall:
             )
         _catch_faults()
         self.stays_in_l1 = access_trace is None
-        """Whether no access of it can leave L1."""
+        """Whether all its accesses stay in L1."""
         self.run: Callable[..., Work] = subroutine_call(
             code.subroutine,
             _arguments(function, arrays, addresses),
@@ -71,7 +72,7 @@ class ObjectCall:
             log_of(access_trace) if access_trace else None,
             kept=(arrays, memory, trace, access_trace),
         )
-        """Runs the code now and says what it cost, until the next run. Of its arguments, only the numbers are read."""
+        """Runs the code now and returns its cost, which is valid until the next run. It reads only the numbers."""
         if memory is None and (read_only := [*_read_only(code, arrays, addresses)]):
             self.run = partial(_run_beside, self.run, function, read_only)
 
@@ -79,7 +80,7 @@ class ObjectCall:
 def _places(
     code: CompiledObject, arrays: Sequence[NDArray[Any]], memory: NDArray[np.uint8] | None
 ) -> tuple[Sequence[Placed], list[int]]:
-    """Return the parts of the Blackfin's memory that arrays are copied to, none of a board's, and the address of each array."""
+    """Return the parts of memory that arrays are copied to, none if they lie in a board's, and the address of each array."""
     space = code.subroutine.processor.space
     if memory is not None:
         from_host = space.window(memory) - memory.ctypes.data
@@ -96,7 +97,7 @@ def _followed(
     first_site: int,
     stack: NDArray[np.uint8] | None,
 ) -> Iterator[Followed]:
-    """Yield the memory whose accesses are told: arrays, each with a site of its own, and the stack."""
+    """Yield the memory whose accesses are reported: arrays, each with a site of its own, and the stack."""
     for number, (address, array) in enumerate(zip(addresses, arrays, strict=True)):
         host = array.ctypes.data
         if access_trace.logs(host):
@@ -108,7 +109,7 @@ def _followed(
 def _read_only(
     code: CompiledObject, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
 ) -> Iterator[tuple[str, NDArray[Any], NDArray[np.uint8]]]:
-    """Yield the name of each array that must not be changed and that the code may store into, itself, and the bytes of its copy."""
+    """Yield each read-only array that the code may store into: its name, the array, and the bytes of its copy."""
     space = code.subroutine.processor.space
     for name, array, address in zip(code.function.array_names, arrays, addresses, strict=True):
         if not array.flags.writeable and code.may_write(name):
@@ -126,9 +127,9 @@ def _run_beside(
     read_only: Sequence[tuple[str, NDArray[Any], NDArray[np.uint8]]],
     *arguments: Any,
 ) -> Work:
-    """Run code that may store into arrays that must not be changed; raise KernelError if it did so in their copies.
+    """Run code that may store into read-only arrays; raise KernelError if it did so in their copies.
 
-    `read_only`: the name of each, itself, and the bytes of its copy.
+    `read_only`: of each its name, the array, and the bytes of its copy.
     """
     work = run(*arguments)
     for name, array, copied in read_only:
@@ -143,7 +144,7 @@ def _run_beside(
 def _arguments(
     function: Function, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
 ) -> list[int | Taken]:
-    """Return what the code takes: of an array its address, and behind the parameters the lengths that it asks for."""
+    """Return the arguments of the code: an array's address, and after the parameters the lengths that it asks for."""
     named = zip(function.array_names, arrays, strict=True)
     lengths = (len(array) for name, array in named if name in function.measured)
     return [*words_of(function, ([each] for each in addresses)), *lengths]
@@ -151,12 +152,12 @@ def _arguments(
 
 @cache
 def _catch_faults() -> None:
-    """Take the signal of a fault in object code, behind whoever tells of crashes: it does not hand a fault on as it was."""
+    """Catch faults in object code before the handler that reports crashes, which does not pass them on unchanged."""
     crashes.take_signals()
     catch_always()
 
 
 def _followed_stack(stack: NDArray[np.uint8], site: int) -> Followed:
-    """The stack from its top, where both begin, as far down as both reach."""
+    """Return the stack from its top, where the board's and the code's both begin, as far down as both reach."""
     nbytes = min(STACK_BYTES, len(stack))
     return Followed(STACK + STACK_BYTES - nbytes, nbytes, stack[len(stack) - nbytes :].ctypes.data, site)

@@ -27,11 +27,11 @@ from bfsim.kernel.objects.places import Places
 from bfsim.kernel.types import ArrayType
 
 NO_ARRAY = ""
-"""In place of an array's name: memory that belongs to none, such as the stack."""
+"""Instead of an array's name: memory that belongs to none, such as the stack."""
 
 
 class _Counted(NamedTuple):
-    """How a kernel's object code is counted, and which functions the instructions are of."""
+    """How a kernel's object code is counted, and the functions that its instructions belong to."""
 
     tables: RunTables
     symbols: tuple[str, ...]
@@ -39,12 +39,15 @@ class _Counted(NamedTuple):
 
 _COUNTED: dict[str, _Counted] = {}
 _PROGRAMS: dict[str, Program] = {}
-"""What this process has read of the costs of object code, by the keys of what is kept."""
+"""Costs of object code that this process has read, by their cache keys."""
 
 
 @dataclass(frozen=True)
 class CompiledObject:
-    """A kernel's object code. `functions`: the kernels, and functions of libraries, that its instructions are of; `places`: which are where."""
+    """A kernel's object code.
+
+    `functions`: the kernels and library functions that its instructions belong to; `places`: which belong to which.
+    """
 
     function: Function
     subroutine: Subroutine
@@ -60,11 +63,11 @@ class CompiledObject:
 
     @property
     def counters(self) -> tuple[Counter, ...]:
-        """What is counted, in the order of the totals, which is that of the translated code's counters."""
+        """The counters in the order of the totals, which is that of the translated code's counters."""
         return self.program.counters
 
     def may_write(self, array: str) -> bool:
-        """Whether it may store into an array: of what is not made of Python, nothing is known of that."""
+        """Whether it may store into an array; code that is not made from Python may always do so."""
         return self.places.files is not None or array in self.function.written
 
     def new_totals(self) -> NDArray[np.int64]:
@@ -81,12 +84,13 @@ def compiled_object(
     *,
     traced: bool = False,
 ) -> CompiledObject:
-    """Return the function that `symbol` names in an image, translated or from the cache on disk. Raises KernelError where there is none.
+    """Return the function that `symbol` names in an image, translated or from the cache on disk.
 
-    `timing`: that of the image's code (`Timing.placed`). With `traced` its accesses to memory are reported.
+    `timing`: that of the image's code (`Timing.placed`). With `traced`, it reports its accesses to memory. Raises
+    KernelError if there is no such function.
     """
     about = loaded.image.digest, symbol, f"{timing.digest} {traced}"
-    is_checked = places.files is not None  # what is made of Python keeps its arrays aligned
+    is_checked = places.files is not None  # code made from Python keeps its arrays aligned
     what = "checked native code" if is_checked else "native code"
     subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, what), is_checked=is_checked)
     words = [each.name if isinstance(each.type, ArrayType) else "" for each in function.parameters]
@@ -105,7 +109,7 @@ def compiled_object(
     key = keys.object_key(*about, f"costs {of_what}")
 
     def program() -> Program:
-        if key not in _PROGRAMS:  # each run binds the code to another board: what it costs is read once
+        if key not in _PROGRAMS:  # each run binds the code to another board, but its costs are read once
             _PROGRAMS[key] = Program(
                 function.symbol, kept_costs(key, made), function.array_names, together=True
             )
@@ -121,7 +125,7 @@ def compiled_object(
 
 
 def _counted(key: str, program: Callable[[], Program]) -> _Counted:
-    """Return what the cache on disk keeps under a key of a program, or what is made of it now."""
+    """Return what the cache on disk keeps of a program under a key, or make it now."""
 
     def made() -> tuple[Any, ...]:
         costs = program().costs
@@ -148,9 +152,9 @@ def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, in
 
 
 def _site_of(program: Callable[[], Program], places: Places) -> Callable[[int, int], int]:
-    """Return what finds the first site of an instruction in a block: that of its line and the first array.
+    """Return a function that finds the first site of an instruction in a block: that of its line and the first array.
 
-    Those of the other arrays are behind it.
+    The sites of the other arrays follow.
     """
 
     @cache

@@ -1,4 +1,4 @@
-"""What is counted of object code: its blocks and taken branches, by source line and class of operation."""
+"""The counters of object code: its blocks and taken branches, by source line and class of operation."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ def counters(
     accessed: Mapping[int, Accesses],
     traced: Sequence[str],
 ) -> list[Counter]:
-    """Return a counter of a kernel for each of the translated code, in the same order.
+    """Return a kernel's counter for each counter of the translated code, in the same order.
 
-    `accessed`: the accesses of instructions, by their addresses. `traced`: what the address of an access may be in, if that is looked at.
+    `accessed`: the accesses of instructions, by their addresses. `traced`: what an access may be to, if its address
+    decides.
     """
     return [_counter(each, places, timing, accessed, traced) for each in counted]
 
@@ -71,7 +72,7 @@ def _counter(
 def _charges(
     instructions: Sequence[Instruction], waits: Waits, places: Places, timing: Timing
 ) -> tuple[Charge, ...]:
-    """What instructions cost that wait so long. One that goes to a routine of the library has its name."""
+    """Return the costs of instructions with their waits; one that goes to a routine of the library has its name."""
     return tuple(
         Charge(
             operation_of(each),
@@ -85,7 +86,7 @@ def _charges(
 
 
 def _library_routine(instruction: Instruction, places: Places) -> str:
-    """Return the routine of the library that an instruction always goes to from another one; empty where it does not."""
+    """Return the library routine that an instruction always goes to from another routine; '' if it does not."""
     if does(instruction) not in DIRECT - BRANCHES:
         return ""
     routine = places.library_routine_at(int(instruction.operations[0].operands["t"]))
@@ -95,9 +96,9 @@ def _library_routine(instruction: Instruction, places: Places) -> str:
 def calls(
     code: Code, places: Places, entry: int, arrays: Sequence[str]
 ) -> Mapping[str, tuple[RoutineCall, ...]]:
-    """Return which function calls, or goes on in, which others; those that only computed jumps lead to are called by the first.
+    """Return the functions that each function calls or jumps to; the first one calls those that only computed jumps reach.
 
-    In all of them the arrays of the first one are called as there: they are told apart by addresses.
+    Arrays have the same names in all of them as in the first: they are told apart by addresses.
     """
     first = places.function_at(entry).symbol
     found: dict[str, dict[str, None]] = {first: {}}

@@ -22,16 +22,16 @@ OF_FORM = {
     "push_multiple": Op.PUSH_MULTIPLE, "pop_multiple": Op.POP_MULTIPLE, "nothing": Op.NOP,
     "load_indexed": Op.LOAD32, "store_indexed": Op.STORE32,
 }  # fmt: skip
-"""By what a form does; others are arithmetic."""
+"""Classes by what a form does; other forms are arithmetic."""
 LOADS = {1: Op.LOAD8, 2: Op.LOAD16, 4: Op.LOAD32}
 STORES = {1: Op.STORE8, 2: Op.STORE16, 4: Op.STORE32}
 TAKEN = {Op.BRANCH_NOT_TAKEN: Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN_BP: Op.BRANCH_TAKEN_BP}
-"""What a branch is counted as where it is taken."""
+"""What a branch counts as if it is taken."""
 LONG_BYTES = 4
 
 
 def operation_of(instruction: Instruction) -> Op:
-    """Return the class of an instruction; of those that are issued together, that of the first which does something."""
+    """Return the class of an instruction; for a bundle, that of its first instruction that is not a NOP."""
     found = [_class(each) for each in instruction.operations]
     return next((each for each in found if each is not Op.NOP), Op.NOP)
 

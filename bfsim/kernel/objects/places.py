@@ -1,4 +1,4 @@
-"""Which kernel, and which line of it, the instructions of an image are of."""
+"""The kernel, and the line of it, that each instruction of an image belongs to."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 class Places:
     """The lines of an image.
 
-    `kernels`: those that are functions in it, by their symbols there. `of_file`: those whose lines the debugging information calls
-    lines of such a file. `files`: where other source files are.
+    `kernels`: those that are functions in it, by their symbols there. `of_file`: kernels by the file that the debugging
+    information names for their lines. `files`: where other source files are.
     """
 
     image: Image
@@ -33,12 +33,12 @@ class Places:
     of_file: Mapping[str, Function] = field(default_factory=dict)
     files: SourceFiles | None = None
     functions: dict[str, Function] = field(default_factory=dict)
-    """All that instructions were found to be of, by their own symbols."""
+    """All functions that instructions were found to belong to, by their own symbols."""
     _sources: dict[str, tuple[Function, Source]] = field(default_factory=dict)
 
     @cached_property
     def lines(self) -> LineTable:
-        """What the debugging information says of addresses, which takes seconds to read where libraries have some."""
+        """What the debugging information says of addresses; it takes seconds to read if libraries have some."""
         # most starts find all that depends on it
         from bfsim.blackfin.elf.lines import Line, LineTable, Row, lines_of
 
@@ -48,7 +48,7 @@ class Places:
 
     @cached_property
     def sources_digest(self) -> str:
-        """Digest of all source files that functions may be shown from; nothing where none are looked for."""
+        """Digest of all source files that functions may be shown from; '' if none are looked for."""
         if self.files is None:
             return ""
         named = sorted({each.line.file for each in self.lines.rows if each.line})
@@ -61,20 +61,20 @@ class Places:
         if line is not None:
             function = self.of_file[line.file]
             self.functions[function.symbol] = function
-            # what leaves it has the line of the C's closing brace, which is behind the Python
+            # code that leaves the function has the line of the closing brace in C, which is after the last line of Python
             last = len(function.lines)
             return SourceLine(function.symbol, min(line.line, last))
         function, source = self._source(self._routine(address))
         return SourceLine(function.symbol, source.lines.get(address, 1))
 
     def _line_in_kernel(self, address: int) -> Line | None:
-        """Return the line of a kernel that the instruction at an address is of, None if it is of no kernel.
+        """Return the line of a kernel that the instruction at an address belongs to, None if it belongs to no kernel.
 
-        What the compiler took from a file of bfsim's own, such as the floor division, is of the line that calls it; where it tells of
-        no call, of the line before.
+        Code from one of bfsim's own files, such as the floor division, belongs to the line that calls it; if the
+        compiler mentions no call, to the line before.
         """
         line = self._line_told(address)
-        if line is not None:  # most often; to look for the routine takes longer
+        if line is not None:  # most often; looking for the routine takes longer
             return line
         routine = self._routine(address)
         begin = routine.address if routine.name in self.kernels else address
@@ -89,7 +89,7 @@ class Places:
 
     @cached_property
     def _lines_of_calls(self) -> Mapping[int, Line]:
-        """The line of the innermost call in a file of kernels that an instruction, by its address, is in the place of."""
+        """For the address of an inlined instruction, the line of the innermost call in a file of kernels that it replaces."""
         from bfsim.blackfin.elf.lines import calls_inlined_in
 
         found: dict[int, Line] = {}
@@ -99,9 +99,9 @@ class Places:
         return found
 
     def function_at(self, address: int) -> Function:
-        """Return the kernel, or other function, that has the code at an address, also that of a clone, such as `_row.constprop.0`.
+        """Return the kernel or other function that has the code at an address, also in a clone, such as `_row.constprop.0`.
 
-        That of a kernel may begin with a line of another one that is inlined in it.
+        The code of a kernel may begin with a line of another one that is inlined in it.
         """
         routine = self._routine(address)
         kernel = self.kernels.get(routine.name.partition(".")[0])
@@ -110,7 +110,7 @@ class Places:
         return self.functions.setdefault(kernel.symbol, kernel)
 
     def function_called(self, symbol: str) -> Function:
-        """Return the kernel, or other function, that instructions of the image are of, by its own symbol."""
+        """Return the kernel or other function of the image that has its own symbol `symbol`."""
         if symbol not in self.functions:
             if found := self._by_symbol.get(symbol) or self.of_file.get(symbol):
                 self.functions[symbol] = found
@@ -124,12 +124,12 @@ class Places:
         return {each.symbol: each for each in self.kernels.values()}
 
     def entered_at(self, address: int) -> str | None:
-        """Return the symbol of what begins at an address."""
+        """Return the symbol of the function that begins at an address, if one does."""
         routine = self._routine(address)
         return self.function_at(address).symbol if routine.address == address else None
 
     def library_routine_at(self, address: int) -> str:
-        """Return the name of the routine of the compiler's library that has the code at an address; empty where none has."""
+        """Return the name of the routine of the compiler's library that has the code at an address; '' if none has."""
         from bfsim.kernel.c.library import is_of_library  # most starts find all that depends on it
 
         symbol = self._routine(address).name
@@ -160,7 +160,7 @@ def object_function(
     parameters: tuple[Parameter, ...] = (),
     result: Number | None = None,
 ) -> Function:
-    """Return a function of which there is object code, and no Python."""
+    """Return a function that has object code and no Python."""
     return Function(
         name=name,
         symbol=symbol,

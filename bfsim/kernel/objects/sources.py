@@ -1,4 +1,4 @@
-"""The source of a function in an image: the lines of a file that it was made of, or where none is known, its instructions."""
+"""The source of a function in an image: the lines that it was made from or, if none are known, its instructions."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from bfsim.blackfin.elf.lines import LineTable
 
 MOST_BYTES = 1 << 20
-"""[ours] Of a source file that is shown."""
+"""[ours] The largest source file that is shown."""
 LONGEST_HEAD = 10
-"""[ours] Lines of a function's name and parameters."""
+"""[ours] Most lines of a function's name and parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class SourceFiles:
-    """Where source files are, by their names without folders, as debugging information has them.
+    """Where source files are, by their names in the debugging information, without folders.
 
-    Those of `included` are where it says, or nowhere if several have the name; all others are in `folder`.
+    `included` says where some are, or None if several have the name; all others are in `folder`.
     """
 
     folder: Path
@@ -35,13 +35,13 @@ class SourceFiles:
 
     def named(self, file: str) -> Path | None:
         """Return where a file is, if that is known."""
-        name = PureWindowsPath(file).name  # which also splits at the slashes of others
+        name = PureWindowsPath(file).name  # it also splits at the slashes of other systems
         return self.included.get(name, self.folder / name)
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Text of a function from line `first_line` of `file`. `lines`: of each instruction its line, counted from 1 in the text."""
+    """Text of a function from line `first_line` of `file`. `lines`: that of each instruction, from 1 in the text."""
 
     file: str
     first_line: int
@@ -83,13 +83,13 @@ def file_lines(path: Path) -> list[str] | None:
 
 
 def _head(rows: list[str], begin: int, name: str) -> int:
-    """The line above `begin`, not far from it, that names a function; debugging information points to what is behind its name."""
+    """Return the line shortly above `begin` that names a function; debugging information points after the name."""
     above = range(begin, max(0, begin - LONGEST_HEAD), -1)
     return next((each for each in above if re.search(rf"\b_?{re.escape(name)}\b", rows[each - 1])), begin)
 
 
 def disassembly(image: Image, routine: Routine) -> Source:
-    """Return the instructions of a function as its source, each a line."""
+    """Return the instructions of a function as its source, one a line."""
     key = keys.object_key(image.digest, routine.name, "", "disassembly")
     rows = store.kept(key, partial(_disassembled, image, routine))
     text = "\n".join(f"{address:08x}  {each}" for address, each in rows)
@@ -110,5 +110,5 @@ def _disassembled(image: Image, routine: Routine) -> list[tuple[int, str]]:
         for each in disassemble(image.octets_of(routine.address, routine.end), routine.address):
             rows.append((each.address, text(each)))
     except InstructionError:
-        pass  # constants between functions are no instructions
+        pass  # constants between functions are not instructions
     return rows

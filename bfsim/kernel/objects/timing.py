@@ -1,7 +1,7 @@
-"""Which timing counts the cycles of object code: as a profile has interlocks and a library.
+"""The timing of object code in a profile: it depends on the profile's interlocks and library.
 
-Where a profile counts interlocks, it stands for Analog Devices' documents. Then a routine of the library counts as ADI's manual
-says that it does on average, whichever instructions the compiler's own library has for it.
+A profile that counts interlocks stands for Analog Devices' documents. A routine of the library then takes the average
+cycles in ADI's manual, whatever instructions the compiler's own library has for it.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from bfsim.kernel.profile import CompilerProfile, FloatLibrary, Library
 
 COMPARISONS = tuple(f"___{each}sf2" for each in ("eq", "ne", "lt", "le", "gt", "ge", "unord"))
 PARTS = ("___pack_f", "___unpack_f", "___fpcmp_parts_f", "__fpadd_parts", "___ieee754_sqrtf")
-"""[libgcc] What the routines for floats call in turn: parts of them."""
+"""[libgcc] Parts of the routines for floats, which these call in turn."""
 SQUARE_ROOT_COMPARES = 2
-"""[libgcc] The square root calls a comparison so often."""
+"""[libgcc] How often the square root calls a comparison."""
 
 
 @cache
@@ -30,7 +30,7 @@ def timing_of(profile: CompilerProfile) -> Timing:
 
 
 def _integers(library: Library) -> dict[str, int]:
-    """Cycles of the routines that GCC calls, by their symbols, without those of the routine that each of them calls in turn."""
+    """Return the cycles of the routines that GCC calls, by symbol, without those of the routine that each calls in turn."""
     unsigned, signed = library.divide_unsigned.cclk, library.divide_signed.cclk
     return {
         "___udivsi3": unsigned,
