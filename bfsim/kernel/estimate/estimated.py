@@ -1,4 +1,4 @@
-"""What a kernel is estimated to cost, costed once and kept in the cache."""
+"""The estimated cost of a kernel, computed once and kept in the cache."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ class _OptimisedLowering:
         return nbytes + (COSTS[Op.BRANCH_TAKEN].nbytes if branches else 0)
 
     def _threaded(self) -> Iterator[tuple[tuple[str, str], str]]:
-        """Edges from blocks that set a flag which ends their loop, and where that leads."""
+        """Edges from blocks that set a flag that ends their loop, and where they lead."""
         for loop in self.flow.loops:
             tests = [
                 self.flow.blocks[each]
@@ -95,7 +95,7 @@ class _OptimisedLowering:
         return (loop for loop in self.flow.loops if loop.header in self.context.counters.counted)
 
     def _way_back(self, loop: Loop) -> tuple[str, str]:
-        """The jump of a counted loop's end, which GCC cannot turn round."""
+        """The jump at the end of a counted loop, which GCC cannot invert."""
         ending = self.flow.ending(loop)
         if ending == loop.latch or self.flow.is_split(loop):
             return ending, loop.header
@@ -157,7 +157,7 @@ class _OptimisedLowering:
         cost.charges += [self._charge(instruction) for instruction in self.allocation.entry]
 
     def _padding(self) -> int:
-        """NOPs before a function in whose code an RTS comes too early [workaround_rts_anomaly in bfin.cc of GCC 12]."""
+        """NOPs before a function whose RTS comes too early [workaround_rts_anomaly in bfin.cc of GCC 12]."""
         if self.allocation.calls or self.allocation.saved_data or self.allocation.saved_pointers:
             return 0
         left = operations.CYCLES_BEFORE_RETURN - len(self.allocation.entry)
@@ -235,7 +235,7 @@ class _OptimisedLowering:
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
 
     def _second_part(self, label: str, line: SourceLine) -> tuple[list[Charge], ...]:
-        """What it costs more if the second part of a test does not hold after all: the branch was before."""
+        """The extra cost if the second part of a test does not hold after all: the branch was before it."""
         tested = self.context.ranges[label]
         before = self.branches.sides(tested.first, line)
         first = self.flow.blocks[tested.first].successors.index(label)
@@ -277,7 +277,7 @@ class _OptimisedLowering:
 
 
 def _hides(instruction: MachineInstruction) -> int:
-    """Cycles for which an instruction keeps an RTS behind it away; a branch in a block does so with what it skips."""
+    """Cycles by which an instruction delays an RTS after it; a branch in a block counts with what it skips."""
     if instruction.op is Op.BRANCH_TAKEN_BP:
         return 2
     return operations.PRODUCT_BEFORE_RETURN if instruction.op is Op.MUL32 else 1

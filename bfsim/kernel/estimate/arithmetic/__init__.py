@@ -1,1 +1,1 @@
-"""Arithmetic that compilers do in another way: products, powers, sums, remainders, bits."""
+"""Arithmetic that compilers do differently: products, powers, sums, remainders, bits."""

@@ -14,7 +14,7 @@ STATEMENTS = 12
 
 
 def counted_word(flow: ControlFlow, each: Instruction) -> str | None:
-    """Return the word whose bits an instruction ends up with, or None."""
+    """Return the word whose bits an instruction has counted, or None."""
     product = _with(flow, each.result or "", "lshr", 24)
     fours = _with(flow, _with(flow, product, "mul", ONES), "and", BYTES)
     whole, high = _operands(flow, fours, "add")

@@ -1,6 +1,6 @@
-"""In a sum of products, those by the same number are added up before they are multiplied: a + 4 * b + 6 * c + 4 * d has one of 4 [undistribute_ops_list in tree-ssa-reassoc.cc of GCC 12].
+"""Common factors in a sum of products: a + 4 * b + 6 * c + 4 * d multiplies b + d by 4 once [undistribute_ops_list in tree-ssa-reassoc.cc of GCC 12].
 
-It is so where a sum may wrap, as one does that is stored as a byte or a half-word; those of an i32 GCC leaves as they are written.
+GCC does so if the sum may wrap, as one that is stored as a byte or a half-word may; it leaves sums of i32 as written.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ COMMON = ".common"
 
 
 def with_common_factors(routine: Routine) -> Routine:
-    """Return `routine` with each such sum so."""
+    """Return `routine` with each such sum rewritten."""
     flow = ControlFlow(routine)
     return replace(routine, blocks=tuple(_Block(flow, block).factored() for block in routine.blocks))
 
@@ -42,19 +42,19 @@ class _Block:
         return replace(self.block, instructions=tuple(rows))
 
     def _own(self, value: str, *opcodes: str) -> Instruction | None:
-        """What computes a value here by one of these operations, for one instruction alone."""
+        """The instruction that computes a value here by one of these operations, if only one instruction uses it."""
         each = self.flow.instruction(value)
         if each is None or each.opcode not in opcodes or self.flow.defined[value][0] != self.block.label:
             return None
         return each if len(self.flow.users.get(value, ())) == 1 else None
 
     def _is_stored(self, each: Instruction) -> bool:
-        """Whether a sum is only stored: GCC adds up in words what is shifted before it is."""
+        """Whether a sum is only stored: GCC adds in words if the sum is shifted first."""
         users = self.flow.users.get(each.result or "", ())
         return bool(users) and all(user.opcode == "store" for user in users)
 
     def _terms(self, total: Instruction) -> tuple[list[str], list[Instruction]]:
-        """What a sum adds up, and the sums on the way there."""
+        """The terms of a sum, and the sums in between."""
         terms, sums = [], []
         for value in total.operands:
             inner = self._own(value, "add")
@@ -64,7 +64,7 @@ class _Block:
         return terms, sums
 
     def _by_factor(self, terms: list[str]) -> dict[int, list[Instruction]]:
-        """The products among the terms by factors that several have."""
+        """The products among the terms, by factors that several of them share."""
         found = defaultdict[int, list[Instruction]](list)
         for value in terms:
             product = self._own(value, "mul", "shl")

@@ -1,7 +1,7 @@
-"""Half of a number as an index of words of 16 bits: the number without its lowest bit is the address [combine.cc of GCC 12, and BITCLR in bfin.md].
+"""Half of a number as an index of 16-bit words: the address is the number without its lowest bit [combine.cc of GCC 12, and BITCLR in bfin.md].
 
-`a[(low + high) >> 1]` is `a + 2 * ((low + high) >> 1)`: to shift right and left again is to clear a bit. Of wider elements it would be a mask
-of several bits, which takes a register, and stays two shifts.
+`a[(low + high) >> 1]` is `a + 2 * ((low + high) >> 1)`: shifting right and left again clears a bit. For wider elements
+this would be a mask of several bits, which takes a register; there it stays two shifts.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ HALVES = ("lshr", "ashr")
 
 
 def with_even_addresses(routine: Routine) -> Routine:
-    """Return `routine` with such addresses as so many bytes behind the array."""
+    """Return `routine` with such addresses as a number of bytes added to the array's."""
     flow = ControlFlow(routine)
     blocks = tuple(_block(flow, each) for each in routine.blocks)
     return without_unused(replace(routine, blocks=blocks), HALVES)
@@ -40,7 +40,7 @@ def _block(flow: ControlFlow, block: BasicBlock) -> BasicBlock:
 
 
 def _whole(flow: ControlFlow, each: Instruction) -> str | None:
-    """What an address is half of, in elements of two bytes."""
+    """The number whose half is the index, in elements of two bytes."""
     half = flow.instruction(each.operands[-1]) if each.opcode == "getelementptr" else None
     if half is None or half.opcode not in HALVES or half.bits != WORD or half.operands[1] != "1":
         return None

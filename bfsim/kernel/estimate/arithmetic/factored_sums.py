@@ -1,4 +1,4 @@
-"""A sum with a constant is added up before it is multiplied: LLVM makes (x - 128) * 454 to x * 454 - 58112.
+"""Sums with a constant, added before they are multiplied: LLVM turns (x - 128) * 454 into x * 454 - 58112.
 
 C compilers leave it as it is written [fitted: GCC 12.2 adds, and multiplies words, in `split_uyvy` and `yuv_to_rgb`]. So the factor
 is a word, not the byte that `x` was.
@@ -34,7 +34,7 @@ def _factored(flow: ControlFlow, block: BasicBlock) -> BasicBlock:
 
 
 def _added_to(flow: ControlFlow, product: Instruction) -> Instruction | None:
-    """The sum with a constant that is all that a product by a constant, which LLVM has made, is used for."""
+    """The sum with a constant that is the only use of a product by a constant that LLVM has made."""
     name = product.result or ""
     if product.opcode != "mul" or not name.startswith(MADE_BY_LLVM) or product.bits != WORD:
         return None
@@ -67,7 +67,7 @@ def _arithmetic(opcode: str, like: Instruction, result: str | None, left: str, r
 
 
 def _parts(added: int, factor: int, bits: int) -> tuple[int, int]:
-    """What is added before the multiplication and behind it: as little as there can be, in the bits that are wanted."""
+    """What is added before and after the multiplication: as little as possible, in the bits that are wanted."""
     found = []
     for width in (WORD, bits):
         wrapped = (added + (1 << (width - 1))) % (1 << width) - (1 << (width - 1))
@@ -77,7 +77,7 @@ def _parts(added: int, factor: int, bits: int) -> tuple[int, int]:
 
 
 def _wanted_bits(flow: ControlFlow, total: Instruction) -> int:
-    """How many low bits of a sum are wanted: those of what is cut out of it by a shift and a narrowing."""
+    """How many low bits of a sum are wanted: those that a shift and a narrowing cut out of it."""
     wanted = 0
     for shift in flow.users[total.result or ""]:
         cuts = flow.users.get(shift.result or "", [])

@@ -1,7 +1,7 @@
-"""Products with a constant as shifts and additions, as GCC picks them [synth_mult in expmed.cc of GCC 12].
+"""Products with a constant as shifts and additions, as GCC chooses them [synth_mult in expmed.cc of GCC 12].
 
-What an operation costs there is the Blackfin's [bfin_rtx_costs in bfin.cc]: a difference is one operation whatever is shifted on
-the way, a sum is one where the shift is by 1 or 2. In the code, other shifts are instructions of their own.
+The costs of operations are the Blackfin's [bfin_rtx_costs in bfin.cc]: a difference is one operation whatever its
+shift, a sum is one if the shift is by 1 or 2. In the code, other shifts are separate instructions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SHIFTED_SUMS = (2, 4)  # factors by which a sum may be multiplied as it is added
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """How to multiply: what GCC thinks that it costs, how long it takes to the result, and its instructions."""
+    """A way to multiply: its cost as GCC sees it, its latency, and its instructions."""
 
     cost: int
     latency: int
@@ -27,14 +27,14 @@ class Plan:
     is_sum: bool = False
     """Whether the last instruction adds, and could shift the sum by 1 or 2 as well."""
     subtracts: bool = False
-    """Whether there is a difference in it, which is as good the other way round."""
+    """Whether it has a difference, which is just as good the other way round."""
 
     def is_cheaper(self, cost: int, latency: int) -> bool:
-        """Whether it costs less, or as little and takes less long [CHEAPER_MULT_COST]."""
+        """Whether it costs less, or the same with less latency [CHEAPER_MULT_COST]."""
         return (self.cost, self.latency) < (cost, latency)
 
     def then(self, step: Plan, factor: int) -> Plan:
-        """Return this one with a step behind it that multiplies by `factor`."""
+        """Return this one followed by a step that multiplies by `factor`."""
         joins = self.is_sum and factor in SHIFTED_SUMS and step.ops == (Op.SHIFT,)
         ops = (*self.ops[:-1], Op.ADD_SHIFT) if joins else (*self.ops, *step.ops)
         latency = max(self.latency + step.latency, step.cost)
@@ -80,7 +80,7 @@ def _plan(factor: int, cost: int, latency: int) -> Plan | None:
 
 
 def _steps(factor: int) -> Iterator[tuple[int, Plan]]:
-    """From what `factor` can be made, and how."""
+    """The numbers that `factor` can be made from, and how."""
     lowest = factor & -factor
     if lowest > 1:
         yield factor // lowest, SHIFT

@@ -1,6 +1,6 @@
-"""Division of a signed number by a power of two, rounded towards zero: no call, as GCC 12 does it [expand_divmod in expmed.cc].
+"""Division of a signed number by a power of two, rounded towards zero: GCC 12 makes no call for it [expand_divmod in expmed.cc].
 
-`//` and `%` round down there, which is a shift or a mask alone.
+`//` and `%` round down, which takes only a shift or a mask.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ MASKED = (Op.IMM, Op.ALU, Op.ALU, Op.COMPARE)  # R1 = 2**n - 1; BITSET(R1, 31); 
 def by_power(opcode: str, divisor: int, branch: Op) -> tuple[Op, ...] | None:
     """Return the operations of `opcode`, sdiv or srem, by a constant; None if it is no power of two beyond 1.
 
-    They are those of a dividend of 0 or more: what mends a negative one is skipped by `branch`, or stands behind the routine.
-    A negative dividend takes up to 12 cycles more.
+    They are for a dividend of 0 or more: `branch` skips the correction of a negative one, or it stands after the
+    routine. A negative dividend takes up to 12 cycles more.
     """
     size = abs(divisor)
     if size < 2 or size.bit_count() != 1:

@@ -1,7 +1,7 @@
 """x - x / y * y is the remainder [match.pd of GCC 12].
 
-Of unsigned numbers, and where the divisor is written twice, it is made one before anything else is done: LLVM would write products with other
-factors, of which no remainder can be seen any more.
+For unsigned numbers, and if the divisor is written twice, this is done first: LLVM would write products with other
+factors, in which no remainder can be seen any more.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from bfsim.kernel.ir.value_numbers import ValueNumbers
 
 
 def with_remainders(routine: Routine) -> Routine:
-    """Return `routine` with those that LLVM would hide, while its variables are registers and nothing else was done."""
+    """Return `routine` with the remainders that LLVM would hide, while its variables are registers and nothing else was done."""
     flow, numbers = ControlFlow(routine), ValueNumbers()
     for label in flow.order:
         for each in flow.blocks[label].instructions:
@@ -41,9 +41,9 @@ def _remainder(flow: ControlFlow, each: Instruction, numbers: ValueNumbers) -> I
 def quotient_of_rest(
     flow: ControlFlow, each: Instruction, number_of: Callable[[str], str] = str
 ) -> Instruction | None:
-    """Return the division x / y of a difference x - x / y * y; None if an instruction is no such difference.
+    """Return the division x / y of a difference x - x / y * y; None for other instructions.
 
-    `number_of`: of a value, what it has in common with those that are the same.
+    `number_of`: returns the same for values that are the same.
     """
     product = flow.instruction(each.operands[1]) if each.opcode == "sub" else None
     if product is None or product.opcode != "mul":

@@ -1,4 +1,4 @@
-"""Sums that LLVM has made saturating are sums within two bounds again, as in the source: GCC for the Blackfin makes no others of them."""
+"""Sums that LLVM has made saturating, turned back into sums within two bounds, as in the source: GCC for the Blackfin leaves them so."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SATURATING = re.compile(r"call i(8|16) @llvm\.s(add|sub)\.sat\.i\d+\(i\d+ (\S+),
 
 
 def without_saturations(routine: Routine) -> Routine:
-    """Return `routine` with words that are added, and held within bounds, in place of each narrow sum that saturates."""
+    """Return `routine` with a sum of words, held within bounds, in place of each narrow sum that saturates."""
     blocks = (
         replace(block, instructions=tuple(row for each in block.instructions for row in _bounded(each)))
         for block in routine.blocks

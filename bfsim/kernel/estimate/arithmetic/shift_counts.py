@@ -1,6 +1,6 @@
-"""What a value is shifted by is masked as a word, as the language says: LLVM masks a byte before it is extended.
+"""Shift counts, masked as words, as the language says: LLVM masks a byte before it is extended.
 
-The shifter does the mask; of a byte there would be an instruction, and one more that extends what is left of it.
+The shifter does this mask; masking a byte would take an instruction, and extending the result another one.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from bfsim.kernel.ir.widths import WORD
 
 
 def with_wide_counts(routine: Routine) -> Routine:
-    """Return `routine` with such values extended, once for all that want them as words, before they are masked."""
+    """Return `routine` with such values extended before they are masked, once for all uses as words."""
     while (found := _narrow_count(flow := ControlFlow(routine))) is not None:
         routine = _widened(flow, *found)
     return routine
 
 
 def _narrow_count(flow: ControlFlow) -> tuple[Instruction, Instruction] | None:
-    """Return the first mask of a narrow value, and its extension, which is what something is shifted by."""
+    """Return the first mask of a narrow value, and its extension, which is a shift count."""
     for block in flow.routine.blocks:
         for each in block.instructions:
             mask = flow.instruction(each.operands[0]) if each.opcode == "zext" else None

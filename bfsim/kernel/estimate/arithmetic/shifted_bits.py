@@ -1,8 +1,9 @@
-"""A test of a bit whose number is computed shifts the value: `(x >> n) & 1`, and `x & (1 << n)`, too [fold_comparison in fold-const.cc of GCC 12].
+"""Tests of a bit whose number is computed: they shift the value, in `(x >> n) & 1` and also in `x & (1 << n)` [fold_comparison in fold-const.cc of GCC 12].
 
-"If this is an EQ or NE comparison with zero and ARG0 is (1 << foo) & bar, convert it to (bar >> foo) & 1": the bit that is left is tested by
-its number, and nothing is masked. LLVM shifts the 1 for both. GCC sees only what one expression says; a mask with a name of its own stays one. Where
-the number of the bit does not change in a loop, it is a mask, computed before the loop [rewrite_bittest in tree-ssa-loop-im.cc].
+"If this is an EQ or NE comparison with zero and ARG0 is (1 << foo) & bar, convert it to (bar >> foo) & 1": the
+remaining bit is tested by its number, and nothing is masked. LLVM shifts the 1 for both. GCC looks at one expression
+only; a mask that has a name stays a mask. If the number of the bit does not change in a loop, it is a mask, computed
+before the loop [rewrite_bittest in tree-ssa-loop-im.cc].
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def with_shifted_bits(routine: Routine) -> Routine:
 
 
 def _bit(flow: ControlFlow, motion: InvariantCodeMotion, mask: Instruction) -> Instruction | None:
-    """Return the shifted 1 of which alone a mask is made, if only a test whether that bit is set wants the mask."""
+    """Return the shifted 1 in a mask, if it has no other use and the mask is only used by a test whether that bit is set."""
     users = flow.users.get(mask.result or "", [])
     is_tested = len(users) == 1 and users[0].opcode == "icmp" and predicate(users[0]) in ("eq", "ne")
     here = flow.defined.get(mask.result or "", ("", None))[0]
@@ -55,7 +56,7 @@ def _bit(flow: ControlFlow, motion: InvariantCodeMotion, mask: Instruction) -> I
 
 
 def _shifted(mask: Instruction, bit: Instruction) -> tuple[Instruction, Instruction]:
-    """Return the value shifted by the number of its bit, and what is left of it."""
+    """Return the value shifted by the number of its bit, and the bit that is left."""
     (value,) = (name for name in mask.operands if name != bit.result)
     name, number = bit.result or "", bit.operands[1]
     shift = written(name, f"lshr i{WORD} {value}, {number}", (value, number), mask)

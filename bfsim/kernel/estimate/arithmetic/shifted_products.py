@@ -1,6 +1,6 @@
-"""A product that is shifted left is shifted: LLVM multiplies by a larger number in its place, beside the product itself.
+"""Products that are shifted left: LLVM multiplies by a larger number instead, besides the product itself.
 
-`k = x * C; (k << 15) | (k >> 17)` is one product in C, and two to LLVM.
+`k = x * C; (k << 15) | (k >> 17)` is one product in C, and two in LLVM.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def with_shifted_products(routine: Routine) -> Routine:
 
 
 def _shift(flow: ControlFlow, label: str, each: Instruction) -> Instruction | None:
-    """Return a product as a shift of another one that is there before it."""
+    """Return a product as a shift of an earlier one."""
     if not _is_product(each):
         return None
     value, factor = each.operands[:2]
@@ -47,6 +47,6 @@ def _shift(flow: ControlFlow, label: str, each: Instruction) -> Instruction | No
 
 
 def _is_product(each: Instruction) -> bool:
-    """Whether it multiplies by a number, and takes an instruction that multiplies."""
+    """Whether it multiplies by a number, with an instruction that multiplies."""
     is_word = each.opcode == "mul" and each.bits == WORD and is_number(each.operands[1])
     return is_word and multiple(int(each.operands[1])) is None

@@ -1,6 +1,6 @@
-"""Straight-line strength reduction: (y + 1) * w beside y * w is that and w [gimple-ssa-strength-reduction.cc of GCC 12].
+"""Straight-line strength reduction: after y * w, (y + 1) * w is that plus w [gimple-ssa-strength-reduction.cc of GCC 12].
 
-So the rows above and below cost an addition each, not a product. Products that a loop steps along are none, either way.
+So the rows above and below cost an addition each, not a product. Products that a loop steps along are left alone.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ DISTANCE = ".distance"
 
 @dataclass(frozen=True, slots=True)
 class _Product:
-    """A product: of the terms of a sum and its constant `number`, times `stride`."""
+    """A product: the sum of terms and the constant `number`, times `stride`."""
 
     each: Instruction
     label: str
@@ -29,7 +29,7 @@ class _Product:
 
 
 def with_reduced_strength(routine: Routine) -> Routine:
-    """Return `routine` with a sum in place of each product that an earlier one differs from by a few strides."""
+    """Return `routine` with a sum in place of each product that differs from an earlier one by a few strides."""
     flow = ControlFlow(routine)
     evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
     known: list[_Product] = []
@@ -79,7 +79,7 @@ def _products(
 
 
 def _steps(base: _Product, product: _Product) -> int:
-    """How many strides a product is behind another one, if that is a power of two or none of it; else 0."""
+    """How many strides a product is from another one, if that is a power of two or its negative; else 0."""
     apart = product.number - base.number
     alike = base.terms == product.terms and base.stride == product.stride
     return apart if alike and abs(apart).bit_count() == 1 else 0

@@ -1,7 +1,7 @@
-"""What is subtracted one by one stays so: LLVM makes x - a - b to x - (a + b).
+"""Numbers that are subtracted one by one: LLVM turns x - a - b into x - (a + b).
 
-C compilers leave it as it is written. It matters where one of them is doubled: that is part of an addition of pointer registers on the
-Blackfin, and of no subtraction.
+C compilers leave it as written. It matters if one of them is doubled: on the Blackfin, an addition of pointer registers
+can include that, and a subtraction cannot.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, is_number
 
 
 def with_subtractions(routine: Routine) -> Routine:
-    """Return `routine` with each part of such a sum subtracted by itself."""
+    """Return `routine` with each part of such a sum subtracted separately."""
     flow = ControlFlow(routine)
     return replace(routine, blocks=tuple(_separated(flow, block) for block in routine.blocks))
 
@@ -32,7 +32,7 @@ def _separated(flow: ControlFlow, block: BasicBlock) -> BasicBlock:
 
 
 def _sums(flow: ControlFlow, block: BasicBlock, name: str) -> Iterator[Instruction]:
-    """Yield the sum of that name and those it is made of, as far as they are taken apart."""
+    """Yield the sum of that name and its parts that are sums, as far as they are taken apart."""
     total = flow.instruction(name)
     if total is None or total.opcode != "add" or any(map(is_number, total.operands)):
         return

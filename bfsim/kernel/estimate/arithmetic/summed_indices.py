@@ -1,8 +1,9 @@
-"""An index is added up before it becomes an address: LLVM makes a[i + j] to an address j elements behind the one i elements behind a.
+"""Indices, added up before they become an address: LLVM makes two addresses of a[i + j], the second j elements after the first.
 
-C compilers add up what the source adds up: the sum of two words is an index, and its address one instruction. Only the address of a byte
-that one access uses is such a sum of three in GCC 12's code, too [fitted: tests/kernel/estimate/memory/test_rows_of_pictures.py]. It is left as it is, and so
-are addresses that a loop steps along, or that do not change in it: they cost the same either way.
+C compilers add what the source adds: the sum of two words is an index, and its address takes one instruction. Only the
+address of a byte that one access uses is such a sum of three in GCC 12's code, too [fitted:
+tests/kernel/estimate/memory/test_rows_of_pictures.py]. It is left alone, and so are addresses that a loop steps along,
+or that do not change in it: they cost the same either way.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ INDEX = ".index"
 
 
 def with_summed_indices(routine: Routine) -> Routine:
-    """Return `routine` with one address in place of each such two."""
+    """Return `routine` with one address in place of each such pair."""
     while (shorter := _summed(ControlFlow(routine))) is not None:
         routine = shorter
     return routine
 
 
 def _summed(flow: ControlFlow) -> Routine | None:
-    """The routine with the addresses of one more level made of one index each; None if there are none."""
+    """The routine with one index for each address of one more level; None if there are none."""
     evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
     behind = {
         each.result: inner
@@ -48,7 +49,7 @@ def _summed(flow: ControlFlow) -> Routine | None:
 
 
 def _inner(flow: ControlFlow, each: Instruction) -> Instruction | None:
-    """The address that another one is some elements behind, if that is itself some elements behind another one."""
+    """The address that another one is computed from, if it is itself some elements after a third one."""
     if each.opcode != "getelementptr" or not each.operands[-1].startswith("%"):
         return None
     inner = flow.instruction(each.operands[0])
@@ -60,7 +61,7 @@ def _inner(flow: ControlFlow, each: Instruction) -> Instruction | None:
 
 
 def _is_stepped(flow: ControlFlow, evolution: ScalarEvolution, label: str, each: Instruction) -> bool:
-    """Whether the loop around a block steps an address along, or leaves it as it is."""
+    """Whether the loop around a block steps an address along, or leaves it unchanged."""
     loop = flow.innermost(label)
     return loop is not None and evolution.increment(each.result or "", loop) is not None
 

@@ -1,6 +1,7 @@
-"""A choice between neighbouring numbers by a bit is computed from that: `4 if c & 1 else 5` is 5 - (c & 1) [two_value_replacement in tree-ssa-phiopt.cc of GCC 12].
+"""Choices between neighbouring numbers by a bit, computed from the bit: `4 if c & 1 else 5` is 5 - (c & 1) [two_value_replacement in tree-ssa-phiopt.cc of GCC 12].
 
-Then no test of what was chosen is threaded to it. Of 0 and 1 other rules say so. That GCC extends the bit of a byte once more is not modelled.
+Then no test of the chosen value is threaded to it. Other rules do this for 0 and 1. GCC also extends the bit of a byte
+once more, which is not modelled.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from bfsim.kernel.ir.text import (
 
 
 def with_adjacent_numbers(routine: Routine) -> Routine:
-    """Return `routine` with such choices computed, where nothing else is done or chosen on either side."""
+    """Return `routine` with such choices computed, if nothing else is done or chosen on either side."""
     while True:
         flow = ControlFlow(routine)
         found = next(filter(None, (_found(flow, each) for each in routine.blocks)), None)
@@ -33,9 +34,9 @@ def with_adjacent_numbers(routine: Routine) -> Routine:
 
 @dataclass(frozen=True)
 class _Choice:
-    """`phi` in block `home`: on the two ways there from the test of `bit` in block `tested` it is `low` and low + 1.
+    """`phi` in block `home`: it is `low` and low + 1 on the two paths there from the test of `bit` in block `tested`.
 
-    `sides`: the blocks that bring them, of which one may be `tested`. `rises`: whether a bit of 1 makes it the larger one.
+    `sides`: the blocks that these come from; one may be `tested`. `rises`: whether a bit of 1 gives the larger number.
     """
 
     phi: Instruction
@@ -91,7 +92,7 @@ def _is_of_bit(flow: ControlFlow, test: Instruction) -> bool:
 
 
 def _computed(routine: Routine, choice: _Choice) -> Routine:
-    """Return `routine` with the choice computed where it was tested, and no test there."""
+    """Return `routine` with the choice computed in place of its test."""
     value = f"{choice.phi.result}.of{choice.bit[1:]}"
     text = (
         f"add i32 {choice.bit}, {choice.low}" if choice.rises else f"sub i32 {choice.low + 1}, {choice.bit}"
@@ -113,7 +114,7 @@ def _computed(routine: Routine, choice: _Choice) -> Routine:
 
 
 def _with_one_way(each: Instruction, choice: _Choice, value: str) -> Instruction:
-    """Return a phi that expects the block with the test in place of its sides, and from there `value`, if it is the choice."""
+    """Return a phi with the block of the test in place of its sides, and `value` from there if it is the choice."""
     if each.opcode != "phi":
         return each
     arms = arms_of(each)

@@ -1,6 +1,7 @@
-"""What is limited on both sides, where LLVM has made one of the two tests narrow [minmax_replacement in tree-ssa-phiopt.cc of GCC 12].
+"""Values limited on both sides, when LLVM has made one of the two tests narrow [minmax_replacement in tree-ssa-phiopt.cc of GCC 12].
 
-Of `if v < 0: v = 0 elif v > 255: v = 255` the second test is a minimum then, and the first one a branch around it: both are one value.
+In `if v < 0: v = 0 elif v > 255: v = 255`, the second test is then a minimum, and the first one a branch around it:
+both are one value.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from bfsim.kernel.ir.widths import WORD
 
 INNER = re.compile(r"call i(8|16) @llvm\.s(min|max)\.i\d+\(i\d+ (\S+), i\d+ (-?\d+)\)$")
 OUTER = {"min": ("slt", "max"), "max": ("sgt", "min")}
-"""Of the inner one: what the first test is, and what it makes."""
+"""By the inner limit: what the first test is, and the limit that it makes."""
 
 
 def with_clamps(routine: Routine) -> Routine:
-    """Return `routine` with two limits in place of a test before one."""
+    """Return `routine` with two limits in place of a test before a limit."""
     while (found := _first(ControlFlow(routine))) is not None:
         blocks, gone = found
         routine = replace(
@@ -29,7 +30,7 @@ def with_clamps(routine: Routine) -> Routine:
 
 
 def _first(flow: ControlFlow) -> tuple[dict[str, BasicBlock], str] | None:
-    """The blocks that take the place of others where the first such test is, and the one that is gone."""
+    """The blocks that replace others for the first such test, and the block that is gone."""
     for block in flow.routine.blocks:
         for inside in dict.fromkeys(block.successors):
             if flow.predecessors[inside] == [block.label] and (made := _joined(flow, block, inside)):

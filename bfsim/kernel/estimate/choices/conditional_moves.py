@@ -1,8 +1,8 @@
-"""Which choices become conditional moves: those whose register is not tested, and of which one value is copied at most.
+"""Which choices become conditional moves: those whose register is not tested, and that copy at most one value.
 
 GCC 12 takes an `if` for conditional moves if its arms only copy [cond_move_process_if_block in ifcvt.cc]. It does not if the condition
-uses the register that they copy to [check_cond_move_block], nor if both arms copy from a register. A value that nobody wants behind the
-choice is in the register of the choice already: it is not copied, and if it is tested, so is that register.
+uses the register that they copy to [check_cond_move_block], nor if both arms copy from a register. A value that is not
+used after the choice is already in the choice's register: it is not copied, and if it is tested, so is that register.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from bfsim.kernel.ir.widths import WORD
 
 CASTS = ("trunc", "zext", "sext", "freeze")
 MOST_ON_ONE_SIDE = 2
-"""Registers that only one side of a test sets [MAX_CONDITIONAL_EXECUTE in ifcvt.cc, where a branch costs 1]."""
+"""The most registers that only one side of a test sets [MAX_CONDITIONAL_EXECUTE in ifcvt.cc, where a branch costs 1]."""
 
 
 def is_conditional_move(
     flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
 ) -> bool:
-    """Whether the choice `phi` between two `values` is one, behind a comparison of those in `tested`."""
+    """Whether the choice `phi` between two `values` becomes one, after a comparison of those in `tested`."""
     if _is_narrow(flow, phi, values) and not (
         tested.issuperset(values) and _stays_a_branch(flow, phi, values)
     ):
-        tested = frozenset()  # wide, in a register of its own
+        tested = frozenset()  # wide, in a separate register
     own, copied = _registers(flow, phi, values, tested)
     return len(copied) < 2 and tested.isdisjoint(own)
 
@@ -34,9 +34,9 @@ def is_conditional_move(
 def are_conditional_moves(
     flow: ControlFlow, choices: Sequence[tuple[Instruction, str, str]], tested: frozenset[str]
 ) -> bool:
-    """Whether choices by one comparison, each a phi and what it is on either side, are such: of values that none of the others overwrites.
+    """Whether choices by one comparison, each a phi and its value on either side, become them: no value may be overwritten by another choice.
 
-    Of two between numbers that are as far apart, LLVM has computed one from the other, which is no choice of its own in C.
+    If two choose between numbers with the same distance, LLVM has computed one from the other; in C it is no choice.
     """
     if not all(is_conditional_move(flow, phi, (yes, no), tested) for phi, yes, no in choices):
         return False
@@ -55,7 +55,7 @@ def are_conditional_moves(
 def _registers(
     flow: ControlFlow, phi: Instruction, values: tuple[str, str], tested: frozenset[str]
 ) -> tuple[set[str], set[str]]:
-    """Values whose register a choice has, and those that are copied to it."""
+    """The values that share the register of a choice, and those that are copied to it."""
     carried = {each for each in _carried(flow, phi) if not _is_wanted_behind(flow, each, phi)}
     registers = [each for each in values if each.startswith("%")]
     free = [each for each in registers if not _is_wanted_behind(flow, each, phi)]
@@ -64,9 +64,9 @@ def _registers(
 
 
 def _stays_a_branch(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
-    """Whether a narrow minimum or maximum stays a branch: of two values, or of one that a side computes as narrow.
+    """Whether a narrow minimum or maximum stays a branch: one of two values, or of a value that a side computes as narrow.
 
-    Not so of a value that is loaded and stored alike: to choose that takes no conversion.
+    Not for a value that is loaded and stored with the same width: choosing it takes no conversion.
     """
     if _is_stored_alike(flow, phi, values):
         return False
@@ -77,9 +77,9 @@ def _stays_a_branch(flow: ControlFlow, phi: Instruction, values: tuple[str, str]
 
 
 def _is_stored_alike(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
-    """Whether one of the values is loaded with as many bits as are stored: the word that is made of it is in another register.
+    """Whether one of the values is loaded with as many bits as are stored: the word made from it is in another register.
 
-    Signs are not asked [ours]: a u16 that is stored as an i16 is converted, and stays a branch in GCC's code.
+    Signs are ignored [ours]: a u16 that is stored as an i16 is converted, and stays a branch in GCC's code.
     """
     found = [flow.instruction(each) for each in values]
     bits = stored_bits(flow, phi)
@@ -87,7 +87,7 @@ def _is_stored_alike(flow: ControlFlow, phi: Instruction, values: tuple[str, str
 
 
 def _is_narrow(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> bool:
-    """Whether the choice is made between narrow values, and only stored: of `x if test else y`, C converts both sides before it chooses."""
+    """Whether the choice is between narrow values, and only stored: in `x if test else y`, C converts both sides before it chooses."""
     users = flow.users.get(phi.result or "", [])
     narrowed = len(users) == 1 and users[0].opcode == "trunc"
     if narrowed:
@@ -102,7 +102,7 @@ def _is_narrow(flow: ControlFlow, phi: Instruction, values: tuple[str, str]) -> 
 
 
 def _carried(flow: ControlFlow, phi: Instruction) -> list[str]:
-    """Values that loops carry and that the choice is the next one of."""
+    """Values that loops carry, and whose next value is the choice."""
     label, _ = flow.defined[phi.result or ""]
     headers = {loop.header for loop in flow.loops if label in loop.blocks}
     return [
@@ -113,7 +113,7 @@ def _carried(flow: ControlFlow, phi: Instruction) -> list[str]:
 
 
 def _is_wanted_behind(flow: ControlFlow, value: str, phi: Instruction) -> bool:
-    """Whether something behind the choice uses a value, which then cannot share its register."""
+    """Whether a value is used after the choice; then it cannot share the choice's register."""
     home, _ = flow.defined[phi.result or ""]
     places = _places(flow, value, phi)
     own, _ = flow.defined.get(value, ("", None))
@@ -124,7 +124,7 @@ def _is_wanted_behind(flow: ControlFlow, value: str, phi: Instruction) -> bool:
             return True
         for way in flow.blocks[label].successors:
             if way == home != own:
-                return True  # by the choice itself, when it comes round again
+                return True  # by the choice itself, in the next iteration
             if way not in seen and way != own:
                 seen.add(way)
                 waiting.append(way)
@@ -132,7 +132,7 @@ def _is_wanted_behind(flow: ControlFlow, value: str, phi: Instruction) -> bool:
 
 
 def _places(flow: ControlFlow, value: str, phi: Instruction) -> set[str]:
-    """Blocks in which a value is used; a choice between ways uses it where its way comes from."""
+    """Blocks in which a value is used; a phi uses it in the block from which it comes."""
     found = set[str]()
     for name in (value, *(each.result or "" for each in flow.users.get(value, []) if each.opcode in CASTS)):
         for user in flow.users.get(name, []):

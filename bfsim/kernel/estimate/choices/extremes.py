@@ -1,7 +1,7 @@
-"""Minima and maxima, found before anything is moved into the ways on which their values come [minmax_replacement in tree-ssa-phiopt.cc of GCC 12].
+"""Minima and maxima, found before anything is moved to the paths on which their values come [minmax_replacement in tree-ssa-phiopt.cc of GCC 12].
 
-`if v > 255: v = 255` is a minimum to GCC as soon as a function is read, whatever is done with `v` behind it. LLVM would shift, mask or
-store it on each way apart, and see a branch.
+GCC sees a minimum in `if v > 255: v = 255` as soon as it has read a function, whatever is done with `v` later. LLVM
+would shift, mask or store it on each path separately, and see a branch.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from bfsim.kernel.ir.widths import WORD
 
 SWAPPED = {"lt": "gt", "le": "ge", "gt": "lt", "ge": "le"}
 BESIDE = {"lt": -1, "le": 1, "gt": 1, "ge": -1}
-"""What is added to the constant of a comparison to say the same by its neighbour: x < 256 is x <= 255."""
+"""What is added to a comparison's constant to get the same comparison with its neighbour: x < 256 is x <= 255."""
 OPPOSITE = {"min": "max", "max": "min"}
 EXTREME = "bfsim.extreme"
 SUMS = {"add": 1, "sub": -1}
@@ -53,7 +53,7 @@ def with_extremes(routine: Routine, *, narrows: bool) -> Routine:
 
 @dataclass(frozen=True, slots=True)
 class _Choice:
-    """A block that tests and the `phi` that chooses behind it: `name` is what that is of which operands, and `arms` are the ways to it."""
+    """A block that tests, and the `phi` that chooses after it: `name` is what it is of which operands, `arms` are the paths to it."""
 
     label: str
     phi: Instruction
@@ -62,13 +62,13 @@ class _Choice:
     operands: tuple[str, str]
     arms: frozenset[str]
     rows: tuple[Instruction, ...] = ()
-    """What an arm computes that is computed in any case now."""
+    """What an arm computes, and is now computed in any case."""
     sum_of: Instruction | None = None
-    """What an arm adds, that is added to the extreme now."""
+    """What an arm adds, and is now added to the extreme."""
 
 
 def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice | None:
-    """What a block's branch chooses, if it is an extreme and all that it chooses."""
+    """The choice of a block's branch, if it is an extreme and the only one."""
     if block.terminator.opcode != "br" or len(set(block.successors)) != 2:
         return None
     test = flow.instruction(block.terminator.operands[0])
@@ -111,7 +111,7 @@ def _choice(flow: ControlFlow, block: BasicBlock, *, narrows: bool) -> _Choice |
 
 
 def _is_arm(flow: ControlFlow, way: str, label: str) -> bool:
-    """Whether a block is on one way from the test alone, and computes no more than an extreme or a sum with a number."""
+    """Whether a block is only on one path from the test, and computes no more than an extreme or a sum with a number."""
     block = flow.blocks[way]
     rows = block.instructions[:-1]
     is_one = len(rows) == 1 and (
@@ -126,7 +126,7 @@ def _is_arm(flow: ControlFlow, way: str, label: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Comparison:
-    """What is tested, `sign` (s or u), `kind` (lt ...), and what it is compared with: a value, or a number and its neighbour."""
+    """The tested value, `sign` (s or u), `kind` (lt ...), and what it is compared with: a value, or a number and its neighbour."""
 
     tested: str
     sign: str
@@ -135,7 +135,7 @@ class _Comparison:
 
     @property
     def is_less(self) -> bool:
-        """Whether what is tested is the smaller one where it holds."""
+        """Whether the tested value is the smaller one if the comparison holds."""
         return self.kind in ("lt", "le")
 
 
@@ -151,13 +151,13 @@ def _comparison(test: Instruction) -> _Comparison | None:
 
 
 def _is_none(flow: ControlFlow, phi: Instruction, yes: str, no: str) -> bool:
-    """Whether a choice of narrow values is no extreme, or one of unsigned numbers, of which there is no instruction."""
+    """Whether a choice of narrow values is no extreme, or one of unsigned numbers, for which there is no instruction."""
     unsigned = stored_bits(flow, phi) < WORD and _are_unsigned(flow, yes, no)
     return unsigned or (is_narrowed(flow, phi) and not is_narrowed_behind(flow, phi, yes, no))
 
 
 def _are_unsigned(flow: ControlFlow, *values: str) -> bool:
-    """Whether narrow values are extended with zeros, and numbers are such values, too."""
+    """Whether narrow values are extended with zeros, and numbers could be such values."""
     made = [flow.instruction(each) for each in values if not is_number(each)]
     most = max((each.bits for each in made if each is not None and each.opcode == "zext"), default=0)
     numbers = [int(each) for each in values if is_number(each)]
@@ -167,7 +167,7 @@ def _are_unsigned(flow: ControlFlow, *values: str) -> bool:
 
 
 def _is_of_narrow(flow: ControlFlow, comparison: _Comparison) -> bool:
-    """Whether the sign of a narrow value that was shifted is tested: that is another value than the wide one that is chosen [match.pd]."""
+    """Whether the sign of a shifted narrow value is tested: that is not the wide value that is chosen [match.pd]."""
     each = flow.instruction(comparison.tested)
     if comparison.bounds[0] != "0" or each is None or each.opcode != "ashr":
         return False
@@ -176,7 +176,7 @@ def _is_of_narrow(flow: ControlFlow, comparison: _Comparison) -> bool:
 
 
 def _plain(comparison: _Comparison, yes: str, no: str) -> str | None:
-    """The minimum or maximum of what is compared, if where the comparison holds `yes` is chosen, and else `no`."""
+    """The minimum or maximum of the compared values, if `yes` is chosen when the comparison holds, and `no` otherwise."""
     tested, bounds = comparison.tested, comparison.bounds
     if yes == tested and no in bounds:
         return "min" if comparison.is_less else "max"
@@ -186,9 +186,9 @@ def _plain(comparison: _Comparison, yes: str, no: str) -> str | None:
 
 
 def _before_sum(yes: str, no: str, sum_of: Instruction) -> tuple[str, str]:
-    """What is chosen if the number of a sum is added behind the choice: `x - 20 if x > 20 else 0` is one of x and 20 [match.pd].
+    """The extreme, if the number of a sum is added after the choice: `x - 20 if x > 20 else 0` is one of x and 20 [match.pd].
 
-    Where both sides are converted first, the sum is one of a narrow number, which is not what is tested.
+    If both sides are converted first, the sum is of a narrow number, which is not the tested value.
     """
     value, added = sum_of.operands[0], SUMS[sum_of.opcode] * int(sum_of.operands[1])
     if yes == sum_of.result:
@@ -197,7 +197,7 @@ def _before_sum(yes: str, no: str, sum_of: Instruction) -> tuple[str, str]:
 
 
 def _nested(flow: ControlFlow, comparison: _Comparison, yes: str, no: str, inner: Instruction) -> str | None:
-    """The same of a number and of the extreme `inner`, which is made of what is tested and of a number beyond the first one."""
+    """The same for a number and the extreme `inner` of the tested value and a number beyond the first one."""
     number, value = (yes, no) if inner.result == no else (no, yes)
     others = [each for each in inner.operands if each != comparison.tested]
     alone = value == inner.result and len(flow.users[value]) == 1
@@ -206,13 +206,13 @@ def _nested(flow: ControlFlow, comparison: _Comparison, yes: str, no: str, inner
     if _is_of_narrow(flow, comparison):
         return None
     name = OPPOSITE["min" if "min." in inner.text else "max"]
-    is_below = comparison.is_less == (number == yes)  # the number is chosen where what is tested is less
+    is_below = comparison.is_less == (number == yes)  # the number is chosen if the tested value is less
     beyond = int(others[0]) - int(number)
     return name if is_below == (name == "max") and (beyond >= 0 if name == "max" else beyond <= 0) else None
 
 
 def _chosen(routine: Routine, flow: ControlFlow, choice: _Choice) -> Routine:
-    """Return `routine` with the extreme computed before the branch, which goes on to where it is chosen."""
+    """Return `routine` with the extreme computed in place of the branch, which now leads straight to the choice."""
     branch = flow.blocks[choice.label].terminator
     name = f"%{EXTREME}.{choice.name}.{choice.label}"
     unused = branch.operands[0] if flow.users[branch.operands[0]] == [branch] else None
@@ -244,7 +244,7 @@ def _chosen(routine: Routine, flow: ControlFlow, choice: _Choice) -> Routine:
 
 
 def _arrivals(block: BasicBlock, choice: _Choice, name: str) -> Iterator[Instruction]:
-    """The rows of the block behind a choice, whose phis get one value from the test in place of two."""
+    """The rows of the block after a choice, whose phis get one value from the test instead of two."""
     gone = {choice.label, *choice.arms}
     for each in block.instructions:
         if each.opcode != "phi":

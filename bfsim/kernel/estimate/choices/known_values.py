@@ -1,7 +1,7 @@
-"""A number that a variable is known to be is taken from it where ways meet, so that nothing is loaded [tree-ssa-uncprop.cc of GCC 12].
+"""Known numbers, taken from the variable that has them where paths join, so that nothing is loaded [tree-ssa-uncprop.cc of GCC 12].
 
-Behind `if state == 3`, passes put 3 in place of `state`, which helps them. Where `state` is then chosen among others, 3 would have to be
-loaded into its register, where it is already.
+After `if state == 3`, passes put 3 in place of `state`, which helps them. If `state` is then chosen among others, 3
+would have to be loaded into its register, where it already is.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from bfsim.kernel.ir.text import (
 )
 
 FLAG = {"0": "1", "1": "0"}
-"""What a flag is where it is not the one."""
+"""The other value of a flag."""
 
 
 def with_known_values(routine: Routine) -> Routine:
-    """Return `routine` with variables in place of the numbers that they are known to be, in its choices."""
+    """Return `routine` with variables in place of known numbers in its choices."""
     known = KnownValues(ControlFlow(routine))
     blocks = (
         replace(block, instructions=tuple(known.chosen(block.label, each) for each in block.instructions))
@@ -38,12 +38,12 @@ def with_known_values(routine: Routine) -> Routine:
 
 @dataclass(frozen=True)
 class KnownValues:
-    """What tests have found out of variables in a routine."""
+    """What the tests of a routine have found out about its variables."""
 
     flow: ControlFlow
 
     def chosen(self, home: str, each: Instruction) -> Instruction:
-        """Return an instruction of block `home`; if it is a choice of words or truths, from variables."""
+        """Return an instruction of block `home`, with variables in place of known numbers if it is a choice of words or truths."""
         if not each.text.startswith(("phi i32 ", "phi i1 ")):
             return each
         arms = [
@@ -53,7 +53,7 @@ class KnownValues:
         return each if arms == each_arm(each) else with_each_arm(each, arms)
 
     def number(self, name: str, label: str, home: str) -> str | None:
-        """Return the number that a variable is known to be on the way from block `label` to block `home`."""
+        """Return the number that a variable is known to be on the edge from block `label` to block `home`."""
         return next((number for each, number in self._found_out(label, home) if each == name), None)
 
     def _is_computed(self, choice: Instruction, label: str, home: str) -> bool:
@@ -77,7 +77,7 @@ class KnownValues:
         return next(equal, value)
 
     def _found_out(self, label: str, home: str) -> Iterator[tuple[str, str]]:
-        """Yield the variables that are numbers on the way from block `label` to block `home`, what was found out last first."""
+        """Yield the variables that are numbers on the edge from block `label` to block `home`, the latest finding first."""
         ways = self.flow.blocks[label].successors
         if ways.count(home) == 1:
             yield from self._by_test(label, home)
@@ -86,7 +86,7 @@ class KnownValues:
             (label,) = before
 
     def _by_test(self, label: str, way: str) -> Iterator[tuple[str, str]]:
-        """Yield what the test that ends block `label` finds out if it goes to block `way`."""
+        """Yield what the test at the end of block `label` finds out if it goes to block `way`."""
         ending = self.flow.blocks[label].terminator
         test = self.flow.instruction(ending.operands[0]) if ending.operands else None
         ways = self.flow.blocks[label].successors
@@ -105,12 +105,12 @@ class KnownValues:
             yield name, FLAG[number]
 
     def _is_word(self, name: str, test: Instruction) -> bool:
-        """Whether a test is of a word: one of a byte or a half-word is done on that [match.pd]."""
+        """Whether a test is of a word: GCC tests a byte or a half-word as it is [match.pd]."""
         made = self.flow.instruction(name)
         return " i32 " in test.text and not (made is not None and made.opcode in ("zext", "sext"))
 
     def _is_flag(self, name: str, seen: set[str]) -> bool:
-        """Whether a value is 0 or 1 on all ways [ssa_name_has_boolean_range]."""
+        """Whether a value is 0 or 1 on all paths [ssa_name_has_boolean_range]."""
         made = self.flow.instruction(name)
         if name in FLAG or name in seen:
             return True

@@ -1,7 +1,7 @@
-"""`v - 20 if v > 20 else 0` of unsigned narrow numbers is a maximum, of which 20 is subtracted [match.pd of GCC 12].
+"""Choices of narrow sums: `v - 20 if v > 20 else 0` of unsigned narrow numbers is a maximum, less 20 [match.pd of GCC 12].
 
-What is a word was found before (`extremes`); of these, LLVM would make other functions than minima and maxima. If such a number is wanted
-for more, GCC tests it as a word and adds to it as narrow: these are two values, and none is the maximum of the other.
+Those of words were found before (`extremes`); of these, LLVM would make functions other than minima and maxima. If such
+a number has another use, GCC tests it as a word and adds to it as narrow: then there are two values, and no maximum.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from bfsim.kernel.ir.text import (
 from bfsim.kernel.ir.widths import WORD
 
 CHOSEN = {"ugt": ("umax", 1), "uge": ("umax", -1), "ult": ("umin", -1), "ule": ("umin", 1)}
-"""What is chosen where a test holds for the sum, and which neighbour of its number would do as well."""
+"""What is chosen if a test holds for the sum, and which neighbour of its number would do as well."""
 
 
 class _Sum(NamedTuple):
-    """A block that tests, the one `arm` that adds, the phi behind, and the number that is chosen instead of the sum, less what is added."""
+    """A block that tests, the `arm` that adds, the phi after it, and the number chosen instead of the sum, less what is added."""
 
     block: BasicBlock
     arm: BasicBlock

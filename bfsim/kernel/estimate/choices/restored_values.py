@@ -1,7 +1,7 @@
-"""A value is itself again where ways meet: LLVM puts 0 in place of x where a test has found x to be 0, and chooses between 0 and x behind.
+"""Values restored where paths join: LLVM puts 0 in place of x after a test has found x to be 0, and later chooses between 0 and x.
 
-Such a choice is x, as GCC 12 has it [measured: borders in tests/kernel/estimate/memory/test_rows_of_pictures.py]. Unless that is seen, the counter of a
-loop with `if x > 0` in it is none.
+Such a choice is x, as in GCC 12 [measured: borders in tests/kernel/estimate/memory/test_rows_of_pictures.py]. Otherwise
+the counter of a loop with `if x > 0` in it would not be seen as one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from bfsim.kernel.ir.text import Instruction, Routine, arms_of, is_number, predi
 
 
 def with_restored_values(routine: Routine) -> Routine:
-    """Return `routine` without choices between a value and what it is."""
+    """Return `routine` without choices between a value and the number that it is known to be."""
     while True:
         flow = ControlFlow(routine)
         choices = (
@@ -26,7 +26,7 @@ def with_restored_values(routine: Routine) -> Routine:
 
 
 def _chosen(flow: ControlFlow, phi: Instruction) -> str | None:
-    """The value that a choice is on all ways, on some of which a number may stand in its place."""
+    """The value that a choice is on all paths; on some of them a number may stand in its place."""
     home, _ = flow.defined[phi.result or ""]
     arms = arms_of(phi)
     values = {value for value in arms.values() if not is_number(value)}
@@ -45,7 +45,7 @@ def _chosen(flow: ControlFlow, phi: Instruction) -> str | None:
 
 
 def _is_known(flow: ControlFlow, value: str, number: str, label: str, home: str) -> bool:
-    """Whether a test has found a value to be a number on the way from block `label` to block `home`."""
+    """Whether a test has found a value to be a number on the edge from block `label` to block `home`."""
     for test in flow.users.get(value, []):
         if test.opcode != "icmp" or predicate(test) not in ("eq", "ne") or test.operands[1] != number:
             continue

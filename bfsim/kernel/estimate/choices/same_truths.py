@@ -1,4 +1,4 @@
-"""A choice between 1 and 0 beside a choice of truths that says the same is that truth: of `on = a > t`, then `1 if on else 0`, LLVM makes two choices."""
+"""Choices between 1 and 0 that repeat a choice of truths: LLVM makes two choices of `on = a > t`, then `1 if on else 0`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _without_copies(flow: ControlFlow, block: BasicBlock) -> BasicBlock:
 
 
 def _truth(phis: Sequence[Instruction], choice: Instruction) -> Instruction | None:
-    """The choice of truths that says on every way what a choice of numbers does."""
+    """The choice of truths that agrees with a choice of numbers on every path."""
     arms = arms_of(choice)
     for each in phis:
         truths = arms_of(each) if each is not choice and each.text.startswith("phi i1 ") else {}

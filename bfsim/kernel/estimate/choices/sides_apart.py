@@ -1,7 +1,7 @@
-"""A test of which one way leads to a choice, and the other one there, too, by an empty block that other tests share.
+"""Tests with one side that leads straight to a choice, and another that leads there by an empty block that other tests share.
 
-Of `if a and b: v = x`, `else: v = 0` either way may be the one without a block, as LLVM likes; only a side that is of one test alone becomes a
-conditional move [`if_conversion`].
+In `if a and b: v = x`, `else: v = 0` either side may be the one without a block, as LLVM chooses; only a side that
+belongs to a single test becomes a conditional move [`if_conversion`].
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from bfsim.kernel.ir.text import Routine
 
 
 def with_sides_apart(routine: Routine) -> Routine:
-    """Return `routine` with an empty block on the way of such a test straight to the choice, in place of the one that is shared."""
+    """Return `routine` with an empty block between such a test and the choice, in place of the shared one."""
     flow = ControlFlow(routine)
     blocks = {each.label: each for each in routine.blocks}
     for label, block in blocks.items():

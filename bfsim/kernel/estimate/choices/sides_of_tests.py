@@ -1,7 +1,7 @@
-"""What each side of a test computes is computed there: LLVM makes one operation of both, behind them, on a choice of their operands.
+"""Operations on each side of a test, computed there: LLVM makes one operation after both, on a choice of their operands.
 
-Of `s += v` on one side and `s -= 1` on the other GCC makes a branch [factor_out_conditional_conversion in tree-ssa-phiopt.cc takes conversions
-alone], and of the choice it would have made a conditional move.
+GCC makes a branch of `s += v` on one side and `s -= 1` on the other [factor_out_conditional_conversion in
+tree-ssa-phiopt.cc takes only conversions]; of the choice it would have made a conditional move.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def with_operations_on_sides(routine: Routine) -> Routine:
 
 
 def _made_of(flow: ControlFlow, choice: Instruction) -> list[Instruction]:
-    """Return what LLVM has made of the operations of both sides: one of a choice, or of what is extended of it; empty if it is no such choice."""
+    """Return what LLVM has made of the operations of both sides: one on a choice, or on its extension; empty if it is no such choice."""
     name = choice.result or ""
     home = flow.defined[name][0]
     ways = {label: flow.blocks[label].successors for label in arms_of(choice)}
@@ -55,7 +55,7 @@ def _alone(flow: ControlFlow, name: str, home: str, opcodes: Sequence[str]) -> l
 
 
 def _on_sides(flow: ControlFlow, choice: Instruction, moved: Sequence[Instruction]) -> Routine:
-    """Move operations to the ways to the block that makes them."""
+    """Move operations to the edges into the block that has them."""
     home, last = flow.defined[choice.result or ""][0], moved[-1]
     blocks, results = dict(flow.blocks), dict[str, str]()
     arms = arms_of(choice)
@@ -63,7 +63,7 @@ def _on_sides(flow: ControlFlow, choice: Instruction, moved: Sequence[Instructio
         side, names = label, {choice.result or "": value}
         if not arms.keys().isdisjoint(
             blocks[label].successors
-        ):  # the other side of a test that has no block left here
+        ):  # the other side of a test has no block left here
             side = f"{label}.on.{home}"
             put_between(blocks, label, home, side)
         *rows, end = blocks[side].instructions

@@ -1,4 +1,4 @@
-"""Minima and maxima are of words, as those of C's integers are, where LLVM has made them of what was loaded as narrow."""
+"""Minima and maxima of words, as of C's integers, where LLVM has made them of values loaded as narrow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WIDE = ".wide"
 
 
 def widen_extremes(routine: Routine) -> Routine:
-    """Return `routine` with words in place of narrow minima and maxima; what extends these is left out."""
+    """Return `routine` with wide minima and maxima in place of narrow ones, without the extensions of these."""
     flow = ControlFlow(routine)
     narrow = [each for block in routine.blocks for each in block.instructions if NARROW.search(each.text)]
     if not narrow:
@@ -40,7 +40,7 @@ def widen_extremes(routine: Routine) -> Routine:
 
 
 def _widened(each: Instruction, names: set[str]) -> list[Instruction]:
-    """Return an extreme as rows: operands are extended, and the result is cut off again for those that want it narrow."""
+    """Return an extreme as rows: operands are extended, and the result is narrowed again for uses that want it narrow."""
     found = NARROW.search(each.text)
     assert found is not None, each.text
     bits, sign, name, *operands = found.groups()

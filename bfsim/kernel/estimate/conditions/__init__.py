@@ -1,1 +1,1 @@
-"""Conditions: tests that are split or made one."""
+"""Conditions: tests that are split or joined."""

@@ -1,4 +1,4 @@
-"""`a or b` and `a and b` that decide where to go are branches of their own, as GCC has them from the start, before LLVM threads any jumps."""
+"""`a or b` and `a and b` as conditions: two branches each, as GCC has them from the start, before LLVM threads any jumps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bfsim.kernel.ir.text import TRUTHS, BasicBlock, Routine, arms_of, renamed
 
 
 def with_direct_conditions(routine: Routine) -> Routine:
-    """Return `routine` without blocks that only choose between the truth of conditions, and branch by it."""
+    """Return `routine` without blocks that only choose between the truths of conditions and branch by them."""
     while True:
         flow = ControlFlow(routine)
         found = ((block, _ways(flow, block)) for block in routine.blocks)
@@ -23,7 +23,7 @@ def with_direct_conditions(routine: Routine) -> Routine:
 
 
 def _ways(flow: ControlFlow, block: BasicBlock) -> dict[str, str | int] | None:
-    """Return what decides on the way from each block before one that only decides: a condition, or what it is known to be."""
+    """Return what decides on the edge from each block before one that only decides: a condition, or its known truth."""
     if [each.opcode for each in block.instructions] != ["phi", "br"] or len(set(block.successors)) != 2:
         return None
     phi, branch = block.instructions
@@ -49,7 +49,7 @@ def _ways(flow: ControlFlow, block: BasicBlock) -> dict[str, str | int] | None:
 
 
 def _lead(blocks: dict[str, BasicBlock], block: BasicBlock, ways: dict[str, str | int]) -> None:
-    """Lead the blocks before one straight to where it would, and leave it out."""
+    """Lead the blocks before one straight to where it leads, and leave it out."""
     yes, no = block.successors
     before = {yes: list[str](), no: list[str]()}
     for label, decides in ways.items():

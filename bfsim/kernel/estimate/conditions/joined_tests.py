@@ -1,4 +1,4 @@
-"""Two tests for a range, made as one: `48 <= c and c <= 57` is `(unsigned) c - 48 <= 9` [fold_range_test in fold-const.cc of GCC 12]."""
+"""Two tests for a range, joined into one: `48 <= c and c <= 57` is `(unsigned) c - 48 <= 9` [fold_range_test in fold-const.cc of GCC 12]."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ OPPOSITE = {"lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """The test for `low <= value <= high` in block `first`, of which the block `second` would be the second part.
+    """The test for `low <= value <= high` in block `first`; its second part would be the block `second`.
 
-    `inside` is where both lead if the value is in the range.
+    `inside`: where both lead if the value is in the range.
     """
 
     first: str
@@ -29,9 +29,9 @@ class Range:
 
 
 def ranges(flow: ControlFlow, taken: frozenset[str], *, neighbours: bool) -> dict[str, Range]:
-    """Return the ranges that a routine tests for, by both of their blocks, none of which is in `taken`.
+    """Return the ranges that a routine tests for, by both of their blocks, which are not in `taken`.
 
-    `neighbours`: whether a test for one of two neighbouring numbers is one, too.
+    `neighbours`: whether a test for one of two neighbouring numbers counts, too.
     """
     found: dict[str, Range] = {}
     for label in flow.order:
@@ -59,7 +59,7 @@ def _range(flow: ControlFlow, first: str, second: str, neighbours: bool) -> Rang
 
 
 def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
-    """The test for one of two numbers side by side, of which 255 and 0 are two if the value is a byte."""
+    """The test for one of two neighbouring numbers; 255 and 0 are such if the value is a byte."""
     ways = flow.blocks[first].successors
     one, other = (_test(flow, label) for label in (first, second))
     if one is None or other is None or not predicate(one) == predicate(other) == "eq":
@@ -79,7 +79,7 @@ def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
 
 
 def _bound(flow: ControlFlow, label: str, holds: bool) -> tuple[tuple[str, str], str, int] | None:
-    """(value and sign, low or high, bound) that the test at the end of a block sets if it comes out as `holds`."""
+    """(value and sign, low or high, bound) that the test at the end of a block sets if its result is `holds`."""
     test = _test(flow, label)
     if test is None or len(flow.users.get(test.result or "", [])) > 1:
         return None

@@ -1,7 +1,7 @@
-"""Unsigned narrow values are compared as such where one of them is made a word for the comparison alone ["Unwiden" in match.pd of GCC 12].
+"""Unsigned narrow values, compared as such if one of them is made a word only for the comparison ["Unwiden" in match.pd of GCC 12].
 
-So `if a[i] > most: most = a[i]` compares bytes and chooses between words while `most` is a byte, too: other values are chosen than are
-compared, which is no maximum to phiopt. Then what makes the words is the same one everywhere [pass_fre].
+So `if a[i] > most: most = a[i]` compares bytes and chooses between words if `most` is a byte, too: the chosen values
+are not the compared ones, so phiopt sees no maximum. Later, a value is made a word once for all uses [pass_fre].
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ UNSIGNED = {"sgt": "ugt", "sge": "uge", "slt": "ult", "sle": "ule"}
 
 
 def with_narrow_tests(routine: Routine) -> Routine:
-    """Return `routine` with such comparisons, and without a second extension of what is a word already."""
+    """Return `routine` with such comparisons, and without second extensions of a value."""
     flow = ControlFlow(routine)
     return _without_copies(_mapped(routine, lambda each: _narrowed(flow, each)))
 
@@ -37,7 +37,7 @@ def _narrowed(flow: ControlFlow, test: Instruction) -> Instruction:
 
 
 def _without_copies(routine: Routine) -> Routine:
-    """Leave out extensions that choices alone read, where the same word is there already, and what nothing reads."""
+    """Leave out extensions that only choices read if the same word exists already, and values that nothing reads."""
     flow = ControlFlow(routine)
     words = {
         each.text: (label, each.result or "")
@@ -59,7 +59,7 @@ def _without_copies(routine: Routine) -> Routine:
 
 
 def _mapped(routine: Routine, change: Callable[[Instruction], Instruction | None]) -> Routine:
-    """Return `routine` with other instructions, or without those for which there is none."""
+    """Return `routine` with its instructions replaced, or left out if there is no replacement."""
     blocks = (
         replace(block, instructions=tuple(filter(None, map(change, block.instructions))))
         for block in routine.blocks

@@ -1,6 +1,6 @@
-"""Tests of a number and a sum with one, without the one: x > w - 1 is x >= w [maybe_canonicalize_comparison in fold-const.cc of GCC 12].
+"""Comparisons with a sum with 1, without the 1: x > w - 1 is x >= w [maybe_canonicalize_comparison in fold-const.cc of GCC 12].
 
-So what `if x > w - 1: x = w - 1` computes is no minimum to GCC, as it is where the bound has a name.
+So GCC sees no minimum in `if x > w - 1: x = w - 1`, but does if the bound has a name.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from bfsim.kernel.ir.text import SWAPPED, Instruction, Routine, is_number, predi
 from bfsim.kernel.ir.widths import WORD
 
 WITHOUT_ONE = {(-1, "lt"): "le", (-1, "ge"): "gt", (1, "gt"): "ge", (1, "le"): "lt"}
-"""What a relation becomes by what is added on its left side."""
+"""What a relation becomes, by the number added on its left side."""
 
 
 def with_nearer_bounds(routine: Routine) -> Routine:
-    """Return `routine` with such tests; of sums that nothing else wants, and where no loop ends."""
+    """Return `routine` with such tests, for sums without other uses, and not for tests that end a loop."""
     flow = ControlFlow(routine)
     ends = {label for loop in flow.loops for label in flow.exits(loop)}
     blocks = (

@@ -1,7 +1,7 @@
-"""Loops that end with a test of what a variable is next: LLVM tests what it was, so that both are wanted at once.
+"""Loops that end with a test of a variable's next value: LLVM tests the old value, so that both are live at once.
 
-Of `while z > 127: z >>= 7` it tests z > 16383 where z is shifted [foldICmpShrConstant in InstCombineCompares.cpp], of `while z > 0: z -= 3` z > 3;
-GCC leaves the test as it is.
+For `while z > 127: z >>= 7` it tests z > 16383 before z is shifted [foldICmpShrConstant in InstCombineCompares.cpp],
+and z > 3 for `while z > 0: z -= 3`; GCC leaves the test as it is.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, is_number, predicate, written
 
 SHIFTS = {"lshr": "u", "ashr": "s"}
-"""Shifts to the right, and of which comparisons they keep the order."""
+"""Shifts to the right, and the comparisons whose order they keep."""
 
 
 def with_tests_of_next_values(routine: Routine) -> Routine:
@@ -26,7 +26,7 @@ def with_tests_of_next_values(routine: Routine) -> Routine:
 
 
 def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instruction:
-    """Return a test of what a variable was as one of what it is next, where that is known by then; anything else as it is."""
+    """Return a test of a variable's old value as one of the next value if that is known by then; anything else unchanged."""
     variable = flow.instruction(test.operands[0]) if test.opcode == "icmp" else None
     if variable is None or variable.opcode != "phi" or not is_number(test.operands[1]):
         return test
@@ -42,7 +42,7 @@ def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instru
 
 
 def _next_values(flow: ControlFlow, variable: Instruction) -> list[str]:
-    """Return what a variable may become, also by way of another one, as a counter does behind an iteration that is skipped."""
+    """Return the next values of a variable, also by way of another one, as for a counter after a skipped iteration."""
     merged = (flow.instruction(each) for each in variable.operands)
     others = (each for each in merged if each is not None and each.opcode == "phi" and each is not variable)
     return [*variable.operands, *(value for each in others for value in each.operands)]
@@ -57,7 +57,7 @@ def _is_before(flow: ControlFlow, one: Instruction, block: BasicBlock, other: In
 
 
 def _number(relation: str, number: int, step: Instruction) -> int | None:
-    """Return the number that what is next is compared with in place of `number`; None if there is none."""
+    """Return the number that the next value is compared with in place of `number`; None if there is none."""
     if len(step.operands) != 2 or not is_number(step.operands[1]) or " i32 " not in step.text:
         return None
     operand = int(step.operands[1])

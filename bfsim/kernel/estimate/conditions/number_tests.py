@@ -1,4 +1,4 @@
-"""Blocks that end with a test of a value for a single number, one behind the other."""
+"""Chains of blocks that each end with a test of a value for a single number."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CONVERSIONS = ("zext", "sext", "trunc")
 
 
 class NumberTest(NamedTuple):
-    """A test: the block that makes it, the value, of so many bits, the number, and where the block leads if that is it, and else."""
+    """A test: its block, the value, its bits, the number, and where the block leads if the value is the number, and otherwise."""
 
     label: str
     value: str
@@ -52,7 +52,7 @@ def chains(flow: ControlFlow, begins: Callable[[BasicBlock], bool]) -> list[list
 
 
 def is_alone(block: BasicBlock) -> bool:
-    """Whether a block does nothing but test, be it a value that is converted or that a number is added to."""
+    """Whether a block does nothing but test a value, possibly one that is converted or that a number is added to."""
     return all(
         each.opcode in CONVERSIONS or (each.opcode == "add" and is_number(each.operands[1]))
         for each in block.instructions[:-2]
@@ -60,13 +60,13 @@ def is_alone(block: BasicBlock) -> bool:
 
 
 def come_alike(flow: ControlFlow, label: str, before: Iterable[str]) -> bool:
-    """Whether it makes no difference for a block from which of others it is come to."""
+    """Whether it makes no difference to a block from which of the others control comes."""
     phis = (each for each in flow.blocks[label].instructions if each.opcode == "phi")
     return all(len({arms_of(phi)[each] for each in before}) == 1 for phi in phis)
 
 
 def _is_beside(flow: ControlFlow, before: NumberTest, test: NumberTest) -> bool:
-    """Whether C's operators make one test of two, which is in the first one's block [fold_range_test in fold-const.cc of GCC 12]."""
+    """Whether C's operators join two tests into one in the first one's block [fold_range_test in fold-const.cc of GCC 12]."""
     beside = before.hit == test.hit and abs(before.number - test.number) == 1
     return beside and come_alike(flow, test.hit, (before.label, test.label))
 
@@ -77,7 +77,7 @@ def _follows(flow: ControlFlow, label: str) -> bool:
 
 
 def _tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
-    """Return the comparison that decides where a block leads, and is made in it for that alone, as the last it does."""
+    """Return the comparison that decides where a block leads, if it is the last thing in the block and has no other use."""
     if block.terminator.opcode != "br" or len(set(block.successors)) != 2 or len(block.instructions) < 2:
         return None
     test = block.instructions[-2]
@@ -100,7 +100,7 @@ def _test(flow: ControlFlow, block: BasicBlock) -> NumberTest | None:
 
 
 def _of_sum(flow: ControlFlow, value: str, number: int) -> tuple[str, int, int] | None:
-    """Return the narrow value that a test of a sum of it and a number is of, its bits, and the number that it is tested for itself.
+    """Return the narrow value in a tested sum of it and a number, its bits, and the number that it is tested for itself.
 
     [init_range_entry in tree-ssa-reassoc.cc]
     """

@@ -1,6 +1,6 @@
-"""Two tests of one condition for a range are one from the start, before any jump is threaded past one of them [fold_range_test in fold-const.cc of GCC 12].
+"""Two tests of one condition for a range, joined from the start, before any jump is threaded past one of them [fold_range_test in fold-const.cc of GCC 12].
 
-`48 <= c and c <= 57` is `(unsigned) c - 48 <= 9`: who is told that it does not hold knows nothing more of c.
+`48 <= c and c <= 57` is `(unsigned) c - 48 <= 9`: if it does not hold, nothing more is known of c.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from bfsim.kernel.ir.widths import WORD
 
 
 def with_range_tests(routine: Routine) -> Routine:
-    """Return `routine` with such tests made one."""
+    """Return `routine` with such tests joined."""
     routine = with_direct_conditions(routine)
     while True:
         flow = ControlFlow(routine)
@@ -43,7 +43,7 @@ def _outside(flow: ControlFlow, tested: Range) -> str:
 
 
 def _joined(flow: ControlFlow, tested: Range) -> dict[str, BasicBlock]:
-    """Return the blocks of the routine, of which the first makes the test, and the second is none any more."""
+    """Return the blocks of the routine; the first makes the test, and the second is gone."""
     blocks, outside = dict(flow.blocks), _outside(flow, tested)
     first, second = blocks[tested.first], blocks.pop(tested.second)
     branch = second.terminator
@@ -60,7 +60,7 @@ def _joined(flow: ControlFlow, tested: Range) -> dict[str, BasicBlock]:
 
 
 def _repeated(flow: ControlFlow, tested: Range, above: Instruction) -> Iterator[str]:
-    """Values behind a test that are how far the tested one is above the least, which the test computes [pass_fre in tree-ssa-sccvn.cc]."""
+    """Values after a test that are the tested value less the least of the range, which the test computes [pass_fre in tree-ssa-sccvn.cc]."""
     value = above.operands[0]
     for each in flow.users[value] if above.opcode == "add" else ():
         label, _ = flow.defined.get(each.result or "", ("", None))
@@ -78,7 +78,7 @@ def _without(block: BasicBlock, again: Mapping[str, str]) -> BasicBlock:
 
 
 def _range_test(tested: Range, test: Instruction, branch: Instruction, relation: str) -> list[Instruction]:
-    """Return what tests a value for a range: no more than its size from the least number."""
+    """Return the test of a value for a range: its distance from the least number is at most the size."""
     value, rows = next(each for each in test.operands if each.startswith("%")), list[Instruction]()
 
     def row(name: str, text: str, *operands: str) -> str:

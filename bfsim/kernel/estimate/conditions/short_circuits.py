@@ -1,7 +1,7 @@
-"""Tests that LLVM has made one are two branches again, as `and` and `or` are in the source.
+"""Tests that LLVM has joined, as two branches again, like `and` and `or` in the source.
 
-GCC joins the tests of `a and b` only where a branch is dear [LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc of GCC 12]; for the
-Blackfin its cost is the least there is [BRANCH_COST in defaults.h, which bfin.h leaves as it is].
+GCC joins the tests of `a and b` only if branches are expensive [LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc of GCC
+12]; for the Blackfin their cost is the least there is [BRANCH_COST in defaults.h, which bfin.h leaves as it is].
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ JOINED = re.compile(r"select i1 \S+, i1 (\S+), i1 (\S+)$")
 
 
 def split_tests(routine: Routine) -> Routine:
-    """Return `routine` with a block of its own for the second part of each such test."""
+    """Return `routine` with a separate block for the second part of each such test."""
     flow = ControlFlow(routine)
     for block in routine.blocks:
         joined = _joined(flow, block)
@@ -28,7 +28,7 @@ def split_tests(routine: Routine) -> Routine:
 
 
 def _joined(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
-    """What the branch at the end of a block tests, if that is computed there for it alone."""
+    """The condition of the branch at the end of a block, if it is computed there and has no other use."""
     if block.terminator.opcode != "br" or len(set(block.successors)) != 2:
         return None
     test = flow.instruction(block.terminator.operands[0])
@@ -37,7 +37,7 @@ def _joined(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
 
 
 def _parts(joined: Instruction) -> tuple[str, str, bool] | None:
-    """The two conditions that are joined, the first one of the source first, and whether both must hold."""
+    """The two conditions that are joined, in the order of the source, and whether both must hold."""
     if joined.opcode in ("and", "or") and joined.bits == 1:
         return joined.operands[0], joined.operands[1], joined.opcode == "and"
     found = JOINED.match(joined.text)
@@ -77,7 +77,7 @@ def _split(
 
 
 def _needed_by(flow: ControlFlow, block: BasicBlock, joined: Instruction, test: str) -> list[Instruction]:
-    """What only the second test needs, in order: C computes it behind the first one."""
+    """What only the second test needs, in order: C computes it after the first one."""
     moved: list[Instruction] = []
     written = False
     for each in reversed(block.instructions[:-1]):
@@ -92,7 +92,7 @@ def _needed_by(flow: ControlFlow, block: BasicBlock, joined: Instruction, test: 
 
 
 def _with_arm(row: Instruction, label: str, second: str, *, keeps: bool) -> Instruction:
-    """A phi with the value that comes from `second` as well as from `label`, or instead."""
+    """A phi with the value from `second` besides that from `label`, or instead of it."""
     if row.opcode != "phi":
         return row
     arms = []

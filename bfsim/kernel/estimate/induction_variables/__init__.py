@@ -1,1 +1,1 @@
-"""Induction variables: what a loop steps, and what it computes from that."""
+"""Induction variables: what a loop steps, and what it computes from them."""

@@ -1,7 +1,8 @@
-"""Sums of a counter that a loop wants: which there are, and which are cheaper as variables of their own [tree-ssa-loop-ivopts.cc of GCC 12].
+"""Sums of a counter that a loop uses: which there are, and which are cheaper as separate variables [tree-ssa-loop-ivopts.cc of GCC 12].
 
-To step a value costs five, an operation on another one four [determine_iv_cost, get_computation_cost]: what one operation makes of a value
-that is there is made of that. What a pointer to bytes stands for is not stepped, either (`pointer_differences`).
+Stepping a value costs five, an operation on another one four [determine_iv_cost, get_computation_cost]: a value that
+takes one operation on an existing value is computed from that. A value that a pointer to bytes stands for is not
+stepped, either (`pointer_differences`).
 """
 
 from __future__ import annotations
@@ -19,22 +20,22 @@ from bfsim.kernel.ir.text import Instruction, arms_of
 LINEAR = ("add", "sub", "mul", "shl", "or", "xor", "trunc")
 STEP_COST, OPERATION_COST = 5, 4
 SHARE = 2
-"""Iterations for each that runs a block which not all of them run, as is guessed here."""
+"""Iterations for each that runs a conditional block, as guessed here."""
 
 
 @dataclass(frozen=True)
 class WantedSum:
-    """Values of a loop that are the same sum: `times` its counter, and `rest`."""
+    """Values of a loop that are the same sum: `times` its counter, plus `rest`."""
 
     times: int
     rest: Affine
     names: tuple[str, ...]
     is_steady: bool
-    """Whether every iteration wants one."""
+    """Whether every iteration uses one."""
 
 
 class CounterSums:
-    """What one loop wants of the counter `phi`."""
+    """The sums of the counter `phi` that one loop uses."""
 
     def __init__(self, flow: ControlFlow, header: str, phi: Instruction) -> None:
         self.flow, self.phi = flow, phi
@@ -69,7 +70,7 @@ class CounterSums:
         return found - {0}
 
     def wanted(self) -> list[WantedSum]:
-        """The sums that something wants which is neither one itself nor an address nor the end of the loop."""
+        """The sums with a use that is neither such a sum, nor an address, nor the end of the loop."""
         found: dict[Affine, dict[str, bool]] = {}
         for label in self.flow.inside(self.loop):
             for each in self.flow.blocks[label].instructions:
@@ -94,7 +95,7 @@ class CounterSums:
         return self.flow.innermost(self.evolution.code_motion.of.get(each.result or "", label))
 
     def _is_sum(self, each: Instruction) -> bool:
-        """Whether an instruction computes the counter times a number, and what does not change in the loop."""
+        """Whether an instruction computes the counter times a number, plus what does not change in the loop."""
         if each.opcode not in LINEAR or width(each) == 1:
             return False
         terms = dict(sum_of(self.evolution, each.result or "").terms)
@@ -108,7 +109,7 @@ class CounterSums:
         )
 
     def _users(self, name: str) -> Iterator[tuple[Instruction, str]]:
-        """What uses a value, and in which block."""
+        """The users of a value, and their blocks."""
         for label, block in self.flow.blocks.items():
             for each in block.instructions:
                 if name in each.operands:
@@ -118,7 +119,7 @@ class CounterSums:
                     yield from ((each, home) for home in homes or [moved])
 
     def takes(self, user: Instruction) -> bool:
-        """Whether an instruction wants the value of a sum itself."""
+        """Whether an instruction uses the value of a sum itself."""
         result = user.result or ""
         return (
             user.opcode != "getelementptr"
@@ -127,7 +128,7 @@ class CounterSums:
         )
 
     def _wants_counter(self) -> bool:
-        """Whether anything wants the counter itself, or its next value."""
+        """Whether anything uses the counter itself, or its next value."""
         narrow = (
             each.result or ""
             for label in self.flow.inside(self.loop)
@@ -138,7 +139,7 @@ class CounterSums:
         return any(self.takes(user) for name in names for user, _ in self._users(name))
 
     def is_cheaper_otherwise(self, wanted: WantedSum) -> bool:
-        """Whether a sum costs less if it is made of a pointer, or of the counter that is there anyway."""
+        """Whether a sum costs less if it is computed from a pointer, or from the counter that exists anyway."""
         step = abs(wanted.times * self.step)
         if step == 1 and 1 in self._pointer_steps:
             return True
@@ -159,19 +160,19 @@ class CounterSums:
 
 
 def width(each: Instruction) -> int:
-    """Bits of what an instruction gives."""
+    """Bits of an instruction's result."""
     return int(each.text.rsplit(" i", 1)[1]) if each.opcode == "trunc" else each.bits
 
 
 def _operations(times: int) -> int:
-    """How many operations make a multiple: a shift, or a sum with one."""
+    """How many operations a multiple takes: a shift, or a sum with one."""
     if times == 1:
         return 0
     return 1 if abs(times).bit_count() == 1 or times in (3, 5) else 2
 
 
 def from_other(wanted: WantedSum, other: WantedSum, name: str) -> Iterator[tuple[str, str, int]]:
-    """What makes a sum of another one, `name`, in one operation: a shift, or a number that is added."""
+    """The one operation that makes a sum from another one, `name`: a shift, or a number that is added."""
     times, rest = divmod(wanted.times, other.times)
     apart = wanted.rest.plus(other.rest, -times)
     if not rest and times > 1 and times.bit_count() == 1 and apart == Affine():

@@ -1,9 +1,10 @@
-"""Fields of a record at an index that is computed, `sums[at + 2]`: where GCC computes the address of one apart, with no offset in the access.
+"""Fields of a record at a computed index, `sums[at + 2]`: when GCC computes the address of a field separately, without an offset in the access.
 
-An offset goes into an access that alone uses the address [combine.cc]. So a field that is loaded and stored has one of its own: the index in bytes
-and the field's offset, and that and the array. And where `at` was computed as a product, of a number, in a statement of its own, the address of
-the array's element is that of a product by another number, of which `(at + 1) * 4` is none: the first field has an address computed from `at`, which
-the others share [gimple-ssa-strength-reduction.cc, of what match.pd makes of `at * 6 * 4`].
+An offset goes into an access only if that is the only use of the address [combine.cc]. So a field that is loaded and
+stored has its own address: the index in bytes plus the field's offset, plus the array. And if `at` was computed in a
+separate statement as a product with a number, the address of the array's element is a product with another number,
+unlike `(at + 1) * 4`: the first field has an address computed from `at`, which the others share
+[gimple-ssa-strength-reduction.cc, of what match.pd makes of `at * 6 * 4`].
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ ACCESSES = ("load", "store")
 
 @dataclass(slots=True)
 class FieldAddresses:
-    """Those of one routine, by the names of LLVM's pointers to fields."""
+    """The field addresses of one routine, by the names of LLVM's pointers to fields."""
 
     flow: ControlFlow
     variables: InductionVariables
     own: set[str] = field(init=False, default_factory=set)
-    """Fields that have an address of their own."""
+    """Fields with their own address."""
     copies: set[str] = field(init=False, default_factory=set)
-    """Of these, those behind which another one is computed from the same index: a copy of that is added to."""
+    """Those of them after which another one is computed from the same index: then a copy of the index is added to."""
     first: set[str] = field(init=False, default_factory=set)
     """The first fields of records whose index is such a product."""
 
@@ -65,7 +66,7 @@ class FieldAddresses:
         return {user.opcode for user in self._accesses(each)} == {*ACCESSES}
 
     def _is_of_product(self, record: str, each: Instruction) -> bool:
-        """Whether the index of a record was multiplied by a number in a line before that of the access."""
+        """Whether the index of a record was multiplied by a number in a line before the access."""
         element = self.flow.instruction(record)
         product = self.flow.instruction(element.operands[-1]) if element is not None else None
         if product is not None and product.opcode == "zext":  # of a product that fits into a byte

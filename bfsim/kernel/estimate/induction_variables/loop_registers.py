@@ -1,4 +1,4 @@
-"""How many registers a loop takes already, and what more of them cost: as GCC guesses before it chooses variables [tree-ssa-loop-ivopts.cc of GCC 12].
+"""How many registers a loop already takes, and what more of them cost, as GCC guesses before it chooses variables [tree-ssa-loop-ivopts.cc of GCC 12].
 
 In a loop with calls GCC has fewer registers for this; here it has as many [ours].
 """
@@ -16,7 +16,7 @@ MOVE, SPILL = 4, 16  # [target_reg_cost, target_spill_cost]
 
 
 def cost_of_registers(used: int, fixed: int, variables: int) -> int:
-    """Return what so many variables cost, and so much more that does not change, beside the registers that are used [ivopts_estimate_reg_pressure]."""
+    """Return the cost of this many variables and invariants, besides the registers that are used [ivopts_estimate_reg_pressure]."""
     needed = used + fixed + variables
     if needed + RESERVED < AVAILABLE:
         cost = fixed + variables
@@ -30,7 +30,7 @@ def cost_of_registers(used: int, fixed: int, variables: int) -> int:
 
 
 def registers_used(evolution: ScalarEvolution, loop: Loop) -> int:
-    """Return how many registers a loop takes beside its variables: for what it hands on, and for what it finds [determine_set_costs]."""
+    """Return how many registers a loop takes besides its variables, for the values that it carries and those from outside [determine_set_costs]."""
     flow, is_fixed = evolution.flow, evolution.code_motion.is_invariant
     phis = (each for each in flow.blocks[loop.header].instructions if each.opcode == "phi")
     handed_on = [each for each in phis if not _is_variable(evolution, each.result or "", loop)]
@@ -43,7 +43,7 @@ def registers_used(evolution: ScalarEvolution, loop: Loop) -> int:
 
 
 def _is_of_variable(evolution: ScalarEvolution, each: Instruction, loop: Loop) -> bool:
-    """Whether an instruction makes an address, or another variable, or tests one: what it needs beside that takes no register yet."""
+    """Whether an instruction makes an address or another variable, or tests one: its other operands take no register yet."""
     tested = each.operands if each.opcode == "icmp" else ()
     names = (each.result or "", *tested)
     return each.opcode in ("getelementptr", "phi") or any(
@@ -52,6 +52,6 @@ def _is_of_variable(evolution: ScalarEvolution, each: Instruction, loop: Loop) -
 
 
 def _is_variable(evolution: ScalarEvolution, name: str, loop: Loop) -> bool:
-    """Whether a value gains as much in each iteration."""
+    """Whether a value gains the same in each iteration."""
     increment = evolution.increment(name, loop) if name.startswith("%") else None
     return increment is not None and increment.moves

@@ -1,6 +1,6 @@
-"""Values that a loop steps along: of `a[i] = 100 - 3 * i` each iteration takes 3 from the last one [tree-ssa-loop-ivopts.cc of GCC 12].
+"""Values that a loop steps along: in `a[i] = 100 - 3 * i`, each iteration subtracts 3 from the last value [tree-ssa-loop-ivopts.cc of GCC 12].
 
-So the counter is not needed where nothing else wants it.
+So the counter is not needed if nothing else uses it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ MARK = ".stepped"
 
 
 def with_stepped_values(routine: Routine) -> Routine:
-    """Return `routine` with a variable in place of each sum that GCC makes one of."""
+    """Return `routine` with a variable in place of each sum that GCC makes a variable of."""
     for header in [loop.header for loop in ControlFlow(routine).loops]:
         for phi in [
             each for each in ControlFlow(routine).blocks[header].instructions if each.opcode == "phi"
@@ -32,16 +32,16 @@ class _SteppedValues:
         self.flow, self.sums = flow, CounterSums(flow, header, phi)
         self.loop = self.sums.loop
         self.rows: dict[str, list[Instruction]] = {}
-        """What is added, by block: at its end."""
+        """What is added at the end of each block."""
         self.phis: list[Instruction] = []
         self.first: list[Instruction] = []
-        """What each iteration computes first."""
+        """What each iteration starts by computing."""
         self.renamed: dict[str, str] = {}
         self.computed: dict[str, Instruction] = {}
-        """What is cut from a sum, by name."""
+        """The values cut from a sum, by name."""
 
     def rewritten(self) -> Routine:
-        """The routine with variables of their own for the sums that are cheaper so."""
+        """The routine with separate variables for the sums that are cheaper that way."""
         if not self.sums.is_counter():
             return self.flow.routine
         stepped: list[tuple[WantedSum, str]] = []
@@ -70,7 +70,7 @@ class _SteppedValues:
         return name
 
     def _take(self, wanted: WantedSum, name: str) -> None:
-        """Have all that wants a sum take the value `name`, cut to what is as narrow as that."""
+        """Let all users of a sum take the value `name`, narrowed if the sum is narrow."""
         for each in wanted.names:
             made = self.flow.defined[each][1]
             if width(made) == WORD:
@@ -79,7 +79,7 @@ class _SteppedValues:
                 self.computed[each] = written(each, f"trunc i{WORD} {name} to i{width(made)}", (name,), made)
 
     def _compute(self, wanted: WantedSum, operation: str, other: str, number: int) -> None:
-        """Compute a sum of another one at the start of each iteration."""
+        """Compute a sum from another one at the start of each iteration."""
         name, at, operands = (
             f"{wanted.names[0]}{MARK}",
             self.flow.defined[wanted.names[0]][1],
@@ -89,7 +89,7 @@ class _SteppedValues:
         self._take(wanted, name)
 
     def _start(self, wanted: WantedSum, name: str, at: Instruction) -> str:
-        """What a sum is in the first iteration; what computes it is put before the loop."""
+        """The value of a sum in the first iteration; the instructions that compute it go before the loop."""
         first = self.sums.arms[self.flow.entering(self.loop)]
         sum_ = wanted.rest.plus(self.sums.evolution.affine(first), wanted.times)
         rows = self.rows.setdefault(self.flow.entering(self.loop), [])

@@ -1,1 +1,1 @@
-"""Inlining: which calls a compiler puts the called code in place of."""
+"""Inlining: which calls a compiler replaces by the called code."""

@@ -1,7 +1,8 @@
-"""Size and time of a routine as GCC's inliner estimates them, in statements of its own intermediate code.
+"""Size and time of a routine as GCC's inliner estimates them, in statements of GCC's intermediate code.
 
-Sizes are those of its statements (`statements`). Of an access to a fixed element of a parameter, such as state[0], half is expected to go where the
-routine is inlined [eliminated_by_inlining_prob in ipa-fnsummary.cc]. The size of 549 routines was 7.5 % off on average.
+Sizes are those of its statements (`statements`). Half of an access to a fixed element of a parameter, such as state[0],
+is expected to disappear when the routine is inlined [eliminated_by_inlining_prob in ipa-fnsummary.cc]. The size of 549
+routines was 7.5 % off on average.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ from bfsim.kernel.ir.reading import read_module
 from bfsim.kernel.ir.text import Instruction, Routine, is_number, without_marks
 from bfsim.kernel.language.function import Function
 
-GONE = 0.5  # [ipa-fnsummary.cc] of an access that may go
-# [tree-inline.cc] time of a call, of a division by no constant, of a return; everything else takes as long as it is large
+GONE = 0.5  # [ipa-fnsummary.cc] of an access that may disappear
+# [tree-inline.cc] time of a call, of a division by a variable, of a return; the time of everything else is its size
 CALL_TIME, DIVISION_TIME, RETURN_TIME = 10, 10, 2
 EARLY_PASSES = (
     "sroa", "simplify_cfg", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce",
@@ -45,7 +46,7 @@ ANSWERING = (
     "aggressive_dce",
     "simplify_cfg",
 )
-"""Where ranges of arguments are known, too."""
+"""The same, with known ranges of arguments."""
 
 Given = tuple[Range | None, ...]
 
@@ -54,7 +55,7 @@ Given = tuple[Range | None, ...]
 class CallSite:
     """A call in a routine: its line, how often it runs per run of the routine, and its own size and time.
 
-    `spared_size`, `spared_time`: what of the callee goes where it is inlined, for its arguments answer tests
+    `spared_size`, `spared_time`: what of the callee disappears when it is inlined, because its arguments answer tests
     [evaluate_properties_for_edge in ipa-fnsummary.cc].
     """
 
@@ -69,10 +70,10 @@ class CallSite:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What one routine is where it is inlined, and what is gone there beside its prologue and its return.
+    """The size and time of one routine when it is inlined, and what disappears then besides its prologue and its return.
 
-    `fixed_size`, `fixed_time`: of the sums that give the addresses of fixed elements of its parameters, which are free where these
-    elements are fixed in the source.
+    `fixed_size`, `fixed_time`: of the sums that compute the addresses of fixed elements of its parameters; they are
+    free if these elements are fixed in the source.
     """
 
     size: int
@@ -86,7 +87,7 @@ class Estimate:
 
 @cache
 def estimate(function: Function) -> Estimate:
-    """Estimate one kernel, nothing inlined into it, or take what was estimated from the cache on disk: profiles and programs share it."""
+    """Estimate one kernel, with nothing inlined, or take the estimate from the cache on disk: profiles and programs share it."""
     found = store.kept(function_keys.estimate_key(function), lambda: asdict(_estimated(function)))
     return Estimate(**{**found, "calls": tuple(CallSite(**each) for each in found["calls"])})
 
@@ -106,7 +107,7 @@ def _estimated(function: Function, given: Given = ()) -> Estimate:
 
 
 def _unchanged(routine: Routine, given: Given) -> Given:
-    """What is known of arguments, but for those that the routine has other values of, too: no test is of the argument then."""
+    """What is known of arguments, except those that the routine changes: then a test is not of the argument."""
     merged = {
         value
         for block in routine.blocks
@@ -120,7 +121,7 @@ def _unchanged(routine: Routine, given: Given) -> Given:
 
 
 def _with_ranges(text: str, symbol: str, given: Given) -> str:
-    """Return a module in which the parameters of a routine have the ranges that are known, and are numbers where those are of one."""
+    """Return a module in which the parameters of a routine have their known ranges, or are numbers if a range has only one."""
     before, head, behind = re.split(rf"(define \w+ @{re.escape(symbol)}\(.*?\))", text, maxsplit=1)
     name, parameters = head.split("(", 1)
     parts = [
@@ -176,13 +177,13 @@ class _Estimator:
         plain, known = estimate(callee), _estimated(callee, given)
         size = plain.size + plain.gone_size - known.size - known.gone_size
         time = plain.time + plain.gone_time - known.time - known.gone_time
-        # where only the index is given, the sum of it and of the array's address is left to do
+        # if only the index is given, its sum with the array's address remains
         size -= max(0, known.fixed_size - plain.fixed_size)
         time -= max(0.0, known.fixed_time - plain.fixed_time)
         return max(0, size), max(0.0, time)
 
     def _known(self, argument: str) -> Range | None:
-        """The range of an argument, if all in it are positive and anything is known of it."""
+        """The range of an argument, if anything is known and all its values are positive."""
         if argument.startswith("%"):
             found = self._ranges.get(argument, ANY)
         elif is_number(argument):

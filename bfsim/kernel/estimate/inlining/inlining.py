@@ -1,9 +1,9 @@
-"""Which calls a compiler puts the called code in place of, as GCC 12 decides it at -O2 [ipa-inline.cc, params.opt].
+"""Which calls a compiler replaces by the called code, as GCC 12 decides at -O2 [ipa-inline.cc, params.opt].
 
-A call is inlined early if the code hardly grows by it; later, best gain first, if it grows by less than 15 statements, or by
-less than 30 and takes much less time, or by less than 70 and all calls of a static kernel together save code; and at last where
-all calls of a static kernel together save code, as the only call of it does. What is never inlined is what the compiler does
-not see (`Inlines`). A kernel cannot call itself, so that nothing is inlined without end.
+A call is inlined early if the code hardly grows by it; later, best gain first, if it grows by less than 15 statements,
+or by less than 30 and takes much less time, or by less than 70 and inlining all calls of a static kernel saves code;
+and finally if inlining all calls of a static kernel saves code, as for a single call. A callee that the compiler does
+not see is never inlined (`Inlines`). A kernel cannot call itself, so inlining always ends.
 
 Not modelled: cloning and splitting of functions, limits of size that only functions of thousands of statements reach.
 """
@@ -23,7 +23,7 @@ from bfsim.kernel.profile import CompilerProfile, Inlines
 
 EARLY_STATEMENTS = 6  # [params.opt] early-inlining-insns
 SMALL_STATEMENTS = 15  # [params.opt] max-inline-insns-auto
-FAST_STATEMENTS = 30  # [params.opt] the same times inline-heuristics-hint-percent, for what gains much time
+FAST_STATEMENTS = 30  # [params.opt] the same times inline-heuristics-hint-percent, if much time is gained
 SINGLE_STATEMENTS = 70  # [params.opt] max-inline-insns-single
 LEAST_SPEEDUP = 0.30  # [params.opt] inline-min-speedup
 KEPT_STATEMENTS = 3  # of a function that is not inlined: uninlined-function-insns [params.opt] and the return
@@ -42,7 +42,7 @@ class Why(StrEnum):
 
 @dataclass(frozen=True, slots=True, order=True)
 class Decision:
-    """What becomes of the calls of `callee` in one line of `caller`; `growth` in statements."""
+    """What happens to the calls of `callee` in one line of `caller`; `growth` in statements."""
 
     caller: str
     callee: str
@@ -66,7 +66,7 @@ class _Edge:
 
 @dataclass(slots=True)
 class _Node:
-    """A routine as it stands now, with what has been inlined into it; `gone`: what it is more where it is not inlined."""
+    """A routine as it stands now, with what has been inlined into it; `gone`: what it is larger by if it is not inlined."""
 
     size: int
     time: float
@@ -78,7 +78,7 @@ class _Node:
 
 @cache
 def decisions(function: Function, profile: CompilerProfile) -> tuple[Decision, ...]:
-    """Return what becomes of the calls in `function` and in the kernels that it calls, callers in the order of their symbols."""
+    """Return what happens to the calls in `function` and in the kernels that it calls, callers in the order of their symbols."""
     if not profile.optimises or profile.inlines is Inlines.NOTHING or not function.callees():
         return ()
     within = {each.symbol for each in (*function.callees(), function)}
@@ -118,11 +118,11 @@ class Inliner:
     """(caller, callee) of the calls whose callee the compiler does not see."""
     nodes: dict[str, _Node] = field(init=False)
     first_growth: dict[str, int] = field(init=False)
-    """By how much the program grew if all calls of each callee were inlined, before any but tiny ones was."""
+    """By how much the program would grow if all calls of each callee were inlined, before any but tiny ones were."""
     found: dict[tuple[str, int, str], Decision] = field(init=False, default_factory=dict)
 
     def decide(self) -> tuple[Decision, ...]:
-        """Return what becomes of each call, in the order of the callers."""
+        """Return what happens to each call, in the order of the callers."""
         self.nodes = {name: self._node(name, each) for name, each in self.estimates.items()}
         for name in self.nodes:
             self._early(name)
@@ -151,7 +151,7 @@ class Inliner:
         return self.nodes[edge.callee].size - edge.site.spared_size - edge.site.size
 
     def _early(self, name: str) -> None:
-        """Inline what is tiny, whatever its arguments; of a callee that calls others, what is tiny even if each of them is inlined too."""
+        """Inline tiny callees, whatever their arguments; a callee that calls others must be tiny even with each of them inlined."""
         for edge in list(self.nodes[name].edges):
             growth, calls = self._growth(edge) + edge.site.spared_size, len(self.nodes[edge.callee].edges)
             if self._sees(edge) and (growth <= 0 or growth * (calls + 1) <= EARLY_STATEMENTS):
@@ -167,7 +167,7 @@ class Inliner:
         return min(wanted, key=lambda each: each[0])[1:] if wanted else None
 
     def _wants(self, name: str, edge: _Edge) -> Why | None:
-        """Why a call is inlined as one of a small function [want_inline_small_function_p]."""
+        """Why a call is inlined as that of a small function [want_inline_small_function_p]."""
         growth = self._growth(edge)
         if growth <= 0:
             return Why.SHRINKS
@@ -180,7 +180,7 @@ class Inliner:
         return None
 
     def _gain(self, edge: _Edge) -> float:
-        """Time that is saved: that of the call, and of what is gone or spared."""
+        """Time that is saved: that of the call, and of what disappears or is spared."""
         return (
             edge.site.time + self.nodes[edge.callee].gone_time + edge.site.spared_time
         ) * edge.site.frequency
@@ -192,7 +192,7 @@ class Inliner:
         return self._gain(edge) > LEAST_SPEEDUP * time
 
     def _badness(self, name: str, edge: _Edge) -> float:
-        """The lower, the earlier is a call inlined [edge_badness]."""
+        """The lower this is, the earlier a call is inlined [edge_badness]."""
         growth = self._growth(edge)
         if growth <= 0:
             return -1e12 + growth

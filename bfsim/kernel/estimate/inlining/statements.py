@@ -1,7 +1,7 @@
-"""How many statements of GCC's own intermediate code an instruction of LLVM's IR stands for [estimate_num_insns in tree-inline.cc of GCC 12].
+"""How many statements of GCC's intermediate code an instruction of LLVM's IR stands for [estimate_num_insns in tree-inline.cc of GCC 12].
 
-One instruction, optimised within its own function only, stands for one statement: an address that is computed counts once, and once more for its
-scale; a load, a store and a sum count one; phis and widenings are free.
+One instruction, optimised only within its function, stands for one statement: a computed address counts once, and once
+more for its scale; a load, a store and a sum count one; phis and widenings are free.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ SHIFTS = ("shl", "lshr", "ashr")
 
 
 def statement_size(flow: ControlFlow, each: Instruction) -> int:
-    """Return the size of what is no call."""
+    """Return the size of an instruction other than a call."""
     if each.opcode in FREE or _is_shift_mask(flow, each):
         return 0
     if each.opcode == "getelementptr":
@@ -30,7 +30,7 @@ def statement_size(flow: ControlFlow, each: Instruction) -> int:
 
 
 def _is_shift_mask(flow: ControlFlow, each: Instruction) -> bool:
-    """Whether it only keeps what a shift is by within a word, for which C does not ask."""
+    """Whether it only masks a shift count to the bits of a word, which C does not require."""
     users = flow.users.get(each.result or "", [])
     return COUNTS in (each.result or "") and all(
         user.opcode in SHIFTS and user.operands[1] == each.result for user in users
@@ -38,7 +38,7 @@ def _is_shift_mask(flow: ControlFlow, each: Instruction) -> bool:
 
 
 def _address_size(flow: ControlFlow, address: Instruction) -> int:
-    """An index is scaled and added; LLVM shares what of it is the same in several, of which GCC adds up each."""
+    """An index is scaled and added; LLVM shares parts that several addresses have in common, and GCC adds up each."""
     if address.operands[-1].startswith("%"):
         return min(pointee_nbytes(address), 2)
     base = flow.instruction(address.operands[0])

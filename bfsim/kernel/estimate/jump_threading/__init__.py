@@ -1,1 +1,1 @@
-"""Jump threading: ways that lead past a test of which the answer is known there."""
+"""Jump threading: paths that lead past a test whose answer is known there."""

@@ -1,7 +1,7 @@
 """Jump threading of flags: variables that are only ever set to constants and tested.
 
-Compilers thread the jump: each place that sets the flag goes on to where the test would lead, and neither flag nor
-test is left [tree-ssa-threadbackward.cc of GCC 12].
+Compilers thread the jump: each place that sets the flag goes straight to where the test would lead, and neither flag
+nor test remains [tree-ssa-threadbackward.cc of GCC 12].
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from bfsim.kernel.ir.text import Instruction, arms_of, is_constant, predicate
 
 
 class JumpThreading:
-    """The flags of one routine, and the tests of them."""
+    """The flags of one routine, and their tests."""
 
     def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
@@ -33,7 +33,7 @@ class JumpThreading:
         )
 
     def _keep(self, is_flag: Callable[[str], bool]) -> None:
-        """Drop those that are no flags, and whatever is none without them."""
+        """Drop those that are no flags, and then those that depend on them."""
         changed = True
         while changed:
             kept = {name for name in self.names if is_flag(name)}
@@ -49,7 +49,7 @@ class JumpThreading:
         return loop is not None and len(self._values(name, loop, set())) > 1
 
     def _values(self, name: str, loop: Loop, seen: set[str]) -> set[str]:
-        """Constants that a flag may be in the iterations of `loop`."""
+        """Constants that a flag may have in the iterations of `loop`."""
         seen.add(name)
         home, phi = self.flow.defined[name]
         found: set[str] = set()
@@ -82,7 +82,7 @@ class JumpThreading:
         return flag and all(user.opcode == "br" for user in self.flow.users.get(each.result or "", []))
 
     def leaving(self, loop: Loop) -> frozenset[str]:
-        """Blocks of `loop` that set a flag which ends it: once the jump is threaded, they are outside."""
+        """Blocks of `loop` that set a flag that ends it: once the jump is threaded, they are outside."""
         staying = {loop.latch}
         waiting = [loop.latch]
         while waiting:

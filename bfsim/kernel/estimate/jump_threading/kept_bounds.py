@@ -1,8 +1,8 @@
-"""Where an iteration leaves a number as it was, its bound is not tested again [tree-ssa-threadbackward.cc of GCC 12].
+"""Bounds that are not tested again after an iteration that leaves the number as it was [tree-ssa-threadbackward.cc of GCC 12].
 
-Of `while i < n and k < 100`, an iteration that counts no `k` ends with the test of `i` alone: `k < 100` was so before it. The same is
-true where it sets `k` to a number that is below 100. GCC copies the end of the loop for each such way to it. Of a number that must stay below another
-variable nothing is known: the ranges that GCC has are of numbers.
+In `while i < n and k < 100`, an iteration that does not count `k` ends with the test of `i` alone: `k < 100` held
+before it. The same is true if it sets `k` to a number below 100. GCC copies the end of the loop for each such path to
+it. If the bound is a variable, nothing is known: GCC's ranges are of numbers.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import BasicBlock, Instruction, arms_of, is_number, predicate, renamed
 
 CONDITION = 2
-"""What a condition and its branch count of that [estimate_num_insns in tree-inline.cc]."""
+"""What a condition and its branch count of these [estimate_num_insns in tree-inline.cc]."""
 
 
 def with_kept_bounds(text: str) -> str:
-    """Return the module `text`, whose loops end with their tests, with such ends copied."""
+    """Return the module `text`, whose loops end with their tests, with such loop ends copied."""
     return with_known_ways(text, _each_kept)
 
 
 def _each_kept(flow: ControlFlow) -> Iterator[KnownWays]:
-    """Yield such tests of a routine, of which none is on a way to the chain of another."""
+    """Yield such tests of a routine, none of them on a path to the chain of another."""
     seen, ends = set[str](), set[str]()
     for loop in flow.loops:
         for label in flow.inside(loop):
@@ -38,7 +38,7 @@ def _each_kept(flow: ControlFlow) -> Iterator[KnownWays]:
 
 
 def _kept(flow: ControlFlow, loop: Loop, label: str) -> KnownWays | None:
-    """The test that some ways to a block of `loop` answer, behind it or a few others that only leave the loop."""
+    """The test that some edges into a block of `loop` answer, in it or after a few others that only leave the loop."""
     before = flow.predecessors[label]
     cost = 0
     for chain, goal in _chains(flow, loop, label):
@@ -78,7 +78,7 @@ def _cost(block: BasicBlock) -> int:
 
 
 def _answer(flow: ControlFlow, loop: Loop, label: str, test: Instruction, way: str) -> bool | None:
-    """What a `test` of a number that is merged in block `label` says where that is come to from block `way`."""
+    """The answer of a `test` of a number that is merged in block `label`, if control comes there from block `way`."""
     merged = test.operands[0]
     phi = flow.instruction(merged)
     if phi is None or phi.opcode != "phi" or flow.defined[merged][0] != label:
@@ -95,7 +95,7 @@ def _answer(flow: ControlFlow, loop: Loop, label: str, test: Instruction, way: s
 
 
 def _said(flow: ControlFlow, loop: Loop, test: Instruction, value: str) -> bool | None:
-    """What a test says of a number, by what is known of its bound where the loop begins."""
+    """The answer of a test of a number, by what is known of its bound where the loop begins."""
     if not is_number(value):
         return None
     if is_number(test.operands[1]):

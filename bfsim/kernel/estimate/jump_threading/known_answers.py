@@ -1,8 +1,9 @@
-"""A test whose answer an earlier one gives on one way is asked on the other alone [pass_thread_jumps of GCC 12].
+"""Tests whose answer an earlier test gives on one side: they are made only on the other one [pass_thread_jumps of GCC 12].
 
-Behind `if g > most: most = g`, where `most` was r, comes `if g < least: least = g`, where `least` was r, too. In Bresenham's line, where
-`dy` is not positive and `dx` not negative, `if e >= dy` comes before `if e <= dx`. LLVM's jump threading knows what a phi of constants
-answers, and neither relations nor ranges of what is no constant: so the answers of both ways are made such a phi.
+After `if g > most: most = g`, with `most` equal to r, comes `if g < least: least = g`, with `least` equal to r, too. In
+Bresenham's line, where `dy` is not positive and `dx` not negative, `if e >= dy` comes before `if e <= dx`. LLVM's jump
+threading knows the answer of a phi of constants, but neither relations nor ranges of variables: so the answers of both
+sides become such a phi.
 """
 
 from __future__ import annotations
@@ -16,18 +17,18 @@ from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import SWAPPED, Instruction, Routine, is_number, phi_of, predicate, renamed
 
 EXCLUDED = {"sgt": ("slt", "sle"), "slt": ("sgt", "sge"), "ugt": ("ult", "ule"), "ult": ("ugt", "uge")}
-"""Which relations of two values cannot hold where one does."""
+"""Which relations of two values cannot hold if one does."""
 SAID = (1, 4)
-"""How likely an answer is where it is not known, and the other one, if it is known to be the first on the other way: of two ways and two
-answers that are as likely, three quarters of it are taken off [update_bb_profile_for_threading in cfg.cc]. Comparisons with constants are
-threaded before it is guessed."""
+"""How likely an answer is on the side where it is not known, and the other answer, if the first is known on the other
+side: of two sides and two answers that are equally likely, three quarters of it are taken off
+[update_bb_profile_for_threading in cfg.cc]. Comparisons with constants are threaded before it is guessed."""
 EVEN = (1, 1)
-"""Of the earlier test: LLVM would take what is said of the later one for a hint at this."""
+"""For the earlier test: LLVM would take the hint of the later one for this one."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """A `test` behind block `join`, which block `asked` leads to at once, and by block `arm`: it `says` this on the way from `known`."""
+    """A `test` after block `join`, to which block `asked` leads directly and by block `arm`: on the path from `known` its answer is `says`."""
 
     test: Instruction
     asked: str
@@ -57,7 +58,7 @@ def _known(flow: ControlFlow, label: str) -> _Known | None:
     first = flow.instruction(block.terminator.operands[0]) if len(set(block.successors)) == 2 else None
     if first is None or first.opcode != "icmp":
         return None
-    arm, join = block.successors  # where it holds, and where not
+    arm, join = block.successors  # if it holds, and if not
     if (
         flow.predecessors[arm] != [label]
         or set(flow.blocks[arm].successors) != {join}
@@ -76,7 +77,7 @@ def _known(flow: ControlFlow, label: str) -> _Known | None:
 
 
 def _excludes(flow: ControlFlow, first: Instruction, test: Instruction) -> bool:
-    """Whether a test of the same two values cannot hold where the first one does."""
+    """Whether a test of the same two values cannot hold if the first one does."""
     relation, pair, others = predicate(test), _values(flow, first), _values(flow, test)
     if others == pair[::-1]:
         relation = SWAPPED.get(relation, relation)
@@ -94,7 +95,7 @@ def _tests_behind(flow: ControlFlow, join: str) -> Iterator[Instruction]:
 
 
 def _values(flow: ControlFlow, test: Instruction) -> tuple[str, ...]:
-    """What is compared, whatever makes words of it."""
+    """The compared values, without their extensions to words."""
     found = []
     for operand in test.operands:
         each = flow.instruction(operand)
@@ -103,7 +104,7 @@ def _values(flow: ControlFlow, test: Instruction) -> tuple[str, ...]:
 
 
 def _is_there(flow: ControlFlow, value: str, label: str) -> bool:
-    """Whether a value is there at the end of a block, or is made of one that is."""
+    """Whether a value is known at the end of a block, or is made from one that is."""
     each = flow.instruction(value)
     if each is not None and is_extended(each):
         value = each.operands[0]

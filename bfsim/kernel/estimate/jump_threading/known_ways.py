@@ -1,4 +1,4 @@
-"""Ways that lead past a test whose answer is known on them: what they copy, and how a loop is entered then [tree-ssa-threadbackward.cc of GCC 12]."""
+"""Paths past a test whose answer is known on them: what they copy, and how a loop is entered then [tree-ssa-threadbackward.cc of GCC 12]."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine
 from bfsim.kernel.ir.writing import with_names, write_module
 
 BEFORE = ".before"
-"""Ends the label of a block without code in which several ways into a loop come together."""
+"""Ends the label of a block without code in which several entries of a loop join."""
 
 
 @dataclass(frozen=True, slots=True)
 class KnownWays:
-    """Ways to a test at the end of a `chain` of blocks, the way through which goes on to block `goal` for sure from each of the blocks `before`."""
+    """Paths to a test at the end of a `chain` of blocks; from each of the blocks `before`, control surely goes on to block `goal`."""
 
     chain: tuple[str, ...]
     goal: str
     before: tuple[str, ...]
     goes_back: bool
-    """Whether the goal begins the loop, which must be come back to from one block."""
+    """Whether the goal begins the loop, which must then have a single way back."""
     begins: int | None = None
-    """Which of its successors the chain's last block leads to from all other blocks, if that is known."""
+    """The successor to which the chain's last block leads from all other blocks, if known."""
 
     @property
     def ways(self) -> Iterator[tuple[str, str, dict[str, str]]]:
@@ -40,7 +40,7 @@ class KnownWays:
 
     @property
     def onward(self) -> str:
-        """The name of a block between the chain and its goal, on which variables of that are set."""
+        """The name of a block between the chain and its goal, which sets the goal's variables."""
         return f"{self.chain[-1]}.onward"
 
 
@@ -50,9 +50,9 @@ def with_known_ways(
     prepared: Callable[[Routine, list[KnownWays]], Routine] = lambda routine, _: routine,
     tidied: Callable[[Routine], Routine] = lambda routine: routine,
 ) -> str:
-    """Return the module `text` with the ways that `each_known` yields of each routine led past their tests.
+    """Return the module `text` with the paths that `each_known` yields for each routine led past their tests.
 
-    `prepared` makes a routine ready for that; `tidied` gets the result while its variables are in memory.
+    `prepared` prepares a routine for this; `tidied` gets the result while its variables are in memory.
     """
     named = with_names(text)
     routines = read_module(named)
@@ -75,7 +75,7 @@ def with_known_ways(
 
 
 def with_one_way(routine: Routine) -> Routine:
-    """Return `routine`, whose variables are in memory, with one block from which each loop is come to, and one from which it is come back to."""
+    """Return `routine`, whose variables are in memory, with one block that enters each loop, and one that leads back to its start."""
     blocks = {each.label: each for each in routine.blocks}
     flow = ControlFlow(routine)
     for loop in flow.loops:
@@ -100,7 +100,7 @@ def _jump(goal: str, at: Instruction) -> Instruction:
 
 
 def _with_ways(routine: Routine, kept: list[KnownWays]) -> Routine:
-    """Return `routine` with a block of its own on each way, on which its variables are set."""
+    """Return `routine` with a separate block on each path, which sets its variables."""
     blocks = {each.label: each for each in routine.blocks}
     for each in kept:
         for before, way, _ in each.ways:
@@ -112,7 +112,7 @@ def _with_ways(routine: Routine, kept: list[KnownWays]) -> Routine:
 
 
 def _threaded(routine: Routine, kept: list[KnownWays]) -> Routine:
-    """Return `routine`, whose variables are in memory, with a copy of a chain for each way that needs one test less."""
+    """Return `routine`, whose variables are in memory, with a copy of a chain for each path that needs one test less."""
     blocks = {each.label: each for each in routine.blocks}
     for each in kept:
         for _, way, copies in each.ways:
@@ -131,11 +131,11 @@ def _threaded(routine: Routine, kept: list[KnownWays]) -> Routine:
 
 
 def _without_empty_blocks(routine: Routine, kept: Iterable[BasicBlock]) -> Routine:
-    """Return `routine` without empty blocks, but those that are `kept`, where no phi tells them from another way."""
+    """Return `routine` without empty blocks, except those `kept` and those that a phi tells from another path."""
     blocks = {each.label: each for each in routine.blocks}
     stays = {each.label for each in kept}
     for label in [*blocks]:
-        block = blocks[label]  # where a block behind it is gone, it leads elsewhere now
+        block = blocks[label]  # if a block after it is gone, it leads elsewhere now
         before = [each.label for each in blocks.values() if label in each.successors]
         goals = block.successors
         is_empty = len(block.instructions) == len(goals) == 1 and not block.enters

@@ -1,4 +1,4 @@
-"""What the test at the end of a loop's first block says where the loop is come to, and where it is come back to."""
+"""The answers of the test at the end of a loop's first block, when the loop is entered and when an iteration comes back."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow, Loop
 from bfsim.kernel.ir.text import TRUTHS, Instruction, arms_of, is_constant, is_number, predicate
 
 WIDEST_STEP = 256
-"""[ours] Of a counter that no loop brings so far that it wraps."""
+"""[ours] A counter with a larger step may wrap in a loop."""
 
 
 def answer(flow: ControlFlow, loop: Loop, condition: str, again: bool) -> bool | None:
-    """What a test of the loop's header says where that is come back to, or come to first."""
+    """The answer of a test of the loop's header when an iteration comes back, or when the loop is entered."""
     test = flow.instruction(condition)
     if test is None:
         return None
@@ -25,7 +25,7 @@ def answer(flow: ControlFlow, loop: Loop, condition: str, again: bool) -> bool |
 
 
 def said(relation: str, one: Range, other: Range) -> bool | None:
-    """What a relation says of all values of two ranges; None if not the same of all."""
+    """Whether a relation holds for all values of two ranges; None if not the same for all."""
     if relation[0] == "u" and min(*one, *other) < 0:
         return None
     if relation in ("eq", "ne") and (one[1] < other[0] or other[1] < one[0]):
@@ -38,7 +38,7 @@ def said(relation: str, one: Range, other: Range) -> bool | None:
 
 
 def range_of(flow: ControlFlow, loop: Loop, value: str, again: bool) -> Range:
-    """The least and the largest that a value of the header may be, or anything that is known to be the same in all iterations."""
+    """The least and the largest number that a value of the header may be, or one that is the same in all iterations."""
     if is_constant(value):
         return constant(value)
     phi = flow.instruction(value)
@@ -52,13 +52,13 @@ def range_of(flow: ControlFlow, loop: Loop, value: str, again: bool) -> Range:
 
 
 def constant(value: str) -> Range:
-    """The range of a number, or of anything that is none."""
+    """The range of a number, or of any other value."""
     found = int(value) if is_number(value) else TRUTHS.get(value)
     return (LEAST, LARGEST) if found is None else (found, found)
 
 
 def _stepped(flow: ControlFlow, loop: Loop, phi: Instruction, last: str, start: Range) -> Range:
-    """The range of what a value of the header becomes: of a counter, beyond its start; of what is chosen, that of all choices."""
+    """The range of a header value's next value: for a counter, beyond its start; for a choice, that of all its values."""
     if is_constant(last):
         return constant(last)
     each = flow.instruction(last)
@@ -77,7 +77,7 @@ def _stepped(flow: ControlFlow, loop: Loop, phi: Instruction, last: str, start: 
 
 
 def counts_anew(flow: ControlFlow, loop: Loop) -> bool:
-    """Whether the test of the loop's header is of a counter that is replaced."""
+    """Whether the test of the loop's header is of a counter that GCC replaces."""
     test = flow.instruction(flow.blocks[loop.header].terminator.operands[0])
     tested = [flow.instruction(each) for each in test.operands] if test is not None else []
     phis = (each for each in tested if each is not None and each.opcode == "phi")
@@ -103,6 +103,6 @@ def _is_counted_anew(flow: ControlFlow, loop: Loop, phi: Instruction) -> bool:
 
 
 def _ends(flow: ControlFlow, loop: Loop, names: set[str | None]) -> bool:
-    """Whether a loop ends where a test of one of these says so, before that wraps."""
+    """Whether a test of one of these ends a loop before the value wraps."""
     tests = (flow.instruction(flow.blocks[each].terminator.operands[0]) for each in flow.exits(loop))
     return any(test is not None and test.opcode == "icmp" and names & {*test.operands} for test in tests)

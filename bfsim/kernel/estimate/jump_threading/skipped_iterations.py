@@ -1,9 +1,9 @@
-"""An iteration that a `continue` skips for one value of the counter: the counter is the next one at once.
+"""Iterations that a `continue` skips for one value of the counter: the counter takes its next value at once.
 
-`for dx in range(-1, 2): if dx == 0 and dy == 0: continue`: behind the test, GCC 12 knows what the counter is, that the loop goes on and that
-the test will not hold again, and threads the jump through the end of the loop [tree-ssa-threadbackward.cc]. So the counter is set to 1
-and the iteration goes on; two tests for 0 are one of `dx | dy` [optimize_range_tests_cmp_bitwise in tree-ssa-reassoc.cc]. The loop is not
-counted any more, and not written out.
+`for dx in range(-1, 2): if dx == 0 and dy == 0: continue`: after the test, GCC 12 knows the counter, that the loop goes
+on and that the test will not hold again, and threads the jump through the end of the loop [tree-ssa-threadbackward.cc].
+So the counter is set to 1 and the iteration goes on; two tests for 0 become one of `dx | dy`
+[optimize_range_tests_cmp_bitwise in tree-ssa-reassoc.cc]. The loop is no longer counted, nor unrolled.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from bfsim.kernel.ir.text import (
 from bfsim.kernel.ir.writing import with_names, write_module
 
 SKIPPED = ".skipped"
-"""Ends the label of the block in which the counter is set on."""
+"""Ends the label of the block that moves the counter on."""
 
 HOLDS: dict[str, Callable[[int, int], bool]] = {
     "ne": ne,
@@ -41,13 +41,13 @@ HOLDS: dict[str, Callable[[int, int], bool]] = {
     "ugt": gt,
     "uge": ge,
 }
-"""Those of unsigned numbers where neither is negative."""
+"""The relations of unsigned numbers that do the same if neither number is negative."""
 IDLE = ("phi", "add", "icmp", "br")
 
 
 @dataclass(frozen=True, slots=True)
 class _Skip:
-    """The tests of a loop's `header`, one block each, that skip an iteration if `counter` is one number: it is `following` then."""
+    """The tests of a loop's `header`, one block each, that skip an iteration for one value of `counter`, which then becomes `following`."""
 
     header: str
     tests: tuple[str, ...]
@@ -97,7 +97,7 @@ def _skip(flow: ControlFlow, loop: Loop) -> _Skip | None:
 
 
 def _test(flow: ControlFlow, label: str) -> Instruction | None:
-    """The test for a number that is all there is in a block."""
+    """The test for a number, if there is nothing else in a block."""
     block = flow.blocks[label]
     tests = block.terminator.opcode == "br" and block.terminator.operands
     test = flow.instruction(block.terminator.operands[0]) if tests else None
@@ -108,7 +108,7 @@ def _test(flow: ControlFlow, label: str) -> Instruction | None:
 
 
 def _following(flow: ControlFlow, loop: Loop, label: str, counter: Instruction, number: int) -> int | None:
-    """What the counter is in the iteration behind the one that is skipped from block `label`, if nothing else happens in between."""
+    """The counter in the iteration after the one that is skipped from block `label`, if nothing else happens in between."""
     latch = flow.blocks[loop.latch]
     if (
         flow.defined[counter.result or ""] != (loop.header, counter)
@@ -144,7 +144,7 @@ def _following(flow: ControlFlow, loop: Loop, label: str, counter: Instruction, 
 
 
 def _there(flow: ControlFlow, loop: Loop, label: str, phi: Instruction) -> str:
-    """What a value of the loop becomes in the iteration that is skipped."""
+    """The next value of a loop's value after the skipped iteration."""
     value = arms_of(phi)[loop.latch]
     source = flow.instruction(value)
     merged = source is not None and source.opcode == "phi" and flow.defined[value][0] == loop.latch

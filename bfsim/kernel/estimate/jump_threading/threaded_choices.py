@@ -1,8 +1,8 @@
-"""A way on which a number was chosen leads past later tests of it [tree-ssa-threadbackward.cc of GCC 12].
+"""Paths on which a number was chosen: they lead past later tests of it [tree-ssa-threadbackward.cc of GCC 12].
 
-Of `now = 2 if y < upper else 0`, then `if now == s: continue`, and then `if now == 2 and ...`, GCC copies what lies between, so that the last
-test is made on no way. LLVM's jump threading does so where the test follows at once. The ways are copied while variables are in memory, as
-those of `state_machines`, and none past the start of a loop.
+For `now = 2 if y < upper else 0`, then `if now == s: continue`, and then `if now == 2 and ...`, GCC copies the code in
+between, so that the last test is never made. LLVM's jump threading does so only if the test follows at once. The paths
+are copied while variables are in memory, as in `state_machines`, and none goes past the start of a loop.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from bfsim.kernel.ir.text import (
 from bfsim.kernel.ir.writing import with_names, write_module
 
 MOST_ON_A_WAY = 7
-"""Instructions that are copied on a way [param_max_jump_thread_duplication_stmts by param_fsm_scale_path_stmts]."""
+"""Most instructions that are copied on a path [param_max_jump_thread_duplication_stmts by param_fsm_scale_path_stmts]."""
 
 
 def with_threaded_choices(module: llvm.ModuleRef) -> llvm.ModuleRef:
-    """Return a module with copies of such ways; of one without any, the module itself."""
+    """Return a module with copies of such paths, or the module itself if there are none."""
     text = with_names(str(module))
     told = [_with_truths(each) for each in read_module(text)]
     tests = {each.symbol: labels for each in told if (labels := set(_tests(ControlFlow(each))))}
@@ -57,7 +57,7 @@ def with_threaded_choices(module: llvm.ModuleRef) -> llvm.ModuleRef:
 
 
 def _with_truths(routine: Routine) -> Routine:
-    """Return `routine` with what comparisons of two numbers say in place of them, as a flag that is set is written."""
+    """Return `routine` with the results of comparisons of two numbers in place of the comparisons, as for a flag that is set."""
     said = {
         each.result or "": str(bool(is_so)).lower()
         for block in routine.blocks
@@ -79,7 +79,7 @@ def _with_truths(routine: Routine) -> Routine:
 
 
 def _tests(flow: ControlFlow) -> Iterator[str]:
-    """Blocks that end with a test of what was chosen in a block before, in the same loop, where it may have been a number."""
+    """Blocks that end with a test of what an earlier block of the same loop chose, possibly a number."""
     headers = {loop.header for loop in flow.loops}
     for block in flow.routine.blocks:
         chosen = _tested(flow, block)
@@ -108,7 +108,7 @@ def _tested(flow: ControlFlow, block: BasicBlock) -> Instruction | None:
 
 
 def _threaded(routine: Routine, tests: set[str]) -> Routine:
-    """Return `routine` with each block that sets a number that is tested led past the tests of it, loop by loop."""
+    """Return `routine` with each block that sets a tested number led past the tests of it, loop by loop."""
     if not tests:
         return routine
     flow = ControlFlow(routine)
@@ -131,7 +131,7 @@ def _threaded(routine: Routine, tests: set[str]) -> Routine:
 
 
 def _short_ways(flow: ControlFlow, nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
-    """A way is copied up to a test, of which GCC makes no copy, if that is not too much."""
+    """A path is copied up to a test, which GCC does not copy, unless that is too much code."""
     cost = {node: _cost(flow, each) for node, each in nodes.items()}
     ahead = {node: {(way, of.known) for way in of.ways} & nodes.keys() for node, of in nodes.items()}
     back: dict[Node, set[Node]] = {node: set() for node in nodes}
@@ -148,7 +148,7 @@ def _short_ways(flow: ControlFlow, nodes: Mapping[Node, Ways], first: Node) -> s
 
 
 def _least(ends: Iterable[Node], ways: Mapping[Node, set[Node]], cost: Mapping[Node, int]) -> dict[Node, int]:
-    """The least that ways from the ends to each node cost with both, where that is not too much."""
+    """The least cost of a path from the ends to each node, both included, unless that is too much."""
     found = {node: cost[node] for node in ends}
     waiting = [*found]
     while waiting:
@@ -161,7 +161,7 @@ def _least(ends: Iterable[Node], ways: Mapping[Node, set[Node]], cost: Mapping[N
 
 
 def _cost(flow: ControlFlow, of: Ways) -> int:
-    """What a copy of a block costs, without accesses of variables and what decides where it leads if that is known."""
+    """The cost of a copy of a block, without accesses to variables, and without the test at its end if its answer is known."""
     rows = [each for each in of.block.instructions if not _is_free(flow, each)]
     decides = sum(each.opcode in ("icmp", "br") for each in rows[-2:])
     return len(rows) - (decides if len(of.ways) == 1 else 0)

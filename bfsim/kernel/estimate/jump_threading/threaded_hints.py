@@ -1,8 +1,8 @@
-"""Hints of the source go with the jumps that are threaded: `if not is_digit(c): continue`, where `is_digit` is inlined.
+"""Hints of the source, which move with threaded jumps: `if not is_digit(c): continue`, where `is_digit` is inlined.
 
-GCC 12 guesses once what is inlined early is inlined and threaded: a `continue` makes each edge unlikely that leads to it alone
-[predict_paths_leading_to in predict.cc]. LLVM's hint is lost with the branch that it stands at, as that one tests a number which each way
-to it knows. So it moves to the branches at which those ways part.
+GCC 12 guesses after early inlining and threading: a `continue` makes each edge unlikely that leads only to it
+[predict_paths_leading_to in predict.cc]. LLVM's hint is lost with its branch, because that tests a number that each
+path to it knows. So the hint moves to the branches at which those paths part.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from bfsim.kernel.ir.writing import with_names, write_module
 
 
 def with_threaded_hints(text: str) -> str:
-    """Return the module `text`, of which variables are registers and nothing else was done yet, with such hints moved."""
+    """Return the module `text`, whose variables are registers and to which nothing else was done yet, with such hints moved."""
     if "branch_weights" not in text:
         return text
     text = with_names(text)
@@ -37,7 +37,7 @@ def _hinted(routine: Routine, moved: dict[str, tuple[int, ...]]) -> Routine:
 
 
 def _moved(flow: ControlFlow) -> dict[str, tuple[int, ...]]:
-    """Of each branch that gets a hint: how likely each side is, by its label."""
+    """For each branch that gets a hint: how likely each side is, by its label."""
     found = dict[str, tuple[int, ...]]()
     given = {block.label: block.terminator.weights for block in flow.routine.blocks}
     waiting = [label for label, weights in given.items() if _is_hint(weights)]
@@ -56,7 +56,7 @@ def _is_hint(weights: tuple[int, ...]) -> bool:
 
 
 def _ways_to_the_rarer_side(flow: ControlFlow, block: BasicBlock, holds: bool) -> Iterator[tuple[str, str]]:
-    """Branches, and sides of them, from which it is certain that the test that ends `block` is true, or is not."""
+    """Branches, and their sides, from which the result of the test that ends `block` is certain."""
     tested = _tested(flow, block)
     if tested is None:
         return
@@ -88,7 +88,7 @@ def _tested(flow: ControlFlow, block: BasicBlock) -> tuple[Instruction, bool] | 
 
 
 def _parting(flow: ControlFlow, label: str, way: str) -> tuple[str, str] | None:
-    """The branch, and its side, from which one way alone leads to `way` through block `label`."""
+    """The branch, and its side, from which only one path leads to `way` through block `label`."""
     while len(set(flow.blocks[label].successors)) == 1:
         if len(flow.blocks[label].instructions) > 1 or len(flow.predecessors[label]) != 1:
             return None

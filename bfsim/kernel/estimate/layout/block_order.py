@@ -1,4 +1,4 @@
-"""The order of the blocks in the code: what GCC's reordering pass (`traces`) is told of them."""
+"""The order of the blocks in the code: the input of GCC's reordering pass (`traces`)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def ordered(
     nbytes: Callable[[str], int],
     jumps: Collection[tuple[str, str]],
 ) -> Layout:
-    """Return the order of the blocks. `nbytes`: of the code of one; `jumps`: edges that never go on without a jump."""
+    """Return the order of the blocks. `nbytes`: of a block's code; `jumps`: edges that always need a jump."""
     names = blocks.names
     count = {name: blocks.frequency(name, likelihood) for name in names}
     edges = {name: _edges(blocks, likelihood, name, count[name], jumps) for name in names}
@@ -36,7 +36,7 @@ def ordered(
 def _edges(
     blocks: CodeBlocks, likelihood: Likelihood, name: str, count: float, jumps: Collection[tuple[str, str]]
 ) -> tuple[Edge, ...]:
-    """Where block `name`, which runs `count` times, leads: a way once, though several sides of its test may go there."""
+    """The edges from block `name`, which runs `count` times: one to each target, even if several sides of its test go there."""
     chances: dict[str, float] = {}
     never_fall = set[str]()
     for way, target in zip(blocks.ways(name), blocks.targets(name), strict=True):
@@ -49,7 +49,7 @@ def _edges(
 
 
 def _place(blocks: CodeBlocks, name: str) -> Callable[[str], tuple[float, int]]:
-    """Where a side of the test at the end of block `name` stands in the source, behind it."""
+    """Where a side of the test at the end of block `name` stands in the source, after it."""
     flow = blocks.flow
     test = flow.blocks[name].terminator.line if name in flow.blocks else None
 

@@ -1,4 +1,4 @@
-"""What branches and jumps cost each way, in the order that the blocks have in the code (`block_order`)."""
+"""The costs of branches and jumps on each side, with the blocks in the order of the code (`block_order`)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.kernel.operations import COSTS, Op
 
 
 class BranchCosts:
-    """Those of one routine. `copies`: what the copies on an edge cost, by edge."""
+    """The costs in one routine. `copies`: what the copies on an edge cost, by edge."""
 
     def __init__(
         self,
@@ -32,15 +32,16 @@ class BranchCosts:
         return self.next_of.get(name) == target or (name, target) in self.copied
 
     def jump(self, name: str, target: str, line: SourceLine) -> list[Charge]:
-        """Return the cost of going on to `target`; of a copy, what its end costs more."""
+        """Return the cost of going on to `target`; for a copy, the extra cost of its end."""
         if (name, target) in self.copied:
             return self._more(target, self.next_of.get(name))
         return [] if self.falls(name, target) else [charge(Op.JUMP, line)]
 
     def _more(self, name: str, behind: str | None) -> list[Charge]:
-        """What the end of a copy of `name` costs more than its own; `behind` is what follows the copy.
+        """The extra cost of the end of a copy of `name`; `behind` is what follows the copy.
 
-        The sides of a test are not counted apart for its copies: all of them are charged what the likelier one costs more [assumed].
+        The sides of a test are not counted separately for its copies: all are charged the extra cost of the likelier
+        one [assumed].
         """
         ways = self.blocks.ways(name)
         line = self.flow.blocks[name if name in self.flow.blocks else edge_of(name)[0]].terminator.line
@@ -89,7 +90,7 @@ class BranchCosts:
         return (fall, taken) if through == 0 else (taken, fall)
 
     def _through(self, label: str) -> int:
-        """Which side of a branch needs no jump; the likelier one gets the branch if both are elsewhere, the other one a jump."""
+        """The side of a branch that needs no jump; if both are elsewhere, the likelier one gets the branch, the other one a jump."""
         ways = self.blocks.ways(label)
         if self.falls(label, ways[1]):
             return 1

@@ -1,6 +1,6 @@
-"""Blocks of a routine that hold code, and where each of them leads once those without code are gone.
+"""Blocks of a routine that hold code, and where each leads once the empty ones are gone.
 
-Values that are copied on an edge are a block, too, with a name of its own.
+The copies of values on an edge are a block, too, with its own name.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from bfsim.kernel.ir.control_flow import ControlFlow
 class CodeBlocks:
     """Those of one routine.
 
-    `names`: in the order of the source, the copies on an edge right before where it leads.
+    `names`: in the order of the source, the copies on an edge right before its target.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class CodeBlocks:
         return names
 
     def ways(self, name: str) -> tuple[str, ...]:
-        """Where a block or an edge's copies lead."""
+        """The targets of a block or of an edge's copies."""
         if name not in self.flow.blocks:
             return (self.landing(edge_of(name)[1]),)
         if name in self.tails:
@@ -56,11 +56,11 @@ class CodeBlocks:
         return self.landing(self.threaded.get((label, way), way))
 
     def targets(self, name: str) -> tuple[str, ...]:
-        """What the ways of a block or an edge's copies are in the control flow, in the same order."""
+        """The same targets as in the control flow, in the same order."""
         return self.flow.blocks[name].successors if name in self.flow.blocks else (edge_of(name)[1],)
 
     def landing(self, label: str) -> str:
-        """Where a jump to `label` ends: behind blocks that hold no code."""
+        """Where a jump to `label` ends: after blocks that hold no code."""
         label = self._landing(label)
         return self.landing(self.tails[label]) if label in self.gone else label
 
@@ -78,10 +78,10 @@ class CodeBlocks:
 
 
 class Landing:
-    """Where a jump to a block ends: behind `skipped` blocks, which hold no code."""
+    """Where a jump to a block ends: after `skipped` blocks, which hold no code."""
 
     def __init__(self, flow: ControlFlow, skipped: frozenset[str], second_parts: Mapping[str, str]) -> None:
-        """`second_parts`: blocks whose test is made by the one before, and where they lead then."""
+        """`second_parts`: blocks whose test the previous block makes, and where they lead then."""
         self.flow, self.skipped, self.second_parts = flow, skipped, second_parts
 
     def __call__(self, label: str) -> str:

@@ -1,7 +1,7 @@
-"""Cross jumping: code at whose end another block stands, whole, jumps there instead [try_crossjump_to_edge in cfgcleanup.cc of GCC 12].
+"""Cross jumping: a block whose end is the same code as another whole block jumps there instead [try_crossjump_to_edge in cfgcleanup.cc of GCC 12].
 
-Both lead to the same block. Copies on edges count as blocks. Parts of two blocks that are alike are left apart, as GCC leaves them if they
-are short.
+Both lead to the same block. Copies on edges count as blocks. Equal parts of two blocks are not joined; neither does GCC
+if they are short.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from bfsim.kernel.rules import Rule
 
 Edge = tuple[str, str]
 COPYING = {Op.MOVE, Op.LOAD8, Op.LOAD16, Op.LOAD32, Op.STORE8, Op.STORE16, Op.STORE32}
-"""What does the same wherever it is, with the same operands."""
+"""Operations that do the same wherever they are, with the same operands."""
 
 
 class CrossJumps:
-    """Those of one routine.
+    """The cross jumps of one routine.
 
-    `alike`: edges with copies, and the first one that leads to the same block with the same ones. `tails`: blocks, and the one that stands at
-    the end of each; of those that are `gone` it is all.
+    `alike`: edges with copies, and the first edge that leads to the same block with the same copies. `tails`: blocks,
+    and the one that stands at the end of each; it is all of those that are `gone`.
     """
 
     def __init__(
         self, context: Context, code: MachineCode, allocation: Allocation, landing: Callable[[str], str]
     ) -> None:
-        """`landing`: where a jump to a block ends, behind those that hold no code."""
+        """`landing`: where a jump to a block ends, after those that hold no code."""
         self.context, self.flow, self.code, self.allocation = context, context.flow, code, allocation
         self.alike = dict(self._alike())
         crosses = context.profile.applies(Rule.CROSS_JUMPS)
@@ -68,7 +68,7 @@ class CrossJumps:
                     yield label, max(whole, key=lambda each: len(self.code.of[each]))
 
     def _comes_to(self, other: str, label: str) -> bool:
-        """Whether a block may be left out for the end of another one: of two that jump the first one, but none that goes on without a jump."""
+        """Whether a block may be left out for the end of another one: the first of two that jump, but none that falls through."""
         (way,) = set(self.flow.blocks[label].successors)
         last = max(self.flow.predecessors[way], key=self._place_of)
         return label == last or (other != last and self._place_of(other) < self._place_of(label))
@@ -79,7 +79,7 @@ class CrossJumps:
         return rows[0].line.line if rows[0].line else 0, self.flow.order.index(label)
 
     def _may_jump(self, label: str) -> bool:
-        """Whether a block with code of its own does nothing at its end but go on."""
+        """Whether a block that has code only goes on at its end."""
         block = self.flow.blocks[label]
         is_apart = label in self.context.replaced
         return (
@@ -95,14 +95,14 @@ class CrossJumps:
         )
 
     def _ends_as(self, label: str, other: str) -> bool:
-        """Whether the code of a block ends with all of another one's."""
+        """Whether the code of a block ends with all the code of another one."""
         mine, its = self.code.of[label], self.code.of[other]
         if len(mine) < len(its):
             return False
         return self._pattern(label, mine[-len(its) :]) == self._pattern(other, its)
 
     def _pattern(self, label: str, rows: Sequence[MachineInstruction]) -> list[object]:
-        """What instructions do: to registers that are wanted behind the block, and to others by where they are set."""
+        """What instructions do, to registers that are live after the block, and to others by where they are set."""
         places: dict[str, object] = {}
         found: list[object] = []
         for number, each in enumerate(rows):
@@ -116,7 +116,7 @@ class CrossJumps:
         return found
 
     def _kind(self, label: str, each: MachineInstruction) -> object:
-        """What an instruction computes, of what it uses; of what is not known, nothing else is sure to be the same."""
+        """What an instruction computes from its operands; one that is not known equals nothing else."""
         made = self.flow.instruction(each.result or "")
         if made is not None and made.opcode == "phi":
             return each.op, arms_of(made).get(label, id(each)) if each.op is Op.IMM else id(each)
@@ -125,7 +125,7 @@ class CrossJumps:
         return each.op if each.op in COPYING else id(each)
 
     def _place(self, access: Instruction | None) -> object:
-        """Where an access is, as far as its address says."""
+        """The place of an access, as far as its address tells."""
         if access is None:
             return None
         address = self.flow.instruction(access.operands[-1])

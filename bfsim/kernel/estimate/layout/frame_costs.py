@@ -1,4 +1,4 @@
-"""What entering and leaving a routine costs: registers are saved and restored, and a frame is linked where it calls another one."""
+"""The costs of entering and leaving a routine: registers are saved and restored, and a frame is linked if it calls another one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bfsim.kernel.profile import CompilerProfile
 
 
 class FrameCosts:
-    """Those of one routine."""
+    """The frame costs of one routine."""
 
     def __init__(self, allocation: Allocation, profile: CompilerProfile) -> None:
         self.allocation, self.profile = allocation, profile
@@ -27,7 +27,7 @@ class FrameCosts:
         return [*([several] if self.saved else ()), *(charge(op, line) for op in ops)]
 
     def leaving(self, line: SourceLine) -> list[Charge]:
-        """Return what is done at a return, that included."""
+        """Return what is done at a return, itself included."""
         ops: tuple[Op, ...] = ()
         if self.allocation.calls:
             ops = (Op.ALU, Op.POP, Op.POP) if self.allocation.saves_frame_pointer else (Op.ALU, Op.POP)

@@ -13,7 +13,7 @@ from bfsim.kernel.rules import Rule
 
 
 class HardwareLoops:
-    """Those of one routine, by their headers in `all`."""
+    """The hardware loops of one routine, by their headers in `all`."""
 
     def __init__(self, context: Context, code: MachineCode, allocation: Allocation, layout: Layout) -> None:
         self.context, self.flow, self.code, self.allocation = context, context.flow, code, allocation
@@ -31,12 +31,12 @@ class HardwareLoops:
             return False
         end = self.flow.ending(loop)
         if self._copied_from(end):
-            return False  # its copies end loops of their own, and all count with one register ["uses iterator" in hw-doloop.cc]
+            return False  # its copies end separate loops, and all count with one register ["uses iterator" in hw-doloop.cc]
         if end != loop.latch and not self._begins_behind_end(loop):
             return False
         in_front = self.context.profile.applies(Rule.COPIES_IN_FRONT) and not self._is_one_block(loop)
         if self.begins_with_copies(loop) and not in_front:
-            return False  # the copies stay behind the end of a loop of one block, which jumps back from there
+            return False  # the copies stay after the end of a loop of one block, which jumps back from there
         before = [
             each
             for each in self.flow.predecessors[end]
@@ -46,27 +46,28 @@ class HardwareLoops:
         return bool(self.code.of[end]) or len(before) == 1
 
     def _begins_behind_end(self, loop: Loop) -> bool:
-        """Whether the block behind the test that counts is moved before the loop's first one, as copies are, and whoever enters the loop jumps over it.
+        """Whether the block after the test that counts moves before the loop's first one, as copies do, so that entering the loop jumps over it.
 
-        Where the first block was copied [copy_bb_p in bb-reorder.cc], nothing is moved, unless the copy stands behind that block: then both are one.
+        If the first block was copied [copy_bb_p in bb-reorder.cc], nothing moves, unless the copy stands after that
+        block: then both are one.
         """
         is_next = loop.latch in self.flow.blocks[self.flow.ending(loop)].successors
-        is_all = not loop.header.endswith(SECOND)  # of a test with several parts each would have to be moved
+        is_all = not loop.header.endswith(SECOND)  # each part of a test with several parts would have to move
         copied, jumps = self._copied_from(loop.header), len(set(self.flow.blocks[loop.latch].successors)) == 1
         is_whole = not copied or (copied == {loop.latch} and jumps and self._goes_before(loop) is not None)
         return is_next and is_all and is_whole and not self._is_one_block(loop)
 
     def _copied_from(self, label: str) -> set[str]:
-        """The blocks behind which there are copies of a block."""
+        """The blocks that are followed by a copy of a block."""
         return {source for source, target in self.copied if target == label}
 
     def _goes_before(self, loop: Loop) -> str | None:
-        """The block before which a loop's last block goes with its copy of the first one: one that the copy leads to and that stands before the loop's end."""
+        """The block before which a loop's last block moves with its copy of the first one: a target of the copy that stands before the loop's end."""
         before = self.order[: self.order.index(self.flow.ending(loop)) + 1]
         return next((way for way in self.flow.blocks[loop.header].successors if way in before), None)
 
     def reorder(self, layout: Layout) -> None:
-        """Move what is behind the test that counts before the first block of its loop, in the order of the blocks in the code."""
+        """Move the block after the test that counts before the first block of its loop, in the order of the code."""
         for loop in self.flow.loops:
             begins = loop.latch != self.flow.ending(loop) and not self.flow.is_split(loop)
             if not (loop.header in self.all and begins and {loop.latch, loop.header} <= {*layout.order}):
@@ -79,7 +80,7 @@ class HardwareLoops:
                 layout.copied = {each for each in layout.copied if each[0] != loop.latch}
 
     def _begin_with_copy(self, loop: Loop, layout: Layout) -> None:
-        """Move the last block with what was copied behind it. That is the loop's now; what is left of the first block is where the loop is entered."""
+        """Move the last block with the copy after it. The copy now belongs to the loop; what is left of the first block is the loop's entry."""
         goal, entering = self._goes_before(loop), self.flow.entering(loop)
         assert goal is not None
         layout.order = [each for each in layout.order if each not in (loop.latch, loop.header)]
@@ -88,14 +89,14 @@ class HardwareLoops:
         layout.copied = (layout.copied - {(loop.latch, loop.header)}) | {(entering, loop.header)}
 
     def begins_with_copies(self, loop: Loop) -> bool:
-        """Whether values are copied from iteration to iteration in a block of its own.
+        """Whether values are copied from iteration to iteration in a separate block.
 
-        That is moved before the loop's first block, so that who enters the loop jumps over it [reorder_loops in hw-doloop.cc].
+        It moves before the loop's first block, so that entering the loop jumps over it [reorder_loops in hw-doloop.cc].
         """
         return (loop.latch, loop.header) in self.allocation.on_edges
 
     def _is_one_block(self, loop: Loop) -> bool:
-        """Whether nothing in a loop branches but its end."""
+        """Whether nothing in a loop branches except its end."""
         converted, label = self.context.if_conversion.by_label, loop.header
         while label != self.flow.ending(loop):
             if label in converted:

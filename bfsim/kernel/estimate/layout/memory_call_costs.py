@@ -1,4 +1,4 @@
-"""What is charged for a call of memset or memmove in place of a loop, beside its own operations (`selection/calls.py`)."""
+"""The charges for a call of memset or memmove in place of a loop, besides its own operations (`selection/calls.py`)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bfsim.kernel.operations import Op
 
 
 def add_memory_call(cost: BlockCost, call: MemoryCall) -> None:
-    """Add what the routine of the library accesses in each iteration of the loop, and what it takes for a length that only the loop knows."""
+    """Add what the routine of the library accesses in each iteration of the loop, and its time for a length that only the loop knows."""
     if call.load is not None:
         cost.accesses += [call.load, call.store]
     elif call.is_inline:

@@ -1,4 +1,4 @@
-"""What a switch costs: tests of bits, a jump by a table, or comparisons and branches in the order of the cases."""
+"""The cost of a switch: tests of bits, a jump by a table, or comparisons and branches in the order of the cases."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def add_switch(cost: BlockCost, block: BasicBlock, flow: ControlFlow) -> None:
 
 
 def _add_bit_tests(cost: BlockCost, block: BasicBlock, masks: MasksOfPlaces) -> None:
-    """Add the bit of the value, and a test of it for each place, to the cost of a block."""
+    """Add to the cost of a block the bit of the value, and a test of it for each target."""
     value, line, order = block.terminator.operands[0], block.terminator.line, masks.order
     bit = [charge(each, line) for each in _bit(masks)]
     missed = [charge(each, line) for each in (Op.ALU, Op.COMPARE, Op.BRANCH_NOT_TAKEN)]
@@ -50,7 +50,7 @@ def _add_bit_tests(cost: BlockCost, block: BasicBlock, masks: MasksOfPlaces) -> 
 
 
 def _bit(masks: MasksOfPlaces) -> Iterator[Op]:
-    """What makes the bit of a value, behind a test that it is the number of one."""
+    """The operations that make the bit of a value, after a test that it is the number of one."""
     low, high = min(masks.places), max(masks.places)
     if low < 0 or high >= WORD:
         yield Op.ALU
@@ -63,7 +63,7 @@ def _bit(masks: MasksOfPlaces) -> Iterator[Op]:
 
 
 def _table_index(flow: ControlFlow, value: str, numbers: Sequence[int]) -> Iterator[Op]:
-    """What makes the number of a table's entry of a value, in a pointer register, and compares it with the last one."""
+    """The operations that turn a value into the number of a table's entry, in a pointer register, and compare it with the last one."""
     first = first_entry(numbers)
     if first:
         yield Op.ALU

@@ -13,17 +13,17 @@ from functools import cached_property
 
 ROUNDS = ((0.4, 0.5), (0.2, 0.2), (0.1, 0.05), (0.0, 0.0))
 """Least probability of an edge, and least count of it for one of the entry, in each round."""
-TOLERANCE = 0.1  # so much less likely or frequent is as good
+TOLERANCE = 0.1  # edges that are less likely or frequent by this much are as good
 ITERATIONS_TO_ROTATE = 0.8  # of a header's count, those that come from the back edge
 COPIED_COUNT = 0.1  # an edge is worth a copy from this count on, for one of the entry
-JUMP_BYTES = 2  # a block of no more is copied rather than jumped to
+JUMP_BYTES = 2  # a block of no more than this is copied rather than jumped to
 COPY_BYTES = 8 * JUMP_BYTES  # [param_max_grow_copy_bb_insns] where that saves a frequent jump
 SCALE = 10_000  # of the most frequent block's count [BB_FREQ_MAX]
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A way from a block to another: how likely it is when the block ends, how often it is taken, and whether it may need no jump."""
+    """An edge from a block to another: how likely it is when the block ends, how often it is taken, and whether it may need no jump."""
 
     source: str
     target: str
@@ -36,7 +36,8 @@ class Edge:
 class Graph:
     """Blocks, the entry first, with their counts and bytes of code.
 
-    `following`: what the source has next of the two sides of a test. `back`: the ways back of loops. `ends`: blocks that return.
+    `following`: the side of a test that comes next in the source. `back`: the back edges of loops. `ends`: blocks that
+    return.
     """
 
     names: Sequence[str]
@@ -59,7 +60,7 @@ class Graph:
 
 @dataclass(slots=True)
 class Layout:
-    """The order found. `copied`: edges that lead to a copy of their target right behind them."""
+    """The order found. `copied`: edges that lead to a copy of their target right after them."""
 
     order: list[str] = field(default_factory=list)
     copied: set[tuple[str, str]] = field(default_factory=set)
@@ -104,7 +105,7 @@ class _Tracing:
         return later
 
     def _priority(self, name: str) -> float:
-        """Blocks behind the end of a trace, and headers of loops, come first; of these, and of others, the most frequent."""
+        """Blocks after the end of a trace, and headers of loops, come first; among these, and among others, the most frequent."""
         frequency = SCALE * self.graph.count[name] / self.most
         edges = [
             each.count
@@ -149,7 +150,7 @@ class _Tracing:
         return best
 
     def _is_better(self, edge: Edge, best: Edge) -> bool:
-        """A likelier one; of two as likely the one to the rarer block, which fewer others lead to; then the next in the source."""
+        """A likelier one; of two equally likely the one to the rarer block, to which fewer others lead; then the next in the source."""
         if abs(edge.probability - best.probability) > TOLERANCE * best.probability:
             return edge.probability > best.probability
         count, other = self.graph.count[edge.target], self.graph.count[best.target]
@@ -211,7 +212,7 @@ class _Tracing:
 
 
 class _Connecting:
-    """Puts the traces one behind the other."""
+    """Puts the traces one after the other."""
 
     def __init__(self, graph: Graph, traces: list[list[str]]) -> None:
         self.graph, self.traces = graph, traces
@@ -262,12 +263,12 @@ class _Connecting:
         return self.start[best.target] if best else self._by_copy(edges)
 
     def _by_copy(self, edges: tuple[Edge, ...]) -> int | None:
-        """What a trace leads to stands elsewhere, but is small: a copy goes in between, and what may follow that."""
+        """The block that a trace leads to stands elsewhere, but is small: a copy goes in between, and what may follow that."""
         best, following = None, None
         entry_count = self.graph.count[self.graph.names[0]]
         for edge in edges:
             if edge.target == edge.source or (best is not None and edge.probability <= best.probability):
-                continue  # a copy behind itself would need the same jump
+                continue  # a copy after itself would need the same jump
             number = self.start.get(edge.target, -1)
             if number >= 0 and len(self.traces[number]) == 1:
                 best, following = edge, None

@@ -1,1 +1,1 @@
-"""Copies of loops' parts: headers in front of them, and loops that are written out."""
+"""Copies of parts of loops: headers in front of them, and unrolled loops."""

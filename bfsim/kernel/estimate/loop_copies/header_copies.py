@@ -1,7 +1,7 @@
 """Loop headers of two tests: `while a and b` is rotated so that both are made once before the loop, and then at its end [tree-ssa-loop-ch.cc of GCC 12].
 
-LLVM copies the first test only. GCC goes on while the next one, too, leaves the loop and is computed from what the loop carries and from
-what does not change in it: from counters, or from what it has added up where that is enough for a `break`.
+LLVM copies only the first test. GCC goes on while the next one also leaves the loop and is computed from values that
+the loop carries and that do not change in it: from counters, or from sums if that is enough for a `break`.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ from bfsim.kernel.ir.text import (
 WHILE = re.compile(r"test(\.|$)")
 """The block of the test of a `while`."""
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
-AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
+AGAIN, LEFT = ".turned", ".left"  # ends the names of the header's values where both copies of it lead
 
 
 def copy_headers(routine: Routine) -> Routine:
-    """Return `routine` with each loop rotated once more whose header is such a test, without an access."""
+    """Return `routine` with each loop rotated once more if its header is such a test, without an access."""
     return _copied(routine, lambda flow, loop: not _accesses(flow, loop))
 
 
 def copy_breaks(routine: Routine) -> Routine:
-    """Return `routine` with each loop rotated once more that begins with accesses and such a test, of a `break`."""
+    """Return `routine` with each loop rotated once more if it begins with accesses and such a test, of a `break`."""
     return _copied(routine, lambda flow, loop: _accesses(flow, loop) and _breaks(flow, loop))
 
 
@@ -66,7 +66,7 @@ def _accesses(flow: ControlFlow, loop: Loop) -> bool:
 
 
 def _breaks(flow: ControlFlow, loop: Loop) -> bool:
-    """Whether the header's test is another one than the loop begins with in the source: that has been copied, and is at its end."""
+    """Whether the header's test is not the one that the loop begins with in the source: that was copied, and is at its end."""
     return flow.blocks[loop.header].terminator.line != flow.blocks[loop.latch].terminator.line
 
 
@@ -82,7 +82,7 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
     ):
         return False
     if loop.latch.endswith(SECOND):
-        return False  # LLVM had made one test of both, so they are at its end
+        return False  # LLVM had joined both tests, so they are at its end
     if WHILE.match(loop.header) or (inside == [loop.latch] and _is_while_alone(flow.blocks[loop.latch])):
         return False  # it ended with its `break`: it is a do-while loop already [do_while_loop_p]
     way_out = next(way for way in header.successors if way not in loop.blocks)
@@ -105,7 +105,7 @@ def _is_while_alone(block: BasicBlock) -> bool:
 
 
 def _size(flow: ControlFlow, header: BasicBlock) -> int:
-    """The statements of both tests: of the first one the comparison, of the second one all, where bits that are counted are one."""
+    """The statements of both tests: the comparison of the first, and all of the second, in which a count of bits is one."""
     statements = sum(statement_size(flow, each) for each in header.instructions if not each.is_call)
     counts = sum(counted_word(flow, each) is not None for each in header.instructions)
     sums = sum(_adds_to_index(flow, each) for each in header.instructions)
@@ -127,7 +127,7 @@ def _has_phi(block: BasicBlock) -> bool:
 
 
 def _counts(flow: ControlFlow, loop: Loop) -> bool:
-    """Whether neither side of the header's test is loaded, or computed from what is, without a value that the loop carries."""
+    """Whether neither side of the header's test is loaded, or computed from a load, without a value that the loop carries."""
     header = flow.blocks[loop.header]
     test = flow.instruction(header.terminator.operands[0])
     if test is None or test.opcode != "icmp" or flow.is_overflow_guard(header):
@@ -145,7 +145,7 @@ def _is_same(flow: ControlFlow, loop: Loop, value: str) -> bool:
 
 
 def _is_carried(flow: ControlFlow, loop: Loop, value: str) -> bool:
-    """Whether a value of the header is a phi of it, or computed from one, and not loaded."""
+    """Whether a value of the header is one of its phis, or computed from one, and not loaded."""
     each = flow.instruction(value)
     if each is None or flow.defined[value][0] != loop.header or each.opcode == "load":
         return False
@@ -153,7 +153,7 @@ def _is_carried(flow: ControlFlow, loop: Loop, value: str) -> bool:
 
 
 def _uses_are_near(flow: ControlFlow, header: BasicBlock, inside: str, way_out: str) -> bool:
-    """Whether what the header computes is used where one of its sides leads alone, or where the sides meet in a phi."""
+    """Whether the header's values are only used where just one of its sides leads, or in a phi where the sides join."""
     own = {each.result for each in header.instructions if each.result}
     for block in flow.routine.blocks:
         behind = flow.dominators[block.label]
@@ -190,7 +190,7 @@ class _Rotation:
         carried = {name: values[loop.latch] for name, values in arms.items()}
         self.last = {name: f"{value}{AGAIN}" if value in own else value for name, value in carried.items()}
         self.carried = {value for value in carried.values() if value in own}
-        """Values of the header that its next run takes up."""
+        """Values of the header that its next run uses."""
         self.rows = [each for each in self.header.instructions if each.opcode != "phi"]
         for each in self.rows:
             if each.result:
@@ -216,7 +216,7 @@ class _Rotation:
         return replace(self.flow.routine, blocks=tuple(blocks))
 
     def _made(self, label: str, values: dict[str, str], *, own: bool) -> BasicBlock:
-        """The header, as it is before the loop or at its end."""
+        """The header, as it stands before the loop or at its end."""
         rows = []
         for each in self.rows:
             known = {name: value for name, value in values.items() if name != each.result}
@@ -227,7 +227,7 @@ class _Rotation:
         return BasicBlock(label, tuple(rows), () if own else self.header.enters)
 
     def _behind(self, block: BasicBlock) -> BasicBlock:
-        """A block with the header's values as they are there: chosen where both copies of the header lead."""
+        """A block with the header's values as they are there: phis where both copies of the header lead."""
         above = self.flow.dominators[block.label]
         if self.inside in above:
             names = {name: f"{name}{AGAIN}" for name in self.types}
@@ -249,7 +249,7 @@ class _Rotation:
         return replace(block, instructions=tuple(rows))
 
     def _is_used(self, name: str, side: str) -> bool:
-        """Whether a value of the header is wanted behind one of its sides."""
+        """Whether a value of the header is used after one of its sides."""
         if side == self.inside and name in self.carried:
             return True
         for label, block in self.flow.blocks.items():
@@ -285,7 +285,7 @@ class _Rotation:
 
 
 def _holds(relation: str, values: list[str]) -> bool | None:
-    """Whether constants are so related; None if a value is none."""
+    """Whether the relation holds between two constants; None if a value is not constant."""
     if not all(map(is_number, values)):
         return None
     left, right = (int(each) % (1 << 32) if relation[0] == "u" else int(each) for each in values)

@@ -1,7 +1,8 @@
-"""Loops that end with their test are not rotated again [do_while_loop_p in tree-ssa-loop-ch.cc of GCC 12].
+"""Loops that end with their test, which are not rotated again [do_while_loop_p in tree-ssa-loop-ch.cc of GCC 12].
 
-LLVM rotates such a loop once more where a value that the loop carries is wanted behind it alone: of `while x < n and a[x] == 0`, it
-would put the access last, behind the test that counts. So a call that must not be copied holds the header while LLVM rotates the others.
+LLVM rotates such a loop once more if a value that the loop carries is used only after it: in `while x < n and a[x] ==
+0`, it would put the access last, after the test that counts. So a call that must not be copied holds the header while
+LLVM rotates the others.
 """
 
 from __future__ import annotations

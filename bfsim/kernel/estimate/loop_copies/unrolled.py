@@ -1,8 +1,8 @@
-"""Loops of so few and so small iterations that a compiler writes them out [try_unroll_loop_completely in tree-ssa-loop-ivcanon.cc].
+"""Loops with so few and so small iterations that a compiler unrolls them completely [try_unroll_loop_completely in tree-ssa-loop-ivcanon.cc].
 
-GCC does so at -O2 where the code does not grow by its own estimate: two thirds of the iterations without what becomes
-constant in them, against one iteration. So of a loop that may end early, whose other ends were guessed to be seldom before [PRED_LOOP_EXIT].
-LLVM is asked to unroll those and no others.
+GCC does so at -O2 if by its own estimate the code does not grow: two thirds of the iterations, without what becomes
+constant in them, against one iteration. So it does for a loop that may end early, whose other exits were guessed to be
+rare before [PRED_LOOP_EXIT]. LLVM is asked to unroll those and no others.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ COUNTER = 1  # statement that steps what counts the iterations [create_canonical
 FREE = ("phi", "zext", "sext", "trunc", "freeze")
 LOOP_NOTE = ", !llvm.loop !"
 GUARDED = (round(100 * (1 - LOOP_GUARD)), round(100 * LOOP_GUARD))
-"""Weights of the way to a loop in another one, and of the way without it."""
+"""Weights of the edge to a loop in another one, and of the edge past it."""
 FULL, DISABLED = "llvm.loop.unroll.full", "llvm.loop.unroll.disable"
 
 
 def marked(text: str, *, guesses: bool) -> str | None:
-    """Return the module `text` with a request to unroll on each such loop, and one not to on all others; None if there is none.
+    """Return the module `text` with a request to unroll each such loop, and one not to for all others; None if there is none.
 
     `guesses`: tests that lead to such loops are guessed to fail.
     """
@@ -45,7 +45,7 @@ def marked(text: str, *, guesses: bool) -> str | None:
         return None
     if guesses:
         text = write_module(text, [_hinted(*each) for each in routines])
-    rows, notes = list(_annotated(text, wishes)), len(text)  # numbers that no other note has
+    rows, notes = list(_annotated(text, wishes)), len(text)  # numbers that no other metadata node has
     for number, wish in enumerate(wishes.values()):
         own = notes + 2 * number
         rows += [f"!{own} = distinct !{{!{own}, !{own + 1}}}", f'!{own + 1} = !{{!"{wish}"}}']
@@ -53,7 +53,7 @@ def marked(text: str, *, guesses: bool) -> str | None:
 
 
 def _hinted(routine: Routine, loops: Sequence[tuple[Loop, bool]]) -> Routine:
-    """Hint at each test that decides whether a loop is come to that is written out: GCC guesses before that."""
+    """Give a hint to each test that decides whether an unrolled loop is reached: GCC guesses before it unrolls."""
     flow, unrolled = ControlFlow(routine), {loop.latch for loop, unrolls in loops if unrolls}
     guards = dict(
         guard
@@ -74,12 +74,12 @@ def _hinted(routine: Routine, loops: Sequence[tuple[Loop, bool]]) -> Routine:
 
 
 def _leaving(flow: ControlFlow, loop: Loop, label: str) -> str:
-    """The way out of a loop from one of its blocks."""
+    """The edge out of a loop from one of its blocks."""
     return next(way for way in flow.blocks[label].successors if way not in loop.blocks)
 
 
 def _guessed(block: BasicBlock, guess: tuple[str, tuple[int, int]] | None) -> BasicBlock:
-    """Return a block with the guess that its test seldom leads a way, and how seldom, if there is no other guess."""
+    """Return a block with the guess that its test seldom takes an edge, and how seldom, if there is no other guess."""
     *rows, end = block.instructions
     if guess is None or end.weights or end.opcode != "br":
         return block
@@ -118,20 +118,20 @@ def _shrinks(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> bool:
 class _Statements:
     """Statements that C has for one iteration of a loop [tree_estimate_loop_size].
 
-    `kept` are those that each copy has; the others are of the counter alone, constants once the loop is written out.
+    `kept` are those that each copy has; the others are of the counter alone, constants once the loop is unrolled.
     """
 
     def __init__(self, flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> None:
         self.flow, self.evolution, self.loop = flow, evolution, loop
         self.kept = self.folded = 0
         self.places = set[tuple[str, ...]]()
-        """Indices that are summed and scaled already, behind the bytes of an element."""
+        """Indices that are already summed and scaled, after the bytes of an element."""
         self.sets_constants = False
-        """Whether a constant comes of an operation that no counter is followed through: GCC takes one statement less for it."""
+        """Whether a constant comes from an operation through which no counter is followed: GCC takes one statement less for it."""
 
     @property
     def whole(self) -> int:
-        """Statements of an iteration with those of a counter of iterations, and the one that is saved before the loop."""
+        """Statements of an iteration, with those of an iteration counter and the one that is saved before the loop."""
         return self.kept + self.folded + COUNTER + self.sets_constants
 
     def count(self, each: Instruction) -> None:
@@ -152,7 +152,7 @@ class _Statements:
             self._add(1, folds=False)
 
     def _chooses(self, branch: Instruction, test: Instruction) -> bool:
-        """Whether a branch makes the smaller or the larger of what it compares: that is one statement."""
+        """Whether a branch makes the minimum or maximum of what it compares: that is one statement."""
         behind = {
             way for each in TARGET.findall(branch.text) for way in self.flow.blocks[each[1:]].successors
         }
@@ -163,14 +163,14 @@ class _Statements:
         )
 
     def _address(self, each: Instruction) -> None:
-        """C sums indices first, in an operation of its own, and scales them."""
+        """C sums indices first, in a separate operation, and then scales them."""
         base = self.flow.instruction(each.operands[0])
         summed = base is not None and base.opcode == "getelementptr"
         indices = [*(base.operands[1:] if base is not None and summed else ()), *each.operands[1:]]
         self._add(1, folds=False)
         nbytes = max(pointee_nbytes(one) for one in (each, *([base] if base is not None else [])))
         place = (str(nbytes), *indices)
-        if place not in self.places:  # what is computed already is not computed again
+        if place not in self.places:  # what is already computed is not computed again
             self.places.add(place)
             self._add(summed + (nbytes > 1), folds=self._are_constant(indices))
 

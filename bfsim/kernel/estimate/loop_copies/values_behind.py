@@ -1,6 +1,6 @@
-"""Values of a loop's header behind the loop: as choices between the ways out of it, also where all of them bring the same one [rewrite_into_loop_closed_ssa].
+"""Values of a loop's header after the loop: phis of its exits, even if all of them bring the same value [rewrite_into_loop_closed_ssa].
 
-LLVM has none where a loop is always entered; a copy of the header before the loop makes a value of its own.
+LLVM has none if a loop is always entered; a copy of the header before the loop makes a separate value.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ BEHIND = ".behind"
 
 
 def with_values_chosen_behind(flow: ControlFlow, loop: Loop) -> Routine:
-    """Return the routine of `flow` with such choices in the block to which the header of `loop` leads, and only other blocks of it do."""
+    """Return the routine of `flow` with such phis in the block to which the header of `loop` leads, if only other blocks of the loop lead there."""
     header = flow.blocks[loop.header]
     ways_out = [way for way in header.successors if way not in loop.blocks]
     before = flow.predecessors[ways_out[0]] if ways_out else []
@@ -38,7 +38,7 @@ def with_values_chosen_behind(flow: ControlFlow, loop: Loop) -> Routine:
                 if source not in loop.blocks and name in own:
                     used.setdefault(name, set()).add(source)
     if any(ways_out[0] not in flow.dominators[each] for sources in used.values() for each in sources):
-        return flow.routine  # the loop has other ends, behind which they are wanted, too
+        return flow.routine  # the loop has other exits, after which they are used, too
     names = {name: f"{name}{BEHIND}" for name in own if name in used}
     blocks = [
         each if each.label in loop.blocks else _behind(each, names, loop) for each in flow.routine.blocks
@@ -57,7 +57,7 @@ def with_values_chosen_behind(flow: ControlFlow, loop: Loop) -> Routine:
 
 
 def _uses(label: str, each: Instruction) -> Iterator[tuple[str, str]]:
-    """Yield what an instruction of block `label` uses, and the block at whose end, or in which, it does."""
+    """Yield what an instruction of block `label` uses, and the block in which, or at whose end, it does."""
     yield from each_arm(each) if each.opcode == "phi" else ((name, label) for name in each.operands)
 
 

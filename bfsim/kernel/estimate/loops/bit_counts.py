@@ -15,7 +15,7 @@ ALLOWED = {"phi", "add", "and", "icmp", "br"}
 
 
 def bit_counting_loops(flow: ControlFlow, evolution: ScalarEvolution) -> dict[str, Loop]:
-    """Return the loops, by their only block, that do nothing but count how often x & (x - 1) leaves something."""
+    """Return the loops, by their only block, that only count how often x & (x - 1) leaves something."""
     return {
         loop.header: loop
         for loop in flow.loops
@@ -44,8 +44,8 @@ def _counts_bits(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> b
 def counting_ops(flow: ControlFlow, loop: Loop) -> list[Op]:
     """Return the operations in place of a loop that counts bits: ONES gives a half-word, which is extended where it is wanted as a word.
 
-    The number of iterations is 1 for no bit at all. GCC tests for that once more where the test before the loop is one of other values:
-    of `a ^ b`, a != b [`may_be_zero` of number_of_iterations_popcount in tree-ssa-loop-niter.cc].
+    The number of iterations is 1 if no bit is set. GCC tests for that once more if the test before the loop is of other
+    values: for `a ^ b`, a != b [`may_be_zero` of number_of_iterations_popcount in tree-ssa-loop-niter.cc].
     """
     starts = [
         value
@@ -61,7 +61,7 @@ def counting_ops(flow: ControlFlow, loop: Loop) -> list[Op]:
 
 
 def _tests_others(flow: ControlFlow, loop: Loop, words: list[str]) -> bool:
-    """Whether the test that leads to a loop compares what a word of 32 bits is made of."""
+    """Whether the test that leads to a loop compares the values that a 32-bit word is made from."""
     label = flow.entering(loop)
     while len(set(flow.blocks[label].successors)) == 1 and len(flow.predecessors[label]) == 1:
         (label,) = flow.predecessors[label]

@@ -27,14 +27,14 @@ ARITHMETIC: dict[str, Callable[[int, int], int]] = {
     "xor": operator.xor, "shl": operator.lshift, "lshr": operator.rshift,
     "ashr": lambda value, amount: signed(value) >> amount, "udiv": operator.floordiv, "urem": operator.mod,
 }  # fmt: skip
-"""Of 32 bits that are not negative. What divides is not 0 (see `_counter`)."""
+"""For 32 bits that are not negative. Divisors are not 0 (see `_counter`)."""
 RELATIONS: dict[str, Callable[[int, int], bool]] = {
     "eq": operator.eq, "ne": operator.ne, "lt": operator.lt, "le": operator.le, "gt": operator.gt, "ge": operator.ge,
 }  # fmt: skip
 
 
 def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None:
-    """Return how often `loop` iterates, where its exit test `test` follows from one constant; None otherwise."""
+    """Return how often `loop` iterates if its exit test `test` follows from one constant; None otherwise."""
     compare = flow.instruction(test)
     counter = _counter(flow, loop, test)
     if compare is None or counter is None:
@@ -55,7 +55,7 @@ def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None
 
 
 def _counter(flow: ControlFlow, loop: Loop, value: str, depth: int = DEEPEST) -> Instruction | None:
-    """The phi of the header that `value` is computed from, with constants alone."""
+    """The phi of the header from which, with constants alone, `value` is computed."""
     each = flow.instruction(value)
     if each is None or depth == 0:
         return None
@@ -78,7 +78,7 @@ def _holds(flow: ControlFlow, compare: Instruction, counter: Instruction, value:
 
 
 def _value(flow: ControlFlow, name: str, counter: Instruction, value: int) -> int:
-    """What `name` is in the iteration in which the counter is `value`; 32 bits, not negative."""
+    """The value of `name` in the iteration in which the counter is `value`; 32 bits, not negative."""
     if is_number(name):
         return int(name) & WORD_MASK
     if name == counter.result:

@@ -1,7 +1,8 @@
-"""Final values: what a counter is behind its loop is computed there [final_value_replacement_loop in tree-scalar-evolution.cc of GCC 12].
+"""Final values: the value of a counter after its loop, computed there [final_value_replacement_loop in tree-scalar-evolution.cc of GCC 12].
 
-`while i < n: ...; i += 1; o += 2` ends with `i == n`, and with `o` twice the number of iterations higher. So the loop need not step what it
-only finds elements with. Of a loop with other exits it is known only that its counter has reached a constant [vrp].
+`while i < n: ...; i += 1; o += 2` ends with `i == n`, and with `o` higher by twice the number of iterations. So the
+loop need not step counters that only index elements. If a loop has other exits, it is only known that its counter has
+reached a constant [vrp].
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ MARK = ".final"
 
 @dataclass(frozen=True, slots=True)
 class _Stepped:
-    """A counter of a loop: the phi, what it starts with, and its step. `more`: what a value is more than the phi."""
+    """A counter of a loop: the phi, its start, and its step. `more`: by how much a value exceeds the phi."""
 
     phi: str
     start: str
@@ -42,7 +43,7 @@ class _Stepped:
 
 
 def with_final_values(routine: Routine) -> Routine:
-    """Return `routine` with what is known of such counters in place of them, behind each loop."""
+    """Return `routine` with the known values of such counters in their place after each loop."""
     for header in [loop.header for loop in ControlFlow(routine).loops]:
         flow = ControlFlow(routine)
         loop = next(each for each in flow.loops if each.header == header)
@@ -51,17 +52,17 @@ def with_final_values(routine: Routine) -> Routine:
 
 
 class _FinalValues:
-    """What the counters of one loop are where its last block ends it."""
+    """The values of one loop's counters when its last block ends it."""
 
     def __init__(self, flow: ControlFlow, loop: Loop) -> None:
         self.flow, self.loop = flow, loop
         self.is_only_exit = flow.exits(loop) == [loop.latch]
         self.quotient = list[Instruction]()
-        """What computes how often the loop iterates, less one, where that takes a shift."""
+        """The rows that compute how often the loop iterates, less one, if that takes a shift."""
         self.iterations = None if flow.is_split(loop) else self._iterations()
 
     def rewritten(self) -> Routine:
-        """The routine with final values in place of what steps."""
+        """The routine with final values in place of stepped ones."""
         routine = self.flow.routine
         if self.iterations is None:
             return routine
@@ -90,12 +91,12 @@ class _FinalValues:
         return replace(routine, blocks=tuple(blocks.values()))
 
     def _does_more(self) -> bool:
-        """Whether the loop does anything but to step."""
+        """Whether the loop does anything besides stepping."""
         rows = (each for label in self.loop.blocks for each in self.flow.blocks[label].instructions)
         return any(each.opcode in ("load", "store", "call") for each in rows)
 
     def _wanted(self, behind: str) -> Iterator[str]:
-        """Values of the loop that are used outside of it, or where its last block leads to."""
+        """Values of the loop that are used outside it, or where its last block leads."""
         outside = [block for label, block in self.flow.blocks.items() if label not in self.loop.blocks]
         if self.is_only_exit:
             used = {name for block in outside for each in block.instructions for name in each.operands}
@@ -105,7 +106,7 @@ class _FinalValues:
         yield from (name for name in used if not self.flow.is_invariant(name, self.loop))
 
     def _final(self, name: str) -> Affine | None:
-        """What a value that steps is behind the loop: what it starts with, and so many steps."""
+        """The value of a stepped value after the loop: its start, plus the steps."""
         stepped = self._stepped(name)
         if stepped is None or self.iterations is None:
             return None
@@ -131,7 +132,7 @@ class _FinalValues:
         return iterations if relation == "ne" or (by_order and self._is_guarded(iterations, test)) else None
 
     def _shifted(self, counter: _Stepped, test: Instruction) -> Affine | None:
-        """How often the loop iterates if its counter steps by a power of two; what takes a division GCC computes in the loop [expression_expensive_p]."""
+        """How often the loop iterates if its counter steps by a power of two; if it took a division, GCC would count in the loop [expression_expensive_p]."""
         step, bound, at = abs(counter.step), test.operands[1], self.flow.instruction(counter.phi)
         sign = counter.step // step
         ends = counter.more == counter.step and STEPS.get(predicate(test)[1:]) == sign
@@ -149,7 +150,7 @@ class _FinalValues:
         return _atom(name).plus(Affine(constant=1))
 
     def _is_guarded(self, iterations: Affine, last: Instruction) -> bool:
-        """Whether the loop is only come to if so many iterations are at least one: its last test was made before, or is known to hold there."""
+        """Whether the loop is only entered for at least one iteration: its last test was made before, or is known to hold there."""
         if not iterations.terms:
             return iterations.constant >= 1
         for label in self.flow.dominators[self.loop.header] - self.loop.blocks:
@@ -170,20 +171,20 @@ class _FinalValues:
         return self._is_first(last)
 
     def _is_first(self, last: Instruction) -> bool:
-        """Whether the source makes the last test of the loop at its top: LLVM leaves it out before a loop where it is sure to hold."""
+        """Whether the source makes the last test of the loop at its top: LLVM leaves it out before a loop if it is sure to hold."""
         rows = (each for label in self.loop.blocks for each in self.flow.blocks[label].instructions)
         lines = [each.line.line for each in rows if each.line._replace(line=0) == last.line._replace(line=0)]
         return min(lines) == last.line.line < max(lines)
 
     def _is_extended(self, iterations: Affine, narrow: str) -> bool:
-        """Whether the number of iterations is a narrow value, which is no less than none."""
+        """Whether the number of iterations is an extended narrow value, which is never negative."""
         if iterations.constant or [times for _, times in iterations.terms] != [1]:
             return False
         each = self.flow.instruction(iterations.terms[0][0])
         return each is not None and each.opcode == "zext" and each.operands[0] == narrow
 
     def _stepped(self, name: str) -> _Stepped | None:
-        """A phi of the header that steps by a constant, or a sum of it and a constant that each iteration computes."""
+        """A phi of the header that steps by a constant, or its sum with a constant that each iteration computes."""
         each, more = self.flow.instruction(name), 0
         if each is not None and each.opcode == "add" and is_number(each.operands[1]):
             name, more = each.operands[0], int(each.operands[1])
@@ -199,7 +200,7 @@ class _FinalValues:
         return _Stepped(name, arms[before], int(new.operands[1]), more)
 
     def _computed(self, name: str, final: Affine, rows: list[Instruction]) -> str:
-        """The value that a sum has; what computes it is appended to `rows`."""
+        """The value of a sum; the instructions that compute it are appended to `rows`."""
         at = self.flow.defined[name][1]
         total = ""
         for value, times in sorted(final.terms, key=lambda term: -term[1]):
@@ -221,7 +222,7 @@ def _atom(value: str) -> Affine:
 
 
 def _least(relation: str, left: str, right: str, sign: str) -> Affine | None:
-    """What is at least one if a relation holds: the distance of its values."""
+    """The distance between the values of a relation, which is at least one if the relation holds."""
     if relation[1:] in ("gt", "ge"):
         relation, left, right = SWAPPED[relation], right, left
     if relation[0] != sign or relation[1:] not in ("lt", "le"):
@@ -240,7 +241,7 @@ def _renamed(block: BasicBlock, names: dict[str, str]) -> BasicBlock:
 
 
 def _arriving(block: BasicBlock, home: str, names: dict[str, str]) -> BasicBlock:
-    """A block to whose phis final values come from the block `home`."""
+    """A block whose phis get final values from the block `home`."""
     rows = []
     for each in block.instructions:
         if each.opcode == "phi":

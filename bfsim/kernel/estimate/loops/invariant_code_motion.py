@@ -1,6 +1,6 @@
-"""Loop-invariant code motion: each value is computed outside of every loop in which its operands do not change.
+"""Loop-invariant code motion: each value is computed outside every loop in which its operands do not change.
 
-Arithmetic moves freely, for this is about cost alone; loads have moved already (`invariant_loads`).
+Arithmetic moves freely, because only cost matters here; loads have already moved (`invariant_loads`).
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ class InvariantCodeMotion:
         self.flow = flow
         self.of: dict[str, str] = {}
         self.same: dict[str, str] = {}
-        """What moves to where the same has moved already is computed once: the second result → the first."""
+        """A value that moves to where the same value has already moved is computed once: the second result → the first."""
         self.hoisted: dict[str, str] = {}
-        """What both sides of a test compute is computed once, before it: the second result → the first."""
+        """A value that both sides of a test compute is computed once, before it: the second result → the first."""
         values, moved = ValueNumbers(), dict[tuple[str, str], str]()
         for label in flow.order:
             for each in flow.blocks[label].instructions:
@@ -69,5 +69,5 @@ class InvariantCodeMotion:
         return place
 
     def _divides_always(self, each: Instruction, label: str, loop: Loop) -> bool:
-        """Whether a division cannot fail before `loop` that does not fail in it [movement_possibility in tree-ssa-loop-im.cc of GCC 12]."""
+        """Whether a division that does not fail in `loop` cannot fail before it [movement_possibility in tree-ssa-loop-im.cc of GCC 12]."""
         return is_number(each.operands[1]) or label in self.flow.dominators[loop.latch]

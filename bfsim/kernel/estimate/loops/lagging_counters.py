@@ -1,6 +1,7 @@
-"""Lagging counters: what a loop carries beside its counter to have it one iteration later is the counter less its step.
+"""Lagging counters: a value that a loop carries to have its counter one iteration later is the counter less its step.
 
-LLVM makes `x - 1` of such a loop a variable of its own [phi of ops, NewGVN]; GCC leaves it, so that it knows how far `x - 1` is from `x + 2`.
+LLVM makes `x - 1` of such a loop a separate variable [phi of ops, NewGVN]; GCC does not, and so knows how far `x - 1`
+is from `x + 2`.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def without_lagging(routine: Routine) -> Routine:
 
 
 def _computed(flow: ControlFlow, loop: Loop, phi: Instruction) -> Instruction | None:
-    """The sum that takes the place of a phi, or None."""
+    """The sum that replaces a phi, or None."""
     arms = arms_of(phi) if phi.opcode == "phi" else {}
     counter = flow.instruction(arms.get(loop.latch, ""))
     if counter is None or counter.opcode != "phi" or flow.defined[counter.result or ""][0] != loop.header:

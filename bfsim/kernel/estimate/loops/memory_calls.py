@@ -1,8 +1,9 @@
 """Loops that GCC replaces by calls of memset and memmove [loop distribution: tree-loop-distribution.cc of GCC 12, part of -O2].
 
-A loop that fills is one whose stores all write the same byte, side by side [classify_builtin_st]; a loop that moves is one whose
-stores write what is loaded a fixed distance away in the same array, where nothing is loaded that was stored before
-[classify_builtin_ldst]. Each store is a call by itself. Where few bytes are filled, a few stores of bytes are in place of the call.
+A loop fills if its stores all write the same byte, side by side [classify_builtin_st]; it moves if its stores write
+what is loaded a fixed distance away in the same array, and nothing is loaded that was stored before
+[classify_builtin_ldst]. Each store becomes a separate call. If only a few bytes are filled, stores of bytes replace the
+call.
 """
 
 from __future__ import annotations
@@ -16,26 +17,26 @@ from bfsim.kernel.ir.widths import BYTE
 from bfsim.kernel.profile import Library, MemoryRoutine
 
 ALLOWED = {"phi", "add", "and", "getelementptr", "trunc", "load", "store", "icmp", "br"}
-MOST_CLEARED = 14  # bytes of zeros that are stored one by one [CLEAR_RATIO in GCC's defaults.h]
+MOST_CLEARED = 14  # most bytes of zeros that are stored one by one [CLEAR_RATIO in GCC's defaults.h]
 MOST_SET = 4  # of another byte [MOVE_RATIO in GCC's bfin.h, by SET_RATIO in defaults.h]
 WORD_BYTES = 4
 
 
 @dataclass(frozen=True, slots=True)
 class MemoryCall:
-    """The call in place of a store of a loop."""
+    """The call that replaces a store of a loop."""
 
     loop: Loop
     number: int
-    """Which of the loop's, from 0."""
+    """Which of the loop's stores, from 0."""
     store: Instruction
     load: Instruction | None
-    """None where the store fills."""
+    """None if the store fills."""
     routine: MemoryRoutine
     iterations: int | None
-    """None where only the loop knows."""
+    """None if only the loop knows."""
     nest: Loop | None = None
-    """The loop around, where one call fills what all its iterations fill side by side."""
+    """The loop around, if one call fills what all its iterations fill side by side."""
 
     @property
     def nbytes(self) -> int:
@@ -44,17 +45,17 @@ class MemoryCall:
 
     @property
     def total(self) -> int | None:
-        """What all iterations store, in bytes; None where only the loop knows."""
+        """What all iterations store, in bytes; None if only the loop knows."""
         return None if self.iterations is None else self.iterations * self.nbytes
 
     @property
     def place(self) -> Loop:
-        """The loop before which the call is."""
+        """The loop that the call stands before."""
         return self.nest or self.loop
 
     @property
     def is_inline(self) -> bool:
-        """Whether stores of bytes are in place of the call."""
+        """Whether stores of bytes replace the call."""
         most = MOST_CLEARED if self.store.operands[0] == "0" else MOST_SET
         return self.load is None and self.nest is None and self.total is not None and self.total <= most
 
@@ -62,7 +63,7 @@ class MemoryCall:
 def memory_calls(
     flow: ControlFlow, evolution: ScalarEvolution, library: Library
 ) -> dict[str, list[MemoryCall]]:
-    """Return the calls in place of loops, by the only block of each loop."""
+    """Return the calls that replace loops, by the only block of each loop."""
     finder = _Finder(flow, evolution, library)
     found = {loop.header: finder.of(loop) for loop in flow.loops if library.fill and len(loop.blocks) == 1}
     return {header: calls for header, calls in found.items() if calls}
@@ -90,7 +91,7 @@ class _Finder:
         return [] if loads else calls
 
     def _is_perfect(self, call: MemoryCall) -> bool:
-        """Whether the loop around does nothing but fill, and one iteration right behind the other [compute_access_range, of perfect nests]."""
+        """Whether the loop around only fills, each iteration right after the previous one [compute_access_range, of perfect nests]."""
         around = self._flow.around(call.loop)
         if (
             around is None
@@ -105,7 +106,7 @@ class _Finder:
         return alone and side_by_side and len(self._flow.exits(around)) == 1
 
     def _step_around(self, call: MemoryCall, around: Loop) -> int | None:
-        """Return how many bytes further each iteration of the loop around begins, if that is always as many."""
+        """Return how many bytes further each iteration of the loop around begins, if always the same."""
         total = 0
         for name, times in self._evolution.affine(call.store.operands[1]).terms:
             if self._flow.defined.get(name, ("",))[0] == call.loop.header:
@@ -119,12 +120,12 @@ class _Finder:
         return total
 
     def _is_allowed(self, each: Instruction, loop: Loop) -> bool:
-        """Whether a statement may be in the loop: what does not change in it is computed before it."""
+        """Whether a statement may be in the loop: invariant values are computed before it."""
         is_before = bool(each.result) and self._evolution.code_motion.is_invariant(each.result or "", loop)
         return each.opcode in ALLOWED or is_before
 
     def _routine(self, store: Instruction, load: Instruction | None, loop: Loop) -> MemoryRoutine | None:
-        """Return the routine that does what a store does in all iterations, if one does."""
+        """Return the library routine that does what a store does in all iterations, if there is one."""
         step = self._evolution.increment(store.operands[1], loop)
         if step is None or step.symbolic or abs(step.constant) != store.bits // BYTE:
             return None

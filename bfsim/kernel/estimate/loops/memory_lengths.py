@@ -1,7 +1,7 @@
-"""Counting in loops that are calls of memset and memmove: the call takes as long as there is to fill or to move.
+"""Counting in loops that become calls of memset and memmove: the time of a call depends on its length.
 
-The IR gets an iteration counter and two conditions for each call, which nothing uses but the counters: there is as much as the
-routine treats by words, and another block of sixteen bytes.
+The IR gets an iteration counter and two conditions for each call, which only the counters use: that the length is
+enough for the routine to work by words, and that there is another block of sixteen bytes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from bfsim.kernel.profile import MEMORY_BLOCK_BYTES, Library
 
 
 def words_begin(call: MemoryCall) -> str:
-    """Return the condition that there are words for the first time."""
+    """Return the condition that the length reaches words for the first time."""
     return f"{_named(call)}.words"
 
 

@@ -1,4 +1,4 @@
-"""What is computed in a loop and is the same in all iterations, because all that it is made of is."""
+"""Values that a loop computes and that are the same in all iterations, because all their operands are."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ COMPUTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr", "sel
 
 
 def is_same(flow: ControlFlow, loop: Loop, each: Instruction) -> bool:
-    """Whether an instruction, which neither loads nor divides nor calls, computes the same in all iterations of a loop."""
+    """Whether an instruction computes the same in all iterations of a loop, without a load, division or call."""
     made_of = (flow.instruction(operand) for operand in each.operands if not flow.is_invariant(operand, loop))
     computes = each.opcode in COMPUTED and not each.is_call
     return computes and all(made is not None and is_same(flow, loop, made) for made in made_of)

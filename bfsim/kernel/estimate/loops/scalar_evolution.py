@@ -1,7 +1,7 @@
 """Scalar evolution: values that grow by the same amount with every iteration of a loop.
 
-An address that does is a pointer which a compiler steps along instead of computing it: for nothing, where a
-post-increment does it, or with one addition an iteration.
+Such an address is a pointer that a compiler steps along instead of computing it: for free with a post-increment, or
+with one addition per iteration.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotio
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
 
-DEEPEST = 12  # operations that an affine value is looked for through
+DEEPEST = 12  # the most operations through which an affine value is looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Affine:
 
 @dataclass(frozen=True, slots=True)
 class Increment:
-    """What a value gains per iteration: `constant`, or an amount that is known only when the loop starts."""
+    """The gain of a value per iteration: `constant`, or an amount that is known only when the loop starts."""
 
     constant: int = 0
     symbolic: bool = False
@@ -84,7 +84,7 @@ class ScalarEvolution:
         return alone
 
     def _merged(self, phi: Instruction, depth: int) -> Affine | None:
-        """The sum that comes to a phi on every way, as where the end of a loop was copied."""
+        """The sum that comes to a phi on every edge, for example if the end of a loop was copied."""
         key = phi.result or "", depth
         if key not in self._sums_of_phis:
             first, *others = {self.affine(arm, depth - 1) for arm in arms_of(phi).values()}
@@ -125,7 +125,7 @@ class ScalarEvolution:
         return Increment(symbolic=True) if fixed else None
 
     def gain(self, phi: str, loop: Loop) -> Affine | None:
-        """Return by how much a phi of the header of `loop` differs from its value an iteration before."""
+        """Return by how much a phi of the header of `loop` differs from its value in the iteration before."""
         instruction = self.flow.instruction(phi)
         assert instruction is not None
         updates = {arm for source, arm in arms_of(instruction).items() if source in loop.blocks}
@@ -169,7 +169,7 @@ class ScalarEvolution:
         return len(moving) == 1 and not moving[0].symbolic
 
     def iterations(self, loop: Loop) -> int | None:
-        """How often `loop` iterates, where constants say so."""
+        """How often `loop` iterates, if constants say so."""
         test = self.exit_test(loop) or ""
         found = self._iterations(test, loop)
         each = self.flow.instruction(test)
@@ -178,7 +178,7 @@ class ScalarEvolution:
         return self._evaluated(test, loop)
 
     def _iterations(self, name: str, loop: Loop) -> int | None:
-        """How often `loop` iterates until a test ends it, where constants say so."""
+        """How often `loop` iterates until a test ends it, if constants say so."""
         test = self.flow.instruction(name)
         if test is None or test.opcode != "icmp" or not self.flow.is_invariant(test.operands[1], loop):
             return None
@@ -194,7 +194,7 @@ class ScalarEvolution:
         return max(0, distance.constant // gain.constant) + 1
 
     def _goes_on_at(self, test: Instruction, loop: Loop) -> bool:
-        """Whether `loop` goes on only where the counter equals its bound, as LLVM tests for the first of two iterations."""
+        """Whether `loop` goes on only if the counter equals its bound, as LLVM tests for the first of two iterations."""
         if predicate(test) not in ("eq", "ne"):
             return False
         ends = (self.flow.blocks[label] for label in self.flow.exits(loop))
@@ -205,12 +205,12 @@ class ScalarEvolution:
         return evaluated_iterations(self.flow, loop, test) if self.evaluates else None
 
     def _start(self, value: str, loop: Loop) -> Affine | None:
-        """What an affine value of one counter is in its first iteration."""
+        """The value of an affine value of one counter in its first iteration."""
         affine, first = self.affine(value), self.first(value, loop)
         return None if first is None else self.affine(first).plus(Affine(constant=affine.constant))
 
     def first(self, value: str, loop: Loop) -> str | None:
-        """Return what a counter of `loop` starts with: a constant, or a value but for a constant; None if it is no counter."""
+        """Return the start of a counter of `loop`: a constant, or a value up to a constant; None if it is no counter."""
         affine, entering = self.affine(value), self.flow.entering(loop)
         if [times for _, times in affine.terms] != [1]:
             return None
@@ -220,12 +220,12 @@ class ScalarEvolution:
         return arms_of(each).get(entering)
 
     def counter_start(self, loop: Loop) -> str | None:
-        """Return what the counter that ends `loop` starts with, but for a constant; None if none is known to end it."""
+        """Return the start of the counter that ends `loop`, up to a constant; None if none is known to end it."""
         test = self.flow.instruction(self.exit_test(loop) or "")
         return self.first(test.operands[0], loop) if test is not None and test.opcode == "icmp" else None
 
     def ends_behind_start(self, loop: Loop) -> bool:
-        """Whether `loop` ends at a sum of what its counter starts with: `range(x, x + n)`, also with less or more."""
+        """Whether `loop` ends at a sum with its counter's start: `range(x, x + n)`, also with less or more."""
         test = self.flow.instruction(self.exit_test(loop) or "")
         start = self.counter_start(loop)
         if test is None or start is None or self.iterations(loop) is not None:
@@ -235,9 +235,9 @@ class ScalarEvolution:
         return bool(first.terms) and distance.keys().isdisjoint(name for name, _ in first.terms)
 
     def may_end_at_once(self, loop: Loop) -> bool:
-        """Whether what is tested before `loop` does not tell later passes that it iterates.
+        """Whether the test before `loop` does not tell later passes that it iterates.
 
-        For `range(x, x + n)` that is whether `n` is positive [match.pd of GCC 12], and not whether x is below x + n.
+        For `range(x, x + n)` the test is whether `n` is positive [match.pd of GCC 12], not whether x is below x + n.
         """
         test = self.flow.instruction(self.exit_test(loop) or "")
         bound = self.flow.instruction(test.operands[1]) if test is not None else None

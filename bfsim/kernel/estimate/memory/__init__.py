@@ -1,1 +1,1 @@
-"""Loads and stores: which are moved, joined, split, or carried along in registers."""
+"""Loads and stores: which are moved, joined, split, or carried in registers."""

@@ -1,6 +1,7 @@
-"""Loads that LLVM has moved behind a test, for only one side of it needs them, stand before it again, as in the source.
+"""Loads that LLVM has moved after a test because only one side needs them, put back before it, as in the source.
 
-Whether they are to be done on one side is for `sinking` to say: GCC asks how often that is come to, and whether anything is stored on the other side.
+`sinking` decides whether they move to one side: GCC asks how often that side runs, and whether the other one stores
+anything.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def with_early_loads(routine: Routine) -> Routine:
 
 
 def _early(rows: tuple[Instruction, ...], test: Instruction) -> list[Instruction]:
-    """The first rows of a block, if they are addresses and loads of lines before that of the test that leads there."""
+    """The first rows of a block that are addresses and loads of lines before the test that leads there."""
     found: list[Instruction] = []
     for each in rows:
         known = each.line._replace(line=0) == test.line._replace(line=0)

@@ -1,7 +1,7 @@
-"""Loop-invariant code motion of loads: what a loop reads again and again is read once, before it [tree-ssa-loop-im.cc of GCC 12].
+"""Loop-invariant code motion of loads: what a loop would read repeatedly is read once, before it [tree-ssa-loop-im.cc of GCC 12].
 
-A load leaves a loop that makes it in every run, whatever way it takes, if nothing in the loop may write what it reads: no call,
-and no store of the same width. As in C, arrays of elements of the same width may overlap, and bytes with anything.
+A load leaves a loop that makes it on every path, if nothing in the loop may write what it reads: no call, and no store
+of the same width. As in C, arrays with elements of the same width may overlap, and bytes may overlap with anything.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from bfsim.kernel.ir.widths import BYTE
 
 
 def hoist_loads(routine: Routine) -> Routine:
-    """Return `routine` with such loads, and what their addresses are computed from, before their loops."""
+    """Return `routine` with such loads, and the computation of their addresses, before their loops."""
     flow = ControlFlow(routine)
     for loop in flow.loops:
         moved = Hoisting(flow, loop).moved()
@@ -26,7 +26,7 @@ def hoist_loads(routine: Routine) -> Routine:
 
 
 class Hoisting:
-    """What leaves one loop: loads, and before each of them the instructions that its address needs."""
+    """What leaves one loop: loads, each after the instructions that its address needs."""
 
     def __init__(self, flow: ControlFlow, loop: Loop) -> None:
         self.flow, self.loop = flow, loop
@@ -47,7 +47,7 @@ class Hoisting:
         return any(each is other for other in self.leaving)
 
     def needed(self, each: Instruction) -> list[Instruction] | None:
-        """An instruction, behind all of the loop that it is computed from; None if it has to stay."""
+        """An instruction, after everything in the loop that it is computed from; None if it has to stay."""
         if not self._may_leave(each):
             return None
         found: list[Instruction] = []
@@ -73,7 +73,7 @@ class Hoisting:
 
 
 def _before(routine: Routine, flow: ControlFlow, loop: Loop, moved: list[Instruction]) -> Routine:
-    """Move instructions to the end of the block before a loop, which is one of its own: the loop need not be entered."""
+    """Move instructions to the end of the block before a loop, a separate one because the loop need not be entered."""
     entering = flow.entering(loop)
     if len(set(flow.blocks[entering].successors)) > 1:
         routine = with_preheader(routine, loop, entering)
@@ -82,6 +82,6 @@ def _before(routine: Routine, flow: ControlFlow, loop: Loop, moved: list[Instruc
 
 
 def _moved(block: BasicBlock, moved: list[Instruction], *, to: str) -> BasicBlock:
-    """Take instructions out of a block, and put them at the end of block `to`."""
+    """Move instructions from a block to the end of block `to`."""
     rows = [row for row in block.instructions if not any(row is each for each in moved)]
     return replace(block, instructions=(*rows[:-1], *(moved if block.label == to else ()), rows[-1]))

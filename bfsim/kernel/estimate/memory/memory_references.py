@@ -1,6 +1,6 @@
 """Loads and stores of a loop that walk through arrays by a constant step, and which of them may meet [tree-data-ref.cc of GCC 12].
 
-References to one array that are whole steps apart come to the same places, some iterations later: they are a component.
+References to one array that are whole steps apart reach the same places some iterations later: they form a component.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from bfsim.kernel.ir.widths import BYTE
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A load or a store in block `label`, of the kind `kind` (as LLVM writes it), through a pointer into the array `root`.
+    """A load or a store in block `label`, of type `kind` (as LLVM writes it), through a pointer into the array `root`.
 
-    `place`: the address in bytes, in terms of what it is computed of. `step`: bytes that it gains with each iteration; None if that is
-    no constant.
+    `place`: the address in bytes, as a sum of the values that it is computed from. `step`: bytes that it gains per
+    iteration; None if that is not constant.
     """
 
     each: Instruction
@@ -36,7 +36,7 @@ class Reference:
         return self.each.opcode == "store"
 
     def ahead_of(self, other: Reference) -> int | None:
-        """Return how many iterations later the other one comes to the same place; None if no whole number of them is known."""
+        """Return how many iterations later the other one reaches the same place; None if no whole number is known."""
         same = (self.kind, self.root, self.step) == (other.kind, other.root, other.step)
         apart = self.place.plus(other.place, -1)
         if not same or not self.step or apart.terms or apart.constant % self.step:
@@ -45,7 +45,7 @@ class Reference:
 
 
 def references(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> list[Reference] | None:
-    """Return those of a loop, in order; None if it calls a kernel, which may load and store anything."""
+    """Return the references of a loop, in order; None if it calls a kernel, which may load and store anything."""
     found = []
     for label in flow.inside(loop):
         for each in flow.blocks[label].instructions:
@@ -61,7 +61,7 @@ def references(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> lis
 
 
 def components(found: Sequence[Reference]) -> Iterator[list[Reference]]:
-    """Yield the components of two and more references, in order, of which no other one can change anything in between."""
+    """Yield the components of two or more references, in order, whose places no other reference can change in between."""
     bad = {id(each) for each in found if not each.step}
     together = {id(each): [each] for each in found}
     for one, other in combinations(found, 2):
@@ -80,9 +80,10 @@ def components(found: Sequence[Reference]) -> Iterator[list[Reference]]:
 
 
 def _may_meet(one: Reference, other: Reference) -> bool:
-    """Whether two references, the second one behind the first, may come to one place: as in C, but for a load behind a store of another type.
+    """Whether two references, the second after the first, may reach one place: as in C, except for a load after a store of another type.
 
-    A store behind a load is of an iteration before that of the next load, which GCC does not tell by types [dr_may_alias_p].
+    A store after a load comes before the load of the next iteration, and there GCC does not look at types
+    [dr_may_alias_p].
     """
     if one.root == other.root:
         apart = one.place.plus(other.place, -1)

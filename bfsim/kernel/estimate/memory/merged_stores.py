@@ -1,7 +1,7 @@
-"""Stores to one element at the ends of both sides of an `if` are one store behind it [cond_if_else_store_replacement in tree-ssa-phiopt.cc].
+"""Stores to one element at the ends of both sides of an `if`, merged into one store after it [cond_if_else_store_replacement in tree-ssa-phiopt.cc].
 
-GCC does so where the two sides store once, and meet where nothing else leads to. What is stored is then chosen without a branch
-if it is there already.
+GCC does so if each side stores once, and they join where nothing else leads. The stored value is then chosen without a
+branch if it is already computed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, phi_of
 
 
 def merge_stores(routine: Routine) -> Routine:
-    """Return `routine` with such stores made once."""
+    """Return `routine` with such stores merged."""
     flow = ControlFlow(routine)
     for block in routine.blocks:
         sides = [flow.blocks[each] for each in dict.fromkeys(block.successors)]
@@ -36,7 +36,7 @@ def _only_store(block: BasicBlock) -> Instruction | None:
 
 
 def _address(flow: ControlFlow, store: Instruction) -> tuple[str, ...]:
-    """What tells whether two stores write the same element: type, and how the address is computed."""
+    """What is equal for two stores to the same element: the type, and how the address is computed."""
     made = flow.instruction(store.operands[-1])
     kind = store.text.split()[1]
     return (
@@ -65,7 +65,7 @@ def _merged(
     phi = phi_of(name, kind, arms, stores[0])
     pointer = stores[0].operands[-1]
     address = flow.instruction(pointer)
-    if address is not None:  # what it is made of is the same on both sides, and so is there behind them
+    if address is not None:  # its operands are the same on both sides, and so available after them
         address = replace(address, result=f"{name}.at")
         pointer = f"{name}.at"
     text = stores[0].text.replace(f"store {kind} {stores[0].operands[0]},", f"store {kind} {name},")

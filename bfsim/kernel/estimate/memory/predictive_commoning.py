@@ -1,7 +1,8 @@
-"""Predictive commoning: what an iteration loads that an earlier one has loaded or stored goes along in registers [tree-predcom.cc of GCC 12].
+"""Predictive commoning: values that an earlier iteration has loaded or stored are carried in registers [tree-predcom.cc of GCC 12].
 
-`a[i] - a[i - 1]` loads a[i] alone; the other one was loaded an iteration before. With -O2 GCC does so without unrolling, so that values
-move from register to register at the end of each iteration: a loop in which two of them do is no hardware loop any more.
+`a[i] - a[i - 1]` loads only a[i]; the other one was loaded an iteration before. With -O2 GCC does so without unrolling,
+so values move from register to register at the end of each iteration: a loop in which two of them move is no hardware
+loop.
 """
 
 from __future__ import annotations
@@ -18,21 +19,21 @@ from bfsim.kernel.ir.preheaders import with_preheader
 from bfsim.kernel.ir.text import Instruction, Routine, arms_of, is_number, phi_of, renamed
 
 ALONG = ".along."
-"""In the names of values that go along: those of narrow elements are as they were loaded, and extended where they are used."""
+"""In the names of carried values: narrow elements are kept as they were loaded, and extended where they are used."""
 MOST_ITERATIONS = 4
-"""So far apart nothing is carried any more [MAX_DISTANCE, with fewer than 16 registers]."""
+"""At this distance nothing is carried any more [MAX_DISTANCE, with fewer than 16 registers]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """`root`: the reference that comes to each place first; the `others` come there so many iterations later."""
+    """`root`: the reference that reaches each place first; the `others` get there the given number of iterations later."""
 
     root: Reference
     others: tuple[tuple[Reference, int], ...]
 
     @property
     def length(self) -> int:
-        """Iterations for which a value goes along."""
+        """Iterations for which a value is carried."""
         return max(later for _, later in self.others)
 
     @property
@@ -61,7 +62,7 @@ def with_predictive_commoning(routine: Routine) -> Routine:
 
 
 def _chains(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> Iterator[Chain]:
-    """Yield the chains of a loop; a chain of values that need not be loaded in the first iteration is none [prepare_initializers_chain]."""
+    """Yield the chains of a loop, except those whose values need not be loaded in the first iteration [prepare_initializers_chain]."""
     always = flow.always_run(loop)
     for rows in components(references(flow, evolution, loop) or []):
         if all(each.label in always for each in rows):
@@ -70,7 +71,7 @@ def _chains(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> Iterat
 
 
 def _split(rows: Sequence[tuple[Reference, int]]) -> Iterator[Chain]:
-    """Split references, ordered by how much later they come, at stores and where they are far apart [determine_roots_comp]."""
+    """Split references, in the order in which they reach a place, at stores and where they are far apart [determine_roots_comp]."""
     starts = [0]
     for number, (each, later) in enumerate(rows):
         if number and (each.writes or later - rows[starts[-1]][1] >= MOST_ITERATIONS):
@@ -82,7 +83,7 @@ def _split(rows: Sequence[tuple[Reference, int]]) -> Iterator[Chain]:
 
 
 def _can_begin(flow: ControlFlow, root: Reference, loop: Loop) -> bool:
-    """Whether it is known before the loop, as an index, where the first iteration begins."""
+    """Whether the start of the first iteration is known before the loop, as an index."""
     numbers = [root.place.constant, *(times for name, times in root.place.terms if name != root.root)]
     is_index = root.kind.startswith("i") and all(each % _size(root) == 0 for each in numbers)
     return is_index and all(_first(flow, name, loop) is not None for name, _ in root.place.terms)
@@ -93,7 +94,7 @@ def _size(reference: Reference) -> int:
 
 
 def _first(flow: ControlFlow, name: str, loop: Loop) -> str | None:
-    """Return what a value is in the first iteration, None if that is not known before the loop."""
+    """Return a value in the first iteration, None if that is not known before the loop."""
     if flow.is_invariant(name, loop):
         return name
     label, each = flow.defined[name]
@@ -103,7 +104,7 @@ def _first(flow: ControlFlow, name: str, loop: Loop) -> str | None:
 
 
 def _leaving(flow: ControlFlow, loop: Loop, chains: Sequence[Chain]) -> list[Instruction]:
-    """Return what leaves the loop, for it does not change there and the beginnings of chains are computed from it."""
+    """Return the invariant instructions that leave the loop because the starts of chains are computed from them."""
     hoisting, found = Hoisting(flow, loop), dict[int, Instruction]()
     for name in (name for chain in chains for name, _ in chain.root.place.terms):
         each = flow.instruction(name)
@@ -113,7 +114,7 @@ def _leaving(flow: ControlFlow, loop: Loop, chains: Sequence[Chain]) -> list[Ins
 
 
 def _carried(routine: Routine, flow: ControlFlow, loop: Loop, chains: Sequence[Chain]) -> Routine:
-    """Put phis in the place of what follows the roots of chains, and what they begin with before the loop."""
+    """Replace the references after the roots of chains by phis, and put their first values before the loop."""
     made, phis, same = _leaving(flow, loop, chains), list[Instruction](), dict[str, str]()
     gone = {each.result for each in made}
     for chain in chains:
@@ -138,13 +139,13 @@ def _carried(routine: Routine, flow: ControlFlow, loop: Loop, chains: Sequence[C
 
 
 def _phi(flow: ControlFlow, loop: Loop, root: Reference, names: tuple[str, str, str]) -> Instruction:
-    """Return the phi of a value: its name, what it is at first, and what it is in the next iteration."""
+    """Return the phi of a value: its name, its first value, and its value in the next iteration."""
     name, first, following = names
     return phi_of(name, root.kind, [(first, flow.entering(loop)), (following, loop.latch)], root.each)
 
 
 def _beginning(flow: ControlFlow, loop: Loop, chain: Chain, name: str, made: list[Instruction]) -> list[str]:
-    """Add what is done before the loop to `made`; return the values that the phis of a chain begin with."""
+    """Add the instructions before the loop to `made`; return the first values of a chain's phis."""
     root, size = chain.root, _size(chain.root)
 
     def make(opcode: str, text: str, *operands: str) -> str:

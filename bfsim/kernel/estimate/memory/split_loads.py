@@ -1,9 +1,9 @@
-"""Loads that LLVM has made one, because they differ in their addresses only, are made on each way again.
+"""Loads that LLVM has joined because they differ only in their addresses, split onto each path again.
 
-LLVM turns the same load on several ways into one load behind them, from an address that the ways choose
-[foldPHIArgLoadIntoPHI]; if only some ways from there need it, it even sinks below. Of elements of two arrays with one index, as in
-`left[node] if low else right[node]`, the ways choose the array [SinkCommonCodeFromPredecessors]. GCC leaves each load where the source has it.
-The kernel language has no pointers, so an address that is chosen always comes of that.
+LLVM turns the same load on several paths into one load after them, from a phi of addresses [foldPHIArgLoadIntoPHI]; if
+only some paths from there need it, the load even sinks below. For elements of two arrays with one index, as in
+`left[node] if low else right[node]`, it makes a phi of the arrays [SinkCommonCodeFromPredecessors]. GCC leaves each
+load where the source has it. The kernel language has no pointers, so a phi of addresses always comes from this.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def split_loads(routine: Routine) -> Routine:
 
 
 def _with_addresses_on_ways(routine: Routine) -> Routine:
-    """Return `routine` with elements of an array that the ways choose as addresses that the ways choose."""
+    """Return `routine` with phis of addresses in place of elements of a phi of arrays."""
     while (found := _chosen_array(routine)) is not None:
         label, phi, users = found
         blocks = {each.label: each for each in routine.blocks}
@@ -51,7 +51,7 @@ def _with_addresses_on_ways(routine: Routine) -> Routine:
 
 
 def _chosen_array(routine: Routine) -> tuple[str, Instruction, list[Instruction]] | None:
-    """Return the first such array with its block and the addresses of its elements, if their indices are known on the ways."""
+    """Return the first such array with its block and the addresses of its elements, if their indices are known on each path."""
     flow = ControlFlow(routine)
     for label, block in flow.blocks.items():
         for phi in block.instructions:
@@ -63,12 +63,12 @@ def _chosen_array(routine: Routine) -> tuple[str, Instruction, list[Instruction]
 
 
 def _is_carried(flow: ControlFlow, label: str, phi: Instruction) -> bool:
-    """Whether a loop carries what is chosen before block `label` from iteration to iteration."""
+    """Whether a loop carries the phi of block `label` from iteration to iteration."""
     return any(label in flow.dominators[source] for _, source in each_arm(phi))
 
 
 def _is_known_before(flow: ControlFlow, label: str, phi: Instruction, address: Instruction) -> bool:
-    """Whether an address is that of an element of a chosen array, by an index that block `label` is entered with."""
+    """Whether an address is of an element of a chosen array, with an index that is known before block `label`."""
     if address.opcode != "getelementptr" or address.operands[0] != phi.result:
         return False
     home, index = flow.defined.get(address.operands[-1], ("", None))
@@ -80,7 +80,7 @@ def _is_known_before(flow: ControlFlow, label: str, phi: Instruction, address: I
 
 
 def _compute_on_ways(blocks: dict[str, BasicBlock], label: str, array: str, address: Instruction) -> None:
-    """Put an address at the end of each block that leads to block `label`, and choose one of these there."""
+    """Compute an address at the end of each block that leads to block `label`, and choose one of these there."""
     phis = {each.result: arms_of(each) for each in blocks[label].instructions if each.opcode == "phi"}
     merged = []
     for way, source in enumerate(phis[array]):
@@ -97,7 +97,7 @@ def _compute_on_ways(blocks: dict[str, BasicBlock], label: str, array: str, addr
 
 
 def _may_move(flow: ControlFlow, label: str, user: Instruction) -> bool:
-    """Whether the user of an address that is chosen before block `label` is a load, and nothing is written before it."""
+    """Whether the user of an address chosen in block `label` is a load, and nothing is written before it."""
     if user.opcode != "load":
         return False
     home, _ = flow.defined[user.result or ""]

@@ -1,7 +1,7 @@
-"""Stores to one place on all of several ways to a block are one store in front of it [sink_common_stores_to_bb in tree-ssa-sink.cc of GCC 12].
+"""Stores to one place on all paths to a block, joined into one store in front of it [sink_common_stores_to_bb in tree-ssa-sink.cc of GCC 12].
 
-So `if v > 255: out[x] = 255`, `elif v < 0: out[x] = 0`, `else: out[x] = v` is a choice that is stored, to which the same is done as to
-one that is written as such.
+So `if v > 255: out[x] = 255`, `elif v < 0: out[x] = 0`, `else: out[x] = v` is a choice that is stored, and is treated
+as if it were written so.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from bfsim.kernel.ir.widths import WORD
 
 
 def with_sunk_stores(routine: Routine) -> Routine:
-    """Return `routine` with a block in front of each such block that chooses what is stored, and stores it."""
+    """Return `routine` with a block in front of each such block that chooses the value and stores it."""
     while True:
         flow = ControlFlow(routine)
         numbers = ValueNumbers()
@@ -33,7 +33,7 @@ def with_sunk_stores(routine: Routine) -> Routine:
 
 
 def _stores(flow: ControlFlow, numbers: ValueNumbers, block: BasicBlock) -> list[Instruction]:
-    """The last store of each block before one, if that is what they do last, and to one place."""
+    """The last store of each predecessor, if they all end with it and it goes to one place."""
     sources = [flow.blocks[each] for each in flow.predecessors[block.label]]
     ends = all(len(each.successors) == 1 for each in sources)
     if len(sources) < 2 or not ends or any(loop.header == block.label for loop in flow.loops):
@@ -47,7 +47,7 @@ def _stores(flow: ControlFlow, numbers: ValueNumbers, block: BasicBlock) -> list
 
 
 def _last_store(block: BasicBlock) -> Instruction | None:
-    """The store of a block behind which it accesses nothing."""
+    """The store of a block that is its last access."""
     accesses = [each for each in block.instructions if each.opcode in ("load", "store") or each.is_call]
     return accesses[-1] if accesses and accesses[-1].opcode == "store" else None
 
@@ -57,9 +57,9 @@ def _kind(store: Instruction) -> str:
 
 
 def _sunk(flow: ControlFlow, block: BasicBlock, stores: Sequence[Instruction]) -> Routine:
-    """Return the routine with one store in front of `block`, of words where only narrow parts of these are stored."""
+    """Return the routine with one store in front of `block`, of words if only their narrow parts are stored."""
     sources = flow.predecessors[block.label]
-    label, first = f"{CHOSEN}.{block.label}", replace(stores[0], location="")  # it is of no line alone
+    label, first = f"{CHOSEN}.{block.label}", replace(stores[0], location="")  # it belongs to no single line
     wide = [_wide(flow, each.operands[0]) for each in stores]
     are_wide = all(each is not None for each in wide)
     values = tuple(each or "" for each in wide) if are_wide else tuple(each.operands[0] for each in stores)
@@ -87,7 +87,7 @@ def _sunk(flow: ControlFlow, block: BasicBlock, stores: Sequence[Instruction]) -
 
 
 def _wide(flow: ControlFlow, value: str) -> str | None:
-    """The word of which a value is the lower part, a number too."""
+    """The word whose lower part a value is; also for a number."""
     each = flow.instruction(value)
     is_part = each is not None and each.opcode == "trunc" and each.text.startswith(f"trunc i{WORD} ")
     return each.operands[0] if each is not None and is_part else None
@@ -96,7 +96,7 @@ def _wide(flow: ControlFlow, value: str) -> str | None:
 def _address(
     flow: ControlFlow, place: str, label: str, rows: dict[str, Instruction]
 ) -> dict[str, Instruction]:
-    """What a place is computed with that is not there before block `label` on all ways, once more, by its names before."""
+    """The instructions that compute an address and are not available on all paths before block `label`, repeated, by their old names."""
     each = flow.instruction(place)
     if each is None or place in rows or flow.defined[place][0] in flow.dominators[label]:
         return rows
@@ -114,7 +114,7 @@ def _around(
     stores: Sequence[Instruction],
     between: BasicBlock,
 ) -> Iterator[BasicBlock]:
-    """The blocks of the routine with `between` in front of `block`, in place of the stores and of what is computed for them alone."""
+    """The blocks of the routine with `between` in front of `block`, without the stores and what is computed only for them."""
     kept = {name for row in between.instructions for name in row.operands}
     for each in flow.routine.blocks:
         if each is block:
@@ -130,7 +130,7 @@ def _around(
 def _without(
     flow: ControlFlow, block: BasicBlock, stores: Sequence[Instruction], kept: set[str]
 ) -> tuple[Instruction, ...]:
-    """The rows of a block but for the stores, and those that nothing else wants."""
+    """The rows of a block without the stores and the rows that nothing else uses."""
     gone = {id(each) for each in stores}
     for row in reversed(block.instructions):
         if row.opcode in ("getelementptr", "trunc") and row.result not in kept:

@@ -1,4 +1,4 @@
-"""Counters that a loop compares beside its own end: how likely each such test holds [predict_iv_comparison in predict.cc of GCC 12]."""
+"""Counters that a loop compares besides its end: how likely each such test is to hold [predict_iv_comparison in predict.cc of GCC 12]."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OPPOSITE = {"lt": "gt", "le": "ge", "gt": "lt", "ge": "le", "eq": "eq", "ne": "n
 
 
 class Comparison(NamedTuple):
-    """A counter compared: the relation, with what, where the counter starts, and its step."""
+    """A comparison of a counter: the relation, the other value, the counter's start and its step."""
 
     relation: str
     other: str
@@ -22,7 +22,7 @@ class Comparison(NamedTuple):
 
 
 class CounterComparisons:
-    """How likely each test of a counter holds, by the label of its block."""
+    """How likely each test of a counter is to hold, by the label of its block."""
 
     def __init__(self, flow: ControlFlow, evolution: ScalarEvolution) -> None:
         self.flow, self.evolution = flow, evolution
@@ -32,7 +32,7 @@ class CounterComparisons:
                 self._counters(loop)
 
     def _counters(self, loop: Loop) -> None:
-        """A test of what counts the loop: equality is unlikely, and what holds in the loop is likely [predict_iv_comparison]."""
+        """A test of the loop's counter: equality is unlikely, and what holds in the loop is likely [predict_iv_comparison]."""
         bound = self._comparison(self.flow.instruction(self.evolution.exit_test(loop) or ""), loop)
         if bound is None:
             return
@@ -55,7 +55,7 @@ class CounterComparisons:
             return None
         counter, other = test.operands[moving[0]], test.operands[1 - moving[0]]
         if not self.flow.is_invariant(other, loop):
-            return None  # a sum that is written in the loop: with types of stdint.h, it is none of a name [get_base_value]
+            return None  # a sum that is written in the loop: with types of stdint.h, it is no sum of a name [get_base_value]
         gain = gains[moving[0]]
         assert gain is not None
         relation = predicate(test)[-2:]
@@ -65,7 +65,7 @@ class CounterComparisons:
         return Comparison(OPPOSITE[relation] if moving[0] else relation, other, start, gain.constant)
 
     def _by_counter(self, test: Comparison, bound: Comparison) -> float | None:
-        """How likely a comparison holds, beside the one that bounds the loop."""
+        """How likely a comparison is to hold, besides the one that bounds the loop."""
         if test.relation in ("eq", "ne"):
             return IV_COMPARE if test.relation == "ne" else 1 - IV_COMPARE
         if not self._coherent(bound.start, test.start):
@@ -81,7 +81,7 @@ class CounterComparisons:
         return None
 
     def _coherent(self, one: str, other: str) -> bool:
-        """Whether two values are equal, both constants, or one the other and a constant [expr_coherent_p]."""
+        """Whether two values are equal, or both constants, or one is the other plus a constant [expr_coherent_p]."""
         if one == other or (is_number(one) and is_number(other)):
             return True
         return any(

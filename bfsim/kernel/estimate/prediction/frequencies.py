@@ -28,7 +28,7 @@ def frequencies(flow: ControlFlow, taken: Taken) -> dict[str, float]:
 def _passed(
     flow: ControlFlow, start: str, inside: Collection[str], taken: Taken, turns: Mapping[str, float]
 ) -> dict[str, float]:
-    """How often each block of a region runs, entered once at `start` and left for good at a jump back to it."""
+    """How often each block of a region runs if it is entered once at `start` and left for good by a jump back there."""
     found = dict.fromkeys(flow.blocks, 0.0)
     for label in flow.order:
         if label not in inside:

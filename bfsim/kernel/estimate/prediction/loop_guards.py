@@ -1,6 +1,7 @@
-"""Loop guards: a test that decides whether a loop inside another one is come to is guessed to fail [predict_loops in predict.cc of GCC 12].
+"""Loop guards: a test that decides whether an inner loop is reached is guessed to fail [predict_loops in predict.cc of GCC 12].
 
-Where all that such a test decides instead is to leave the loop around, the test before it decides, and so on [predict_paths_for_bb].
+If the other side of such a test only leaves the loop around, the test before it decides, and so on
+[predict_paths_for_bb].
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 
 
 def loop_guards(flow: ControlFlow) -> Iterator[tuple[str, str]]:
-    """Yield the edges that lead to loops, where another way goes round the loop around without them."""
+    """Yield the edges that lead to loops, if another path goes round the loop around without them."""
     for around in flow.loops:
         for loop in around.inner:
             yield from guards_of(flow, loop, around)
@@ -26,7 +27,7 @@ def guards_of(flow: ControlFlow, loop: Loop, around: Loop) -> Iterator[tuple[str
 
 
 def _leading_to(flow: ControlFlow, first: str, around: Loop, seen: set[str]) -> Iterator[tuple[str, str]]:
-    """Yield the edges from blocks that may do without `first` to those that may not."""
+    """Yield the edges from blocks that may pass `first` by to blocks that may not."""
     for label in flow.order:
         if first not in flow.post_dominators[label]:
             continue
@@ -42,7 +43,7 @@ def _leading_to(flow: ControlFlow, first: str, around: Loop, seen: set[str]) -> 
 
 
 def _first_of(flow: ControlFlow, loop: Loop) -> str:
-    """Where the source begins a loop: at the test that decides whether it is entered, a copy of one that ends it, if there is one."""
+    """Where the source begins a loop: at the test that decides whether it is entered (a copy of one that ends it), if there is one."""
     ends = {flow.blocks[label].terminator.line for label in flow.exits(loop)}
     found, label = loop.header, _dominator(flow, loop.header)
     while label:
@@ -55,6 +56,6 @@ def _first_of(flow: ControlFlow, loop: Loop) -> str:
 
 
 def _dominator(flow: ControlFlow, label: str) -> str:
-    """The last block that every way to another one passes; none before the first one."""
+    """The last block that every path to another one passes; none for the first one."""
     before = flow.dominators[label] - {label}
     return max(before, key=lambda each: len(flow.dominators[each]), default="")

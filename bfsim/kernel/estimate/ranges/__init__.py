@@ -1,1 +1,1 @@
-"""Value ranges: between which numbers a value is."""
+"""Value ranges: the numbers between which a value lies."""

@@ -1,7 +1,8 @@
-"""Tests against the end of a value's range: `p < 15` is `p != 15` where `p` is 15 at most [simplify_using_ranges in vr-values.cc of GCC 12].
+"""Tests against the end of a value's range: `p < 15` is `p != 15` if `p` is at most 15 [simplify_using_ranges in vr-values.cc of GCC 12].
 
-GCC has made it that before it guesses which side is likely: a place in a ring that goes back to 0 is as likely as not at 0, and unlikely 15.
-Of a value that goes round a loop it knows only what the loop makes of it, whatever it was [gimple_ranger::range_of_stmt in gimple-range.cc].
+GCC does this before it guesses which side is likely: a place in a ring that goes back to 0 is as likely as not to be 0,
+and unlikely to be 15. Of a value that a loop carries it knows only what the loop makes of it, whatever it was before
+[gimple_ranger::range_of_stmt in gimple-range.cc].
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ ANY = LEAST, LARGEST
 
 
 class EndsOfRanges:
-    """The least and the largest that the signed words of a routine may be."""
+    """The least and the largest values of a routine's signed words."""
 
     def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
         self.found: dict[str, Range] = {}
 
     def is_end(self, test: Instruction, number: int) -> bool:
-        """Whether a test says only that a value is not `number`, the largest or the least that it may be."""
+        """Whether a test only says that a value is not `number`, its largest or least value."""
         low, high = self._of(test.operands[0])
         relation = predicate(test)
         return low < high and (
@@ -56,11 +57,11 @@ class EndsOfRanges:
         return ANY
 
     def _on_way(self, value: str, label: str, behind: str) -> Range:
-        """Return the range of a value on the way from a block to the one `behind`."""
+        """Return the range of a value on the edge from a block to the one `behind`."""
         return self._within(value, [*said_before(self.flow, label), *said_between(self.flow, label, behind)])
 
     def _within(self, value: str, said: list[Said]) -> Range:
-        """Return what is left of the range of a value for which that is said."""
+        """Return what is left of the range of a value for which this is known."""
         low, high = self._of(value)
         for name, relation, other in said:
             if name == value and is_number(other):

@@ -1,6 +1,6 @@
-"""What may come of words of which the least and the largest number are known, as unsigned ones [range-op.cc of GCC 12].
+"""Ranges of the results of operations on words with known ranges, as unsigned numbers [range-op.cc of GCC 12].
 
-A sum or product of signed numbers does not overflow, nor does what is negated, but for a u32.
+A sum or product of signed numbers does not overflow, nor does a negation, except of a u32.
 """
 
 from __future__ import annotations
@@ -13,28 +13,28 @@ from bfsim.kernel.ir.widths import WORD
 
 WORDS = 1 << WORD
 LARGEST = WORDS // 2 - 1
-"""Of the numbers that are positive as signed ones, too."""
+"""The range of numbers that are also positive as signed ones."""
 Range = tuple[int, int]
 ANY: Range = (0, WORDS - 1)
 
 
 def is_positive(of: Range) -> bool:
-    """Whether all numbers of a range are 0 or more as signed ones, too."""
+    """Whether all numbers of a range are also 0 or more as signed ones."""
     return of[1] <= LARGEST
 
 
 def both(one: Range, other: Range) -> Range:
-    """Return the range of what is in one of two ranges."""
+    """Return the range of numbers that are in either of two ranges."""
     return min(one[0], other[0]), max(one[1], other[1])
 
 
 def widened(of: Range) -> Range:
-    """Return all numbers, or all positive ones if a range has no other."""
+    """Return all numbers, or all positive ones if a range has no others."""
     return 0, LARGEST if is_positive(of) else WORDS - 1
 
 
 def within(of: Range, relation: str, beside: Range) -> Range | None:
-    """Return what is left of a range of which each number has a relation to one of another range; None if nothing is."""
+    """Return the part of a range whose numbers have a relation to a number of another range; None if there is none."""
     (low, high), (least, most) = of, beside
     apart = int(relation[1:] in ("lt", "gt"))
     if relation == "sgt" and beside == (WORDS - 1, WORDS - 1):
@@ -52,7 +52,7 @@ def within(of: Range, relation: str, beside: Range) -> Range | None:
 
 
 def computed(each: Instruction, ranges: Sequence[Range]) -> Range:
-    """Return the range of what an instruction computes of operands of these ranges."""
+    """Return the range of an instruction's result, with operands of these ranges."""
     if each.opcode == "load":
         return 0, (1 << each.bits) - 1
     if each.opcode in ("zext", "sext"):
@@ -76,7 +76,7 @@ def computed(each: Instruction, ranges: Sequence[Range]) -> Range:
 
 
 def _is_positive_signed(name: str, one: Range, other: Range) -> bool:
-    """Whether what a signed operation computes is positive, for it does not overflow."""
+    """Whether the result of a signed operation is positive, because it does not overflow."""
     if name == "sub":
         return is_positive(one) and other[0] > LARGEST
     return name in ("add", "mul", "shl") and is_positive(one) and is_positive(other)
@@ -163,4 +163,4 @@ COMPUTED: Mapping[str, Callable[[Range, Range], Range]] = {
     "abs": lambda _one, _other: (0, LARGEST),
     "fshl": _joined,
 }
-"""By opcode or the name of LLVM's intrinsic, of words; a funnel shift's are those of its parts, which are shifted before."""
+"""By opcode or the name of LLVM's intrinsic, for words; the operands of a funnel shift are its parts, shifted before."""

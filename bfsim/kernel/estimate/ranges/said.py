@@ -1,4 +1,4 @@
-"""What tests say of values, on the way to where they are used."""
+"""What tests say of values, on the path to where they are used."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Said = tuple[str, str, str]
 
 
 def said_before(flow: ControlFlow, label: str) -> Iterator[Said]:
-    """Yield what the tests on the only way to a block say, the last one first."""
+    """Yield what the tests on the only path to a block say, the last one first."""
     seen = {label}
     while len(before := flow.predecessors[label]) == 1 and before[0] not in seen:
         yield from said_between(flow, before[0], label)
@@ -21,7 +21,7 @@ def said_before(flow: ControlFlow, label: str) -> Iterator[Said]:
 
 
 def said_between(flow: ControlFlow, label: str, behind: str) -> Iterator[Said]:
-    """Yield what the test at the end of a block says where that leads on to `behind`."""
+    """Yield what the test at the end of a block says if it leads on to `behind`."""
     end, ways = flow.blocks[label].terminator, flow.blocks[label].successors
     test = flow.instruction(end.operands[0]) if end.opcode == "br" and end.operands else None
     if test is not None and test.opcode == "icmp" and len(set(ways)) == 2:

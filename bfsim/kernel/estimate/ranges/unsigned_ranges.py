@@ -1,7 +1,8 @@
-"""Ranges of the words of a routine: by what computes them, and by tests on the way there [gimple-range.cc of GCC 12].
+"""Ranges of the words of a routine, from the instructions that compute them and the tests before [gimple-range.cc of GCC 12].
 
-They begin empty and grow until no instruction adds to them; what grows round a loop is widened. A test on the way to where a value is used
-counts for what is computed of it there, and not for the value: when GCC makes instructions, it knows one range of it, for all its uses.
+They begin empty and grow until no instruction adds to them; one that grows round a loop is widened. A test on the path
+to a use of a value counts for what is computed from it there, and not for the value: when GCC makes instructions, it
+knows one range of a value, for all its uses.
 """
 
 from __future__ import annotations
@@ -25,13 +26,13 @@ from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction, arms_of, is_number
 
 MOST_ROUNDS = 12
-"""[ours] So often a range may grow before it is widened."""
+"""[ours] How often a range may grow before it is widened."""
 Facts = Mapping[str, Sequence[tuple[str, str]]]
-"""What tests say of values, by their names: relations, and what each has them to."""
+"""What tests say of values, by their names: relations, and the other value of each."""
 
 
 class UnsignedRanges:
-    """The least and the largest number that each value may be that is computed in a routine: in `found`, by name."""
+    """The least and the largest number of each value that a routine computes: in `found`, by name."""
 
     def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
@@ -55,7 +56,7 @@ class UnsignedRanges:
         return old != self.found
 
     def _of(self, each: Instruction, label: str) -> Range | None:
-        """Return the range of what an instruction computes; None where nothing is known to come to it yet."""
+        """Return the range of an instruction's result; None if no value is known to reach it yet."""
         if each.opcode == "phi":
             arms = [self._on_way(value, way, label) for way, value in arms_of(each).items()]
             come = [arm for arm in arms if arm is not None]
@@ -70,11 +71,11 @@ class UnsignedRanges:
         return computed(each, ranges)
 
     def _at(self, value: str, label: str) -> Range | None:
-        """Return the range of a value in a block; None where nothing is known to come to it."""
+        """Return the range of a value in a block; None if no value is known to reach it."""
         return self._within_said(value, self.said.get(label, {}))
 
     def _on_way(self, value: str, label: str, behind: str) -> Range | None:
-        """Return the range of a value on the way from a block to the one `behind`."""
+        """Return the range of a value on the edge from a block to the one `behind`."""
         said = self.said.get(label, {})
         for name, relation, other in said_between(self.flow, label, behind):
             said = {**said, name: [*said.get(name, ()), (relation, other)]}
@@ -91,14 +92,14 @@ class UnsignedRanges:
         facts = [fact for name in names for fact in said.get(name, ())]
         for relation, other in sorted(
             facts, key=lambda fact: "l" in fact[0]
-        ):  # what says it is positive first
+        ):  # first those that say it is positive
             beside = (int(other) % WORDS,) * 2 if is_number(other) else self.found.get(other, ANY)
             found = within(found, relation, beside) if found is not None else None
         return found
 
 
 def _facts(said: Sequence[Said]) -> Facts:
-    """Return what tests say by the values that they say it of, what the first test on the way says first."""
+    """Return what tests say, by value, in the order of the tests on the path."""
     found: dict[str, list[tuple[str, str]]] = {}
     for value, relation, other in reversed(said):
         found.setdefault(value, []).append((relation, other))

@@ -1,6 +1,6 @@
-"""Value ranges: the least and the largest a word may be, by what computes it and by what a test on the way has said [vr-values.cc, gimple-range.cc of GCC 12].
+"""Value ranges: the least and the largest value of a word, from its instruction and the tests before [vr-values.cc, gimple-range.cc of GCC 12].
 
-The absolute value of the least word overflows, which GCC takes for undefined: so absolute values are not negative.
+The absolute value of the least word overflows, which GCC treats as undefined: so absolute values are not negative.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from bfsim.kernel.ir.text import INVERTED, Instruction, is_number, predicate
 LEAST, LARGEST = -(1 << 31), (1 << 31) - 1
 Range = tuple[int, int]
 LESS = {"slt": (0, 1, 1), "sle": (0, 1, 0), "sgt": (1, 0, 1), "sge": (1, 0, 0)}
-"""Of a test that holds: which operand is the smaller one, which the larger, and by how much at least."""
+"""For a test that holds: which operand is the smaller, which the larger, and by how much at least."""
 
 
 def value_range(flow: ControlFlow, value: str) -> Range:
-    """Return the least and the largest that `value` may be."""
+    """Return the least and the largest number that `value` may be."""
     if is_number(value):
         return int(value), int(value)
     each = flow.instruction(value)
@@ -40,7 +40,7 @@ def negated(of: Range) -> Range:
 
 
 def answer(flow: ControlFlow, known: Instruction, test: Instruction, *, holds: bool) -> bool | None:
-    """Return what `test` says where `known` is known to hold, or not to; None if that does not decide it."""
+    """Return the answer of `test` if `known` is known to hold, or not to; None if that does not decide it."""
     if predicate(known) not in LESS or predicate(test) not in LESS:
         return None
     within = _bounded(flow, known, predicate(known) if holds else INVERTED[predicate(known)])
@@ -56,7 +56,7 @@ def answer(flow: ControlFlow, known: Instruction, test: Instruction, *, holds: b
 
 
 def _bounded(flow: ControlFlow, test: Instruction, relation: str) -> Mapping[str, Range]:
-    """Ranges of the two values of a test where that relation holds between them."""
+    """Ranges of the two values of a test if that relation holds between them."""
     smaller, larger, apart = LESS[relation]
     one, other = test.operands[smaller], test.operands[larger]
     low, most = value_range(flow, one)

@@ -1,1 +1,1 @@
-"""Redundancies: what is computed or loaded on a way where it is there already, or not needed."""
+"""Redundancies: values computed or loaded on a path where they are already available, or not needed."""

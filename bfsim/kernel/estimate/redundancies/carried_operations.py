@@ -1,7 +1,7 @@
-"""Operations that the iteration before has done already: partial redundancy elimination [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12].
+"""Operations that the previous iteration has already done: partial redundancy elimination [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12].
 
-Of `mean += a[i] - (mean >> 4); out[i] = mean >> 4` an iteration shifts once: what it shifts first is what was stored before, which goes
-along in a register.
+In `mean += a[i] - (mean >> 4); out[i] = mean >> 4`, an iteration shifts once: the result of its first shift was stored
+in the iteration before, and is carried in a register.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SAME_OF_ZERO = "0"
 
 @dataclass(frozen=True, slots=True)
 class _Carried:
-    """An operation on what `phi` goes along; `following`: what the same gives of its next value."""
+    """An operation on the value that `phi` carries; `following`: the result of the same operation on its next value."""
 
     loop: Loop
     each: Instruction
@@ -30,7 +30,7 @@ class _Carried:
 
 
 def with_carried_operations(routine: Routine) -> Routine:
-    """Return `routine` with such operations in phis, the first ones before their loops."""
+    """Return `routine` with such operations as phis, and the first ones before their loops."""
     flow = ControlFlow(routine)
     found = next((carried for loop in flow.loops for carried in _carried(flow, loop)), None)
     return routine if found is None else with_carried_operations(_moved(flow, routine, found))
@@ -51,14 +51,14 @@ def _carried(flow: ControlFlow, loop: Loop) -> Iterator[_Carried]:
 
 
 def _is_fixed(flow: ControlFlow, loop: Loop, operand: str, start: str) -> bool:
-    """Whether the other operand is the same in all iterations, and there before the loop if the first value needs it."""
+    """Whether the other operand is the same in all iterations, and available before the loop if the first value needs it."""
     made = flow.instruction(operand)
     same = made is not None and is_same(flow, loop, made)
     return flow.is_invariant(operand, loop) or (same and start == SAME_OF_ZERO)
 
 
 def _same(flow: ControlFlow, loop: Loop, each: Instruction, value: str) -> str | None:
-    """What does the same to another value in each iteration, if anything does."""
+    """The instruction that does the same to another value in each iteration, if there is one."""
     for label in flow.inside(loop):
         for other in flow.blocks[label].instructions if flow.every_iteration(label, loop) else ():
             is_same = other.operands == (value, each.operands[1]) and other.bits == each.bits
@@ -68,7 +68,7 @@ def _same(flow: ControlFlow, loop: Loop, each: Instruction, value: str) -> str |
 
 
 def _is_cut(flow: ControlFlow, shift: Instruction) -> bool:
-    """Whether no bit is wanted of a shift to the right that depends on whether it keeps the sign: LLVM takes that which does not."""
+    """Whether no wanted bit of a right shift depends on whether it keeps the sign: LLVM takes the one that does not."""
     if shift.opcode != "lshr" or not is_number(shift.operands[1]):
         return False
     left = WORD - int(shift.operands[1])
@@ -101,7 +101,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: _Carried) -> Routine:
 
 
 def _like(each: Instruction, other: Instruction) -> Instruction:
-    """The same operation as `each` on what `other` has."""
+    """The same operation as `each` on the operand of `other`."""
     text = other.text.replace(other.opcode, each.opcode, 1)
     return replace(other, opcode=each.opcode, text=text)
 

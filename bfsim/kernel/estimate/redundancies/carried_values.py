@@ -1,8 +1,8 @@
-"""Loads and addresses that the iteration before has made already: partial redundancy elimination [tree-ssa-pre.cc of GCC 12].
+"""Loads and addresses that the previous iteration has already made: partial redundancy elimination [tree-ssa-pre.cc of GCC 12].
 
-`while parents[label] != label: label = parents[label]`: what is loaded to be tested is what the next iteration would load
-again. It goes along in a register, and the first one is loaded before the loop. Where the index only steps along, GCC leaves
-the loads as they are, for the vectoriser [inhibit_phi_insertion].
+`while parents[label] != label: label = parents[label]`: the value loaded for the test is the one that the next
+iteration would load again. It is carried in a register, and the first one is loaded before the loop. If the index only
+steps along, GCC leaves the loads as they are, for the vectoriser [inhibit_phi_insertion].
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from bfsim.kernel.ir.widths import BYTE
 
 @dataclass(frozen=True, slots=True)
 class CarriedValue:
-    """A load or an address in the header of a loop; `index` is what follows from iteration to iteration, `following` its next value."""
+    """A load or an address in the header of a loop; `index` is carried from iteration to iteration, `following` is its next value."""
 
     loop: Loop
     each: Instruction
@@ -27,7 +27,7 @@ class CarriedValue:
 
 
 def carry_over(routine: Routine) -> Routine:
-    """Return `routine` with such values in phis, loads before the addresses that they need."""
+    """Return `routine` with such values as phis, loads before the addresses that they need."""
     flow = ControlFlow(routine)
     for opcode in ("load", "getelementptr"):
         for loop in flow.loops:
@@ -54,12 +54,12 @@ def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> CarriedValue |
         return None
     following = _there(flow, each, arms_of(index)[loop.latch], loop.latch, loop.blocks)
     if following is None or (each.opcode != "load" and _first(flow, loop, each, index) is None):
-        return None  # what looks like an induction variable is made for none but a load [insert_into_preds_of_block]
+        return None  # of phis that look like induction variables, only those of loads are made [insert_into_preds_of_block]
     return CarriedValue(loop, each, index, following)
 
 
 def _first(flow: ControlFlow, loop: Loop, each: Instruction, index: Instruction) -> str | None:
-    """What `each` gives in the first iteration, if that has been computed before the loop."""
+    """The result of `each` in the first iteration, if it has been computed before the loop."""
     entering = flow.entering(loop)
     return _there(flow, each, arms_of(index)[entering], entering, frozenset(flow.blocks))
 
@@ -71,7 +71,7 @@ def _address(flow: ControlFlow, each: Instruction) -> Instruction | None:
 
 
 def _steps(flow: ControlFlow, index: Instruction, loop: Loop) -> bool:
-    """Whether an index is an induction variable: a sum of itself and of what does not change."""
+    """Whether an index is an induction variable: a sum of itself and something invariant."""
     following = flow.instruction(arms_of(index)[loop.latch])
     if following is None or following.opcode not in ("add", "sub"):
         return following is None
@@ -80,7 +80,7 @@ def _steps(flow: ControlFlow, index: Instruction, loop: Loop) -> bool:
 
 
 def _there(flow: ControlFlow, each: Instruction, index: str, end: str, within: frozenset[str]) -> str | None:
-    """What `each` would give for another index at the end of block `end`, if that has been computed by then."""
+    """The result of `each` for another index at the end of block `end`, if it has been computed by then."""
     address = _address(flow, each)
     assert address is not None
     for label in flow.order:
@@ -98,7 +98,7 @@ def _there(flow: ControlFlow, each: Instruction, index: str, end: str, within: f
 
 
 def _is_written(flow: ControlFlow, load: Instruction, label: str, end: str, within: frozenset[str]) -> bool:
-    """Whether what was loaded in block `label` may have been written over at the end of block `end`."""
+    """Whether what was loaded in block `label` may have been overwritten at the end of block `end`."""
     rows = [*flow.blocks[label].instructions]
     rows = rows[next(number for number, row in enumerate(rows) if row is load) :]
     reached, waiting = set[str](), [label] if label != end else []
@@ -113,12 +113,12 @@ def _is_written(flow: ControlFlow, load: Instruction, label: str, end: str, with
 
 
 def may_write(row: Instruction, load: Instruction) -> bool:
-    """Return whether an instruction may write what `load` loads: as in C, arrays of elements of one width may overlap, and bytes with anything."""
+    """Return whether an instruction may write what `load` loads: as in C, arrays of one width may overlap, and bytes overlap with anything."""
     return row.is_call or (row.opcode == "store" and (row.bits == load.bits or BYTE in (row.bits, load.bits)))
 
 
 def _moved(flow: ControlFlow, routine: Routine, carried: CarriedValue) -> Routine:
-    """Put a phi in the place of a load or an address, and make it before the loop unless it is there."""
+    """Replace a load or an address by a phi, and compute it before the loop unless it is available there."""
     loop, each = carried.loop, carried.each
     entering = flow.entering(loop)
     first = _first(flow, loop, each, carried.index)
@@ -167,6 +167,6 @@ def _until(block: BasicBlock, last: Instruction) -> Iterator[Instruction]:
 
 
 def _kind(each: Instruction) -> str:
-    """The type that is loaded, or that an address points to, as LLVM writes it."""
+    """The loaded type, or the type that an address points to, as LLVM writes it."""
     words = each.text.replace("inbounds ", "").replace("nuw ", "").replace("nusw ", "").split()
     return words[1].rstrip(",")

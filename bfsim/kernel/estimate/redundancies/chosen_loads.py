@@ -1,8 +1,8 @@
-"""Loads of an element that was chosen: where some ways to the choice have loaded theirs, the others load theirs, and the value is chosen, too.
+"""Loads of a chosen element: if some paths to the choice have loaded theirs, the others load theirs, and the value is chosen, too.
 
-Of `if a[c + 1] > a[c]: c += 1`, then `a[c]`: each way has the value, and the branch stays, for there are two to choose
-[do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. Where one side of a test has to load what the other one loads at once, it is loaded
-before the test [do_hoist_insertion].
+After `if a[c + 1] > a[c]: c += 1`, each path has the value of `a[c]`, and the branch stays, because there are two
+values to choose [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. If one side of a test has to load what the
+other one loads at once, it is loaded before the test [do_hoist_insertion].
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ CHOSEN = ".chosen"
 
 @dataclass(frozen=True, slots=True)
 class _Chosen:
-    """A load of an element whose index is chosen in its block. `values`: what it gives, by the blocks from which that is loaded already."""
+    """A load of an element whose index is chosen in its block. `values`: its value, by the blocks where that is already loaded."""
 
     label: str
     load: Instruction
@@ -29,11 +29,11 @@ class _Chosen:
     index: Instruction
     values: dict[str, str]
     beside: dict[str, str]
-    """Of each other block, what the other side of its test loads at once, if that is the same."""
+    """For each other block, the same load that the other side of its test makes at once, if it does."""
 
 
 def with_chosen_loads(routine: Routine) -> Routine:
-    """Return `routine` with such loads on the ways that need them."""
+    """Return `routine` with such loads on the paths that need them."""
     while True:
         flow = ControlFlow(routine)
         found = next(_Loads(flow).chosen(), None)
@@ -43,7 +43,7 @@ def with_chosen_loads(routine: Routine) -> Routine:
 
 
 class _Loads:
-    """The loads of one routine, and what their addresses are."""
+    """The loads of one routine, and their addresses."""
 
     def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
@@ -51,7 +51,7 @@ class _Loads:
         self.headers = {loop.header for loop in flow.loops}
 
     def chosen(self) -> Iterator[_Chosen]:
-        """Yield those whose element is chosen, and loaded already on some ways."""
+        """Yield those whose element is chosen, and already loaded on some paths."""
         for label in self.flow.order:
             before = self.flow.predecessors[label]
             if (
@@ -114,9 +114,9 @@ class _Loads:
         return is_load and self._is_same(self.evolution.affine(each.operands[0]), at)
 
     def _loaded(self, label: str, at: Affine, kind: str) -> str | None:
-        """What was loaded from an address on every way to the end of a block, if nothing in memory changed since."""
+        """The value loaded from an address on every path to the end of a block, if nothing in memory has changed since."""
         seen = set[str]()
-        while label not in seen:  # nobody comes to a ring of blocks
+        while label not in seen:  # a ring of blocks is never entered
             seen.add(label)
             for each in reversed(self.flow.blocks[label].instructions):
                 if _changes(each):
@@ -130,7 +130,7 @@ class _Loads:
         return None
 
     def _is_same(self, one: Affine, other: Affine) -> bool:
-        """Whether two sums are one, also by variables of a loop that are always as far apart."""
+        """Whether two sums are equal, also by variables of a loop that are always equally far apart."""
         difference = one.plus(other, -1)
         if not difference.terms:
             return difference.constant == 0
@@ -141,7 +141,7 @@ class _Loads:
         return factor == -opposite and apart is not None and factor * apart + difference.constant == 0
 
     def _apart(self, first: str, second: str) -> int | None:
-        """By how much a variable of a loop is always more than another one."""
+        """By how much a variable of a loop always exceeds another one."""
         phis = [self.flow.instruction(each) for each in (first, second)]
         homes = {self.flow.defined[each][0] for each in (first, second) if each in self.flow.defined}
         if len(homes) != 1 or any(each is None or each.opcode != "phi" for each in phis):
@@ -161,7 +161,7 @@ def _changes(each: Instruction) -> bool:
 
 
 def _moved(flow: ControlFlow, found: _Chosen) -> Routine:
-    """Load on the ways that need it, and choose the value."""
+    """Load on the paths that need it, and choose the value."""
     blocks = {each.label: each for each in flow.routine.blocks}
     arms, names = list[tuple[str, str]](), dict[str, str]()
     for number, (source, value) in enumerate(arms_of(found.index).items()):

@@ -1,7 +1,8 @@
-"""Code hoisting: what every way from a test computes is computed before it, if one of its sides does [do_hoist_insertion in tree-ssa-pre.cc of GCC 12].
+"""Code hoisting: what every path from a test computes is computed before it, if one side does so at once [do_hoist_insertion in tree-ssa-pre.cc of GCC 12].
 
-Of `if c & 1: c = (c >> 1) ^ 0xA001`, `else: c = c >> 1` the shift comes before the test; of a step `i + 1` at the end of an iteration so does the
-step, if something on one side wants it before. What the block of the test itself computes an operand of stays where it is.
+In `if c & 1: c = (c >> 1) ^ 0xA001`, `else: c = c >> 1` the shift comes before the test; so does a step `i + 1` at the
+end of an iteration, if one side uses it earlier. An operation with an operand from the block of the test itself stays
+where it is.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ HOISTED = ("add", "sub", "mul", "shl", "lshr", "ashr", "and", "or", "xor")
 
 
 def with_hoisted_code(routine: Routine) -> Routine:
-    """Return `routine` with such operations before the tests; what is moved before one test may be moved before the one before."""
+    """Return `routine` with such operations before the tests; what moves before one test may move on before the previous one."""
     for label in reversed(ControlFlow(routine).order):
         while (hoisted := _hoisted(ControlFlow(routine), label)) is not None:
             routine = hoisted
@@ -34,7 +35,7 @@ class _Operation:
 
 
 def _hoisted(flow: ControlFlow, label: str) -> Routine | None:
-    """Return the routine with one operation moved before the test of a block, None if there is none to move."""
+    """Return the routine with one operation moved before the test of a block; None if there is none to move."""
     ways = set(flow.blocks[label].successors)
     if len(ways) < 2 or any(label not in flow.dominators[way] or label == way for way in ways):
         return None
@@ -45,7 +46,7 @@ def _hoisted(flow: ControlFlow, label: str) -> Routine | None:
 
 
 def _operations(flow: ControlFlow) -> Iterator[_Operation]:
-    """Operations of the routine, those that are the same as one."""
+    """Operations of the routine; equal ones are one."""
     numbers, found = ValueNumbers(), dict[str, list[tuple[str, Instruction]]]()
     for label in flow.order:
         for each in flow.blocks[label].instructions:
@@ -58,7 +59,7 @@ def _operations(flow: ControlFlow) -> Iterator[_Operation]:
 
 
 def _is_hoistable(flow: ControlFlow, label: str, operation: _Operation) -> bool:
-    """Whether every way from a block does an operation, one side of its test at once, and its operands are there before the block."""
+    """Whether every path from a block does an operation, one side of its test at once, and its operands are available before the block."""
     if any(home in flow.dominators[label] for home in operation.homes):
         return False
     for operand in operation.first.operands:
@@ -75,7 +76,7 @@ def _is_hoistable(flow: ControlFlow, label: str, operation: _Operation) -> bool:
 
 
 def _is_done_on(flow: ControlFlow, label: str, way: str, operation: _Operation) -> bool:
-    """Whether one side of a test does an operation at once, also where it leads to a block to which another way brings it done.
+    """Whether one side of a test does an operation at once, also if it leads to a block to which another path brings the result.
 
     Then it is inserted on that side before [do_pre_regular_insertion].
     """
@@ -85,7 +86,7 @@ def _is_done_on(flow: ControlFlow, label: str, way: str, operation: _Operation) 
 
 
 def _anticipating(flow: ControlFlow, operation: _Operation) -> set[str]:
-    """Blocks from whose start every way to the end does an operation on the same operands."""
+    """Blocks from whose start every path to the end does an operation on the same operands."""
     changing = {flow.defined[each][0] for each in operation.first.operands if each in flow.defined}
     found = {each for each in flow.blocks if flow.blocks[each].successors or each in operation.homes}
     while gone := {
@@ -98,14 +99,14 @@ def _anticipating(flow: ControlFlow, operation: _Operation) -> set[str]:
 
 
 def _text(flow: ControlFlow, operation: _Operation) -> str:
-    """Return the text of an operation, which says of its result what is said everywhere."""
+    """Return the text of an operation, with only those flags about its result that all its places have."""
     said = [{*flow.defined[name][1].text.split()} & FLAGS for name in operation.names]
     kept = frozenset.intersection(*map(frozenset, said))
     return " ".join(word for word in operation.first.text.split() if word not in FLAGS - kept)
 
 
 def _moved(flow: ControlFlow, label: str, operation: _Operation) -> Routine:
-    """Do an operation at the end of a block, and nowhere that comes behind it."""
+    """Do an operation at the end of a block, and nowhere after it."""
     name = f"{operation.first.result}{BEFORE_TESTS}"
     while name in flow.defined:  # the same is done before other tests, too
         name += BEFORE_TESTS

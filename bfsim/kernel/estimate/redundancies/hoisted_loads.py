@@ -1,6 +1,7 @@
-"""Code hoisting of loads: what every way from a test loads, and one of its sides at once, is loaded before it [do_hoist_insertion in tree-ssa-pre.cc of GCC 12].
+"""Code hoisting of loads: what every path from a test loads, and one side at once, is loaded before it [do_hoist_insertion in tree-ssa-pre.cc of GCC 12].
 
-Of `r = a[x + 1] if x < n - 1 else a[x]`, and then `2 * a[x] + r`, the element in the middle is loaded once, and nothing is left on its side.
+For `r = a[x + 1] if x < n - 1 else a[x]`, and then `2 * a[x] + r`, the middle element is loaded once, and nothing is
+left on its side.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ ADDRESSES = ("getelementptr", "add", "sub", "shl", "mul", "sext", "zext")
 
 
 def with_hoisted_loads(routine: Routine) -> Routine:
-    """Return `routine` with such loads before the tests, the last tests first: what is moved before one may be moved on."""
+    """Return `routine` with such loads before the tests, the last tests first: what moves before one may move on."""
     for label in reversed(ControlFlow(routine).order):
         while (found := next(_Loads(ControlFlow(routine), label).found(), None)) is not None:
             routine = without_unused(_moved(routine, label, found), ("getelementptr",))
@@ -38,14 +39,14 @@ def with_hoisted_loads(routine: Routine) -> Routine:
 
 @dataclass(frozen=True, slots=True)
 class _Hoisted:
-    """What a load takes the place of, and what it is made of, the load last."""
+    """What a load replaces, and the instructions that it takes, the load last."""
 
     same: frozenset[str]
     rows: tuple[Instruction, ...]
 
 
 class _Loads:
-    """Loads behind the test at the end of a block."""
+    """Loads after the test at the end of a block."""
 
     def __init__(self, flow: ControlFlow, label: str) -> None:
         self.flow, self.label = flow, label
@@ -69,9 +70,9 @@ class _Loads:
                     yield hoisted
 
     def _taken_first(self) -> str:
-        """The side of a test that begins a loop which the first iteration takes, if that is known and it comes first in the source.
+        """The side that the first iteration takes of a test that begins a loop, if that is known and it comes first in the source.
 
-        What it loads is numbered as the first element, and stays [do_rpo_vn in tree-ssa-sccvn.cc].
+        Its load is numbered as the first element, and stays [do_rpo_vn in tree-ssa-sccvn.cc].
         """
         block = self.flow.blocks[self.label]
         test = self.flow.instruction(block.terminator.operands[0])
@@ -98,7 +99,7 @@ class _Loads:
         return self.flow.blocks[label].instructions[0].line.line
 
     def _hoisted(self, load: Instruction, ways: list[str], first: str) -> _Hoisted | None:
-        """What a load before the test takes the place of, if all ways make it; what the way `first` loads stays."""
+        """What a load before the test replaces, if all paths make it; what the side `first` loads stays."""
         rows = self._made_of(load)
         if rows is None:
             return None
@@ -109,7 +110,7 @@ class _Loads:
         return _Hoisted(frozenset(same), tuple(rows)) if len(same) > (not first) else None
 
     def _made_of(self, each: Instruction) -> list[Instruction] | None:
-        """A load or an address, behind all that it is made of and that is not there before the test."""
+        """A load or an address, after all its operands that are not available before the test."""
         rows = list[Instruction]()
         for operand in each.operands:
             home, made = self.flow.defined.get(operand, ("", None))
@@ -122,7 +123,7 @@ class _Loads:
         return [*rows, each]
 
     def _loads(self, label: str, load: Instruction, at: Affine, same: set[str], seen: set[str]) -> bool:
-        """Whether all ways from a block make a load, before anything in memory changes; `same` gets what is made behind the test alone."""
+        """Whether all paths from a block make a load before anything in memory changes; `same` gets those made only after the test."""
         if label in self.flow.dominators[self.label]:
             return False
         if label in seen:
@@ -158,7 +159,7 @@ def _moved(routine: Routine, label: str, found: _Hoisted) -> Routine:
 
 
 def _new(name: str, defined: set[str | None]) -> str:
-    """A name that nothing has yet: the same may be loaded before other tests, too."""
+    """A new name: the same may be loaded before other tests, too."""
     while name in defined:
         name += BEFORE_TESTS
     return name

@@ -1,8 +1,9 @@
-"""Partial redundancies: an operation that changes nothing on one way to it is done on the other ways alone.
+"""Partial redundancies: an operation that changes nothing on one path to it is done only on the other paths.
 
-Of `s + (v if v > t else 0)` one way has s already, so GCC makes `if v > t: s = s + v` of it, with a branch, where LLVM chooses between v
-and 0 and adds [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. So is what one way knows: `x - last`, where last is x there. What phiopt has made of a choice before is none any more:
-minimum, maximum, absolute value, and a flag, be it shifted.
+In `s + (v if v > t else 0)`, one path already has s, so GCC makes `if v > t: s = s + v` of it, with a branch, where
+LLVM chooses between v and 0 and adds [do_pre_regular_insertion in tree-ssa-pre.cc of GCC 12]. The same goes for a
+result that one path knows: `x - last`, if last is x there. A choice that phiopt has already replaced does not count:
+minimum, maximum, absolute value, and a flag, even if shifted.
 """
 
 from __future__ import annotations
@@ -31,18 +32,18 @@ from bfsim.kernel.profile import GCC_O2
 NEUTRAL = {
     "add": "0", "sub": "0", "or": "0", "xor": "0", "shl": "0", "lshr": "0", "ashr": "0", "mul": "1", "and": "-1",
 }  # fmt: skip
-"""On the right of these nothing is changed."""
+"""As right operands, these change nothing."""
 ABSORBING = {"mul": "0", "and": "0"}
-"""With these nothing else counts."""
+"""With these operands the other one does not matter."""
 SAME = {"sub": "0", "xor": "0", "or": "", "and": ""}
-"""What these give of a value and itself; nothing: that value."""
+"""The result for a value and itself; if empty, that value."""
 SHIFTS = ("shl", "lshr", "ashr")
 SAME_IN_ALL_WIDTHS = 1 << 7
 """Numbers from 0 to before it."""
 
 
 def without_partial_redundancies(routine: Routine) -> Routine:
-    """Return `routine` with such operations on the ways that need them; one makes others such."""
+    """Return `routine` with such operations on the paths that need them; one may make others redundant."""
     while True:
         flow = ControlFlow(routine)
         made = {each.phi.result: each.kind for each in IfConversion(flow, GCC_O2).by_label.values()}
@@ -55,7 +56,7 @@ def without_partial_redundancies(routine: Routine) -> Routine:
 
 @dataclass(frozen=True, slots=True)
 class _Redundancy:
-    """An operation in the block `label`. `values`: what it gives, by the blocks from which that is known; the others have to do `rows`."""
+    """An operation in the block `label`. `values`: its result, by the blocks from which that is known; the others have to do `rows`."""
 
     label: str
     operation: Instruction
@@ -64,9 +65,9 @@ class _Redundancy:
 
 
 def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> _Redundancy | None:
-    """Return the first redundancy in a block, which is no loop's header, and left for by no loop with other ends (`Rule.ADDED_FLAGS`).
+    """Return the first redundancy in a block that is no loop's header, and no target of a loop with other exits (`Rule.ADDED_FLAGS`).
 
-    `converted`: choices of which phiopt has made an operation, or a flag.
+    `converted`: choices that phiopt has turned into an operation, or a flag.
     """
     label, before = block.label, flow.predecessors[block.label]
     choices = {each.result for each in block.instructions if each.opcode == "phi"} - converted
@@ -76,7 +77,7 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
         return None
     if any(flow.blocks[each].terminator.opcode != "br" for each in before):
         return None
-    # outside of loops, what one has loaded goes along with it to there (`carried_values`)
+    # outside loops, a value that a loop has loaded is carried there (`carried_values`)
     in_loop = flow.innermost(label) is not None
     for each in block.instructions:
         is_operation = each.opcode in NEUTRAL or (in_loop and _is_address(each))
@@ -90,7 +91,7 @@ def _found(flow: ControlFlow, block: BasicBlock, converted: set[str | None]) -> 
 def _narrowing(
     flow: ControlFlow, block: BasicBlock, each: Instruction, choices: set[str | None]
 ) -> _Redundancy | None:
-    """Return on which ways a choice that is stored as narrow, and wanted as wide as well, is a number, which is narrow at once."""
+    """Return on which paths a choice that is stored as narrow, and also used as wide, is a number, which needs no narrowing."""
     wide = each.operands[0] if each.opcode == "trunc" else ""
     users = flow.users.get(each.result or "", ())
     if wide not in choices or len(flow.users[wide]) < 2 or any(user.opcode != "store" for user in users):
@@ -109,7 +110,7 @@ def _narrowing(
 
 
 def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) -> _Redundancy | None:
-    """Return on which ways an operation is known and on which it has to be done; None unless there are both."""
+    """Return on which paths an operation is known and on which it has to be done; None unless there are both."""
     values, rows = dict[str, str](), dict[str, list[Instruction]]()
     for source in flow.predecessors[block.label]:
         made = _on_way(flow, block, operation, source)
@@ -119,14 +120,14 @@ def _redundancy(flow: ControlFlow, block: BasicBlock, operation: Instruction) ->
         if value is None:
             rows[source] = made
         elif any(value == row.result for row in made):
-            return None  # it would have to be converted on this way
+            return None  # it would have to be converted on this path
         else:
             values[source] = value
     return _Redundancy(block.label, operation, values, rows) if values and rows else None
 
 
 def _is_address(each: Instruction) -> bool:
-    """Whether it is the address of an element, which for element 0 is the array itself."""
+    """Whether it is the address of an element; for element 0 that is the array itself."""
     return each.opcode == "getelementptr" and len(each.operands) == 2
 
 
@@ -136,7 +137,7 @@ def _loops(flow: ControlFlow, label: str) -> set[str]:
 
 
 def _is_end(flow: ControlFlow, label: str, behind: str) -> bool:
-    """Whether a block is the one end of a loop in those around the block behind it."""
+    """Whether a block is the only exit of a loop among those around the block after it."""
     loop = flow.innermost(label)
     return (
         loop is not None
@@ -154,7 +155,7 @@ def _root(flow: ControlFlow, value: str) -> str:
 
 
 def _on_way(flow: ControlFlow, block: BasicBlock, each: Instruction, source: str) -> list[Instruction] | None:
-    """Return what an operation is on the way from `source`, behind the conversions that it needs there; None if it needs more."""
+    """Return an operation as it is on the edge from `source`, after the conversions that it needs there; None if it needs more."""
     rows, text = list[Instruction](), each.text
     operands = []
     for operand in each.operands:
@@ -170,7 +171,7 @@ def _on_way(flow: ControlFlow, block: BasicBlock, each: Instruction, source: str
 def _operand_on_way(
     flow: ControlFlow, block: BasicBlock, operand: str, source: str, rows: list[Instruction]
 ) -> str | None:
-    """Return an operand on a way, None if it is more than a choice or a conversion of one."""
+    """Return an operand on an edge; None if it is more than a choice or a conversion of one."""
     label, made = flow.defined.get(operand, ("", None))
     if label != block.label or made is None:
         return operand
@@ -189,7 +190,7 @@ def _operand_on_way(
 
 
 def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
-    """Return what an operation gives without being done, None if it has to be."""
+    """Return the result of an operation if it is known without doing it, else None."""
     left, right = operands
     if opcode == "getelementptr":
         return left if right == "0" else None
@@ -201,7 +202,7 @@ def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
     if absorbed in (left, right):
         return absorbed
     if is_number(left) and is_number(right):
-        # of an index, an offset; another number takes a register there: to compute it behind, as it was, is nearer to GCC's code
+        # for an index, an offset; another number takes a register there: computing it after the choice, as before, is nearer to GCC's code
         return str(int(left) + int(right)) if opcode == "add" else None
     sides = [(left, right), (right, left)] if opcode in COMMUTATIVE else [(left, right)]
     for kept, other in sides:
@@ -211,19 +212,19 @@ def _value(opcode: str, operands: tuple[str, ...]) -> str | None:
 
 
 def _with(text: str, name: str, value: str) -> str:
-    """Return the text of an instruction with another operand in the place of one."""
+    """Return the text of an instruction with one operand replaced."""
     return re.sub(rf"{re.escape(name)}(?![\w.$-])", value, text) if name.startswith("%") else text
 
 
 def _type_of(operation: Instruction) -> str:
-    """Return the type of what an operation gives."""
+    """Return the type of an operation's result."""
     if _is_address(operation):
         return "ptr"
     return operation.text.split()[-1] if operation.opcode in CONVERSIONS else f"i{operation.bits}"
 
 
 def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
-    """Do an operation where it is needed, and choose between what there is behind it."""
+    """Do an operation where it is needed, and choose between the results after it."""
     blocks = {each.label: each for each in routine.blocks}
     label, values = found.label, dict(found.values)
     for source, rows in found.rows.items():
@@ -254,7 +255,7 @@ def _moved(routine: Routine, flow: ControlFlow, found: _Redundancy) -> Routine:
 
 
 def _without_empty(blocks: dict[str, BasicBlock], flow: ControlFlow, empty: str, label: str) -> None:
-    """Take out a block that only goes on to `label`, if the one before it does not lead there, too."""
+    """Remove a block that only goes on to `label`, unless the one before it also leads there."""
     before = flow.predecessors[empty]
     is_empty = len(blocks[empty].instructions) == 1 and blocks[empty].successors == (label,)
     if not is_empty or blocks[empty].enters or len(before) != 1:

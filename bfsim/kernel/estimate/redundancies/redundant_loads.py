@@ -1,8 +1,7 @@
-"""Loads of which the value is there already on every way: partial redundancy elimination [tree-ssa-pre.cc of GCC 12].
+"""Loads whose value is already available on every path: partial redundancy elimination [tree-ssa-pre.cc of GCC 12].
 
-`if a[j] < a[least]: least = j` in a loop: `a[least]` is `a[j]` where `least` was set just now, and what it was
-otherwise. The value goes along in a register of its own beside `least`, so that there are two to choose and the
-branch stays.
+`if a[j] < a[least]: least = j` in a loop: `a[least]` is `a[j]` if `least` was just set, and unchanged otherwise. The
+value is carried in a separate register beside `least`, so there are two values to choose and the branch stays.
 """
 
 from __future__ import annotations
@@ -17,8 +16,8 @@ from bfsim.kernel.ir.preheaders import with_preheader
 from bfsim.kernel.ir.text import Instruction, Routine, arms_of, phi_of, renamed
 from bfsim.kernel.ir.unused import without_dead_code
 
-AGAIN = ".again"  # in the name of an address that is only computed to go along
-ELSEWHERE = ".elsewhere"  # in the names of what is loaded on the ways past a loop
+AGAIN = ".again"  # in the name of an address that is only computed to be carried
+ELSEWHERE = ".elsewhere"  # in the names of values loaded on the paths past a loop
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +30,7 @@ class RedundantLoad:
     index: Instruction
     merged: Instruction
     values: dict[str, str]
-    """Of each arm of `merged`, by the label it comes from: the value that the load would give."""
+    """For each arm of `merged`, by the label it comes from: the value that the load would give."""
 
 
 def without_redundant_loads(routine: Routine) -> Routine:
@@ -75,7 +74,7 @@ def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> RedundantLoad 
 
 
 def _loaded(flow: ControlFlow, loop: Loop, load: Instruction, index: str, label: str) -> str | None:
-    """The value at the same array's `index`, if it has been loaded on the way to the end of block `label`."""
+    """The value at the same array's `index`, if it has been loaded on the path to the end of block `label`."""
     address = flow.defined[load.operands[0]][1]
     for before in flow.inside(loop):
         for each in flow.blocks[before].instructions if before in flow.dominators[label] else ():
@@ -88,12 +87,12 @@ def _loaded(flow: ControlFlow, loop: Loop, load: Instruction, index: str, label:
 
 
 def _kind(load: Instruction) -> str:
-    """The type that is loaded, as LLVM writes it."""
+    """The loaded type, as LLVM writes it."""
     return load.text.split()[1].rstrip(",")
 
 
 def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
-    """Load before the loop; in it, a phi beside that of the index, and one beside each that merges it."""
+    """Load before the loop; in the loop, add a phi beside that of the index, and one beside each phi that merges it."""
     load, loop = carried.load, carried.loop
     first, following, address = (f"{load.result}{name}" for name in (".first", FOLLOWING, ".address"))
     entering = flow.entering(loop)
@@ -129,7 +128,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routi
 
 
 def _without_loads_behind(routine: Routine, carried: RedundantLoad) -> Routine:
-    """Take the element that was chosen last as it comes out of the loop; who comes from elsewhere loads it. What only chose its index goes."""
+    """Take the element that was chosen last as it comes out of the loop; other paths load it. Phis only of its index are removed."""
     flow = ControlFlow(routine)
     for address in _addresses_behind(flow, carried):
         home, load = _load_at(flow, address)
@@ -142,7 +141,7 @@ def _without_loads_behind(routine: Routine, carried: RedundantLoad) -> Routine:
 
 
 def _values_out(carried: RedundantLoad, index: Instruction) -> dict[str, str] | None:
-    """What goes along beside an index that is merged behind the loop, by the blocks in it; None where something else comes out of it."""
+    """The values carried beside an index that is merged after the loop, by the loop's blocks; None if something else comes out of it."""
     along = {
         carried.merged.result: f"{carried.load.result}{FOLLOWING}",
         carried.index.result: carried.load.result or "",
@@ -158,7 +157,7 @@ def _values_out(carried: RedundantLoad, index: Instruction) -> dict[str, str] | 
 def _with_values_out(
     flow: ControlFlow, address: Instruction, load: Instruction, values: Mapping[str, str]
 ) -> Routine:
-    """Return the routine without a load behind a loop. `values`: by the blocks from which they come out of it."""
+    """Return the routine without a load after a loop. `values`: by the blocks from which they leave the loop."""
     blocks = {each.label: each for each in flow.routine.blocks}
     index, home = address.operands[-1], flow.defined[load.result or ""][0]
     arms = [(value, label) for label, value in values.items()]
@@ -180,7 +179,7 @@ def _with_values_out(
 
 
 def _load_at(flow: ControlFlow, address: Instruction) -> tuple[str, Instruction | None]:
-    """The load at an address in its own block that nothing is stored before, and that block."""
+    """The load at an address in its own block before any store, and that block."""
     home = flow.defined[address.result or ""][0]
     for each in flow.blocks[home].instructions:
         if each.opcode == "store" or each.is_call:
@@ -191,7 +190,7 @@ def _load_at(flow: ControlFlow, address: Instruction) -> tuple[str, Instruction 
 
 
 def _with_addresses(flow: ControlFlow, routine: Routine, carried: RedundantLoad) -> Routine:
-    """Where the element is wanted behind the loop, its address goes along: computed again on the ways that keep it."""
+    """If the element is used after the loop, its address is carried: computed again on the paths that keep it."""
     kept = {label for label, value in carried.values.items() if value == carried.load.result}
     alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
     if not alone or not _is_wanted_behind(flow, carried):
@@ -208,7 +207,7 @@ def _with_addresses(flow: ControlFlow, routine: Routine, carried: RedundantLoad)
 
 
 def _addresses_behind(flow: ControlFlow, carried: RedundantLoad) -> list[Instruction]:
-    """Addresses of the element that was chosen last, computed behind the loop."""
+    """Addresses of the element that was chosen last, computed after the loop."""
     array = carried.address.operands[:-1]
     chosen = [
         user.result
@@ -224,10 +223,10 @@ def _is_wanted_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
 
 
 def _is_loaded_behind(flow: ControlFlow, carried: RedundantLoad) -> bool:
-    """Whether the element that was chosen last is loaded behind the loop on every way, too.
+    """Whether every path after the loop also loads the element that was chosen last.
 
-    Else the load is not sure to be made where the index is chosen, which -O2 asks for [compute_antic in tree-ssa-pre.cc; partial
-    anticipation is for -O3].
+    Otherwise the load is not sure to follow the choice of the index, as -O2 requires [compute_antic in tree-ssa-pre.cc;
+    partial anticipation is for -O3].
     """
     loads = {
         flow.defined[load.result or ""][0]

@@ -1,7 +1,7 @@
-"""A load from where the way to it has loaded, with nothing written since, brings what that one did [pass_fre in tree-ssa-sccvn.cc of GCC 12].
+"""Repeated loads: a load from the place of an earlier one, with nothing written since, gives the same value [pass_fre in tree-ssa-sccvn.cc of GCC 12].
 
-GCC finds that first of all, so that `if a[i] > most: most = a[i]` chooses between two values that are there. LLVM comes to it when it
-has made one load of those of both ways.
+GCC finds these first of all, so that `if a[i] > most: most = a[i]` chooses between two available values. LLVM gets
+there only after it has joined the loads of both sides.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Loaded = dict[tuple[str, str], str]
 
 
 def without_repeated_loads(routine: Routine) -> Routine:
-    """Return `routine` with the first of such loads in place of each."""
+    """Return `routine` with the first of such loads in place of the others."""
     flow = ControlFlow(routine)
     same = _repeated(flow)
     if not same:
@@ -31,7 +31,7 @@ def without_repeated_loads(routine: Routine) -> Routine:
 
 
 def _repeated(flow: ControlFlow) -> dict[str, str]:
-    """Return the first load for each other one that all ways to it bring; of a way back, none."""
+    """Return for each load the first one that all paths to it bring; a back edge brings none."""
     numbers = ValueNumbers()
     same: dict[str, str] = {}
     known: dict[str, Loaded] = {}

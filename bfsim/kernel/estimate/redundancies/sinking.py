@@ -1,7 +1,8 @@
 """Sinking: values that only some paths need are computed on those paths [tree-ssa-sink.cc of GCC 12].
 
-What one side of a test does not use waits for the other side, if that is the rarer one. Ways on which one value comes to a choice are
-joined before it, so that the value can be computed there [make_forwarders_with_degenerate_phis in tree-ssa-dce.cc].
+A value that one side of a test does not use waits for the other side, if that is the rarer one. Edges on which the same
+value comes to a choice are joined before it, so that the value can be computed there
+[make_forwarders_with_degenerate_phis in tree-ssa-dce.cc].
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ CHOOSING = ("@llvm.smin", "@llvm.smax", "@llvm.umin", "@llvm.umax", "@llvm.abs")
 RARER, RARER_LOAD = (
     0.75,
     0.82,
-)  # how often the new place runs, at most [sink-frequency-threshold; 7 % more for loads]
+)  # how often the new place may run at most [sink-frequency-threshold; 7 % more for loads]
 
 
 def sink(routine: Routine) -> Routine:
@@ -44,7 +45,7 @@ def sink(routine: Routine) -> Routine:
 
 
 def _joined(flow: ControlFlow) -> list[tuple[list[str], str]]:
-    """Return the blocks from which the same values come to the choices of another one, which nothing but these choices needs."""
+    """Return the blocks from which the same values come to the choices of another block and have no other use."""
     headers = {loop.header for loop in flow.loops}
     found = []
     for way in flow.order:
@@ -59,7 +60,7 @@ def _joined(flow: ControlFlow) -> list[tuple[list[str], str]]:
 
 
 def _is_for(flow: ControlFlow, value: str, way: str) -> bool:
-    """Whether a value is computed, and nothing but a choice at the head of block `way` needs it."""
+    """Whether a value is computed, and only a choice at the head of block `way` uses it."""
     each = flow.instruction(value)
     users = flow.users.get(value, [])
     return (
@@ -70,7 +71,7 @@ def _is_for(flow: ControlFlow, value: str, way: str) -> bool:
 
 
 def _places(flow: ControlFlow) -> list[tuple[str, str]]:
-    """Return ways to a choice of a value that nothing else needs, from tests and to where others come as well: they get a block [split_edges_for_insertion]."""
+    """Return edges from tests to a choice of a value without other uses, where other edges join, too: they get a block [split_edges_for_insertion]."""
     return [
         (label, way)
         for label in flow.order
@@ -82,7 +83,7 @@ def _places(flow: ControlFlow) -> list[tuple[str, str]]:
 
 
 def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
-    """Whether a choice in block `way` alone needs a value that is computed in a block before it, and on this way alone."""
+    """Whether only a choice in block `way` uses a value that is computed in an earlier block, and only on this edge."""
     for choice in flow.blocks[way].instructions:
         value = arms_of(choice).get(label, "") if choice.opcode == "phi" else ""
         home, each = flow.defined.get(value, ("", choice))
@@ -93,18 +94,18 @@ def _is_chosen(flow: ControlFlow, label: str, way: str) -> bool:
 
 
 def _is_tested(flow: ControlFlow, each: Instruction) -> bool:
-    """Whether a conversion is of what is wanted for something else, too: in C, that is extended already."""
+    """Whether a conversion is of a value with another use: in C, that is already extended."""
     return each.opcode in CONVERSIONS and flow.users.get(each.operands[0]) != [each]
 
 
 def _is_movable(each: Instruction) -> bool:
-    """Whether an instruction may be done elsewhere."""
+    """Whether an instruction may move elsewhere."""
     return each.opcode in MOVABLE or (each.opcode == "call" and any(name in each.text for name in CHOOSING))
 
 
 class _Sinking:
     def __init__(self, routine: Routine, joined: dict[str, str]) -> None:
-        """`joined`: the last block before each that was put in; to GCC, what was put in runs as often as it is come to from there."""
+        """`joined`: the last block before each inserted one; to GCC, an inserted block runs as often as it is entered from there."""
         self.flow = ControlFlow(routine)
         likelihood = Likelihood(self.flow)
         counts = {
@@ -120,7 +121,7 @@ class _Sinking:
                     self.arrived[place].insert(0, each)
 
     def block(self, block: BasicBlock) -> BasicBlock:
-        """A block without what left it, and with what came."""
+        """A block without the instructions that left it, and with those that came."""
         rows = [
             each
             for each in block.instructions
@@ -130,7 +131,7 @@ class _Sinking:
         return replace(block, instructions=(*phis, *self.arrived[block.label], *rows[len(phis) :]))
 
     def _place(self, each: Instruction, label: str) -> str:
-        """The block that all uses pass, out of as many loops as possible, or `label` if that is not worth it."""
+        """The block that all paths to uses pass, outside as many loops as possible, or `label` if that is not worth it."""
         used = self._used(each)
         common = (
             frozenset.intersection(*(self.flow.dominators[place] for place in used)) if used else frozenset()
@@ -174,9 +175,10 @@ class _Sinking:
         return len(self.flow.loops_of(label))
 
     def _is_written(self, load: Instruction, label: str, place: str) -> bool:
-        """Whether there is a store or a call on a way from a load to the block `place`, or on another way behind the load alone, before any other.
+        """Whether there is a store or a call on a path from a load to the block `place`, or first on another path that only the load leads to.
 
-        GCC does not ask which way a store is on ["There is no easy way to disregard defs not on the path" in tree-ssa-sink.cc].
+        GCC does not ask which path a store is on ["There is no easy way to disregard defs not on the path" in
+        tree-ssa-sink.cc].
         """
         if any(self._parting(each, place) == label for each in self._first_written(load, label)):
             return True
@@ -188,12 +190,12 @@ class _Sinking:
         return any(row.opcode == "store" or row.is_call for row in rows)
 
     def _parting(self, one: str, other: str) -> str:
-        """The last block that the ways to two blocks share."""
+        """The last block that the paths to two blocks share."""
         shared = self.flow.dominators[one] & self.flow.dominators[other]
         return max(shared, key=lambda each: len(self.flow.dominators[each]))
 
     def _first_written(self, load: Instruction, label: str) -> Iterator[str]:
-        """Blocks behind that of a load, which lead from it alone, with the first store or call on their way."""
+        """Blocks after a load's block that only it leads to, with the first store or call on their path."""
         seen, waiting = {label}, list(self.flow.blocks[label].successors)
         while waiting:
             if (way := waiting.pop()) in seen or label not in self.flow.dominators[way]:

@@ -1,1 +1,1 @@
-"""Registers: which bank each value is in, what does not fit, and what that costs."""
+"""Registers: the bank of each value, the values that do not fit, and what that costs."""

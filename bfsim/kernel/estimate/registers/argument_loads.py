@@ -1,4 +1,4 @@
-"""An argument on the stack that is used once, outside of loops, is loaded where it is used [combine_and_move_insns in ira.cc of GCC 12].
+"""Arguments on the stack that are used once, outside loops: they are loaded where they are used [combine_and_move_insns in ira.cc of GCC 12].
 
 So a function that returns early has not loaded it, and no register holds it until then.
 """

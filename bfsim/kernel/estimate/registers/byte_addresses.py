@@ -1,6 +1,6 @@
-"""Addresses of bytes that are added up in data registers, where the array comes in one and nothing else uses it [find_costs_and_classes in ira-costs.cc of GCC 12].
+"""Addresses of bytes that are added in data registers, if the array comes in one and has no other use [find_costs_and_classes in ira-costs.cc of GCC 12].
 
-To move the array to a pointer register costs a move more: with each element, either the sum is moved or the index.
+Moving the array to a pointer register would cost one move more: for each element, either the sum or the index is moved.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ DATA, POINTER = RegisterBank.DATA, RegisterBank.POINTER
 
 
 def add_in_data_registers(context: Context, code: MachineCode) -> None:
-    """Add up such addresses in data registers, outside of loops."""
+    """Add such addresses in data registers, outside loops."""
     chosen = context.operands_of("phi")
     for array in context.parameters()[: operations.REGISTER_ARGUMENTS]:
         users = [
@@ -36,7 +36,7 @@ def _is_sum(each: MachineInstruction) -> bool:
 
 
 def _added(each: MachineInstruction, array: str) -> list[MachineInstruction]:
-    """An operation, or the sum in place of it and the move of that to a pointer register."""
+    """An operation, or the sum that replaces it and its move to a pointer register."""
     if array not in (name for name, _ in each.uses):
         return [each]
     total = f"{each.result}.sum"

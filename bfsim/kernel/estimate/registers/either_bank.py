@@ -7,7 +7,7 @@ from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, Reg
 from bfsim.kernel.operations import Op
 
 IN_EITHER = {Op.ALU, Op.COMPARE, Op.COND_MOVE, Op.MOVE, Op.IMM, Op.IMM32, Op.LOAD32, Op.STORE32}
-"""Operations that are there for both banks, and with a number, or where something is copied, even between them."""
+"""Operations that exist for both banks, and with a number or for a copy even between them."""
 
 
 def tied_webs(webs: Webs) -> frozenset[str]:
@@ -16,14 +16,14 @@ def tied_webs(webs: Webs) -> frozenset[str]:
     for block in webs.code.of.values():
         for each in block:
             if each.op is Op.MOVE and each.bank is not RegisterBank.ANY:
-                tied.add(each.result or "")  # what is copied may come from either
+                tied.add(each.result or "")  # a copied value may come from either
             elif not _is_free(each):
                 tied |= {*(name for name, _ in each.uses), each.result or ""}
     return frozenset(map(webs.find, tied))
 
 
 def _is_free(instruction: MachineInstruction) -> bool:
-    """Whether no operand must be in a certain bank, or in that of another one."""
+    """Whether no operand must be in a certain bank, or in the bank of another one."""
     banks = [bank for _, bank in instruction.uses] + [instruction.bank] * bool(instruction.result)
     if instruction.op not in IN_EITHER or any(bank is not RegisterBank.ANY for bank in banks):
         return False

@@ -1,4 +1,4 @@
-"""Which values are alive where."""
+"""Liveness: which values are alive where."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class Liveness:
 
 
 def liveness(flow: ControlFlow, code: MachineCode, merged: dict[str, list[tuple[str, str]]]) -> Liveness:
-    """Solve the data flow equations. `merged`: of each phi the (value, block it comes from) of its arms.
+    """Solve the data flow equations. `merged`: for each phi, the (value, source block) of its arms.
 
-    A phi reads its arms at the end of the blocks they come from, and is written at the start of its own.
+    A phi reads its arms at the ends of their source blocks, and is written at the start of its own.
     """
     at_end: dict[str, set[str]] = {label: set() for label in flow.blocks}
     for arms in merged.values():

@@ -1,4 +1,4 @@
-"""What it takes to have every value in the right bank: copies, moves, and constants that are no immediates."""
+"""Putting every value in the right bank: copies, moves, and constants that are no immediates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.kernel.rules import Rule
 
 
 class Moves:
-    """Inserts the moves into the code of a routine; `on_edges` are those that belong to an edge."""
+    """Inserts the moves into the code of a routine; `on_edges`: those that belong to an edge."""
 
     def __init__(self, webs: Webs) -> None:
         self.webs, self.flow, self.code = webs, webs.flow, webs.code
@@ -29,7 +29,7 @@ class Moves:
         self._constants()
 
     def _overwrites(self) -> None:
-        """Two-operand instructions destroy an operand: one that is still needed is copied first."""
+        """Two-operand instructions destroy an operand; if it is still needed, it is copied first."""
         for label, block in self.code.of.items():
             alive = {self.find(name) for name in self.webs.live.out[label]}
             kept: list[MachineInstruction] = []
@@ -43,10 +43,10 @@ class Moves:
             self.code.of[label] = kept[::-1]
 
     def _destroys(self, instruction: MachineInstruction, label: str, alive: set[str]) -> bool:
-        """Whether none of the operands that an instruction may overwrite is done with, when `alive` are wanted behind it.
+        """Whether all operands that an instruction may overwrite are still needed, when `alive` are live after it.
 
-        To GCC a conditional move may overwrite either operand, also a number, which was loaded for it. Not so in a loop: it is loaded
-        before.
+        To GCC a conditional move may overwrite either operand, also a number, which was loaded for it, except in a
+        loop: there it is loaded before.
         """
         own = self.find(instruction.result or "")
         by_rule = instruction.op is Op.COND_MOVE and self.webs.context.profile.applies(Rule.CONDITIONAL_MOVES)
@@ -63,7 +63,7 @@ class Moves:
         return is_kept and all(name in alive and name != own for name in others)
 
     def _moves(self) -> None:
-        """A move wherever a value is used in the other bank; outside the loop if it does not change there."""
+        """Insert a move wherever a value is used in the other bank; outside the loop if the value does not change there."""
         for label in self.flow.order:
             block: list[MachineInstruction] = []
             for instruction in self.code.of[label]:
@@ -96,13 +96,13 @@ class Moves:
             self.code.of[label] = block
 
     def _move_back(self) -> None:
-        """What two values in pointer registers give is moved to a data register: one move, not two."""
+        """Move the result of two values in pointer registers to a data register: one move, not two."""
         self._compute_where_both_are(RegisterBank.POINTER, RegisterBank.DATA)
 
     def _move_on(self) -> None:
-        """What two values in data registers give is moved to a pointer register, unless it is a part of an address.
+        """Move the result of two values in data registers to a pointer register, unless it is part of an address.
 
-        Such a part is added up in pointer registers: (P + P) << 1 is one instruction.
+        Such a part is added in pointer registers: (P + P) << 1 is one instruction.
         """
         parts = {
             name
@@ -117,7 +117,7 @@ class Moves:
     def _compute_where_both_are(
         self, own: RegisterBank, wanted: RegisterBank, but: Container[str] = ()
     ) -> None:
-        """Compute in their own bank what two values there give, and move that to the bank in which it is wanted."""
+        """Compute the result of two values in their own bank, and move it to the bank in which it is wanted."""
         for label, block in self.code.of.items():
             found: list[MachineInstruction] = []
             for instruction in block:
@@ -136,7 +136,7 @@ class Moves:
             self.code.of[label] = found
 
     def _results(self) -> None:
-        """What is returned goes to R0, from the other bank by a move."""
+        """Put the returned value into R0, from the other bank by a move."""
         for label, block in self.flow.blocks.items():
             for value in block.terminator.operands if block.terminator.opcode == "ret" else ():
                 name, line = self.webs.context.name(value), block.terminator.line
@@ -149,7 +149,7 @@ class Moves:
                     self.code.add(label, load_constant(name, line))
 
     def _behind_definition(self, block: list[MachineInstruction], name: str) -> int:
-        """Position right behind the instruction that computes `name`, or the end: what a pointer register yields goes back."""
+        """The position right after the instruction that computes `name`, or the end: there the result in a pointer register moves back."""
         places = [number for number, instruction in enumerate(block) if instruction.result == name]
         return places[-1] + 1 if places else len(block)
 
@@ -159,7 +159,7 @@ class Moves:
         return copy
 
     def _wanted(self, instruction: MachineInstruction, bank: RegisterBank) -> RegisterBank:
-        """The bank in which an operand is wanted: that of the result, or of the other operand."""
+        """The bank in which an operand is wanted: the bank of the result, or of the other operand."""
         if bank is not RegisterBank.ANY or instruction.op in (Op.STORE32, Op.MOVE):
             return bank
         if instruction.result:
@@ -189,7 +189,7 @@ class Moves:
         )
 
     def _constants(self) -> None:
-        """A constant that is no immediate is loaded once, before the outermost loop around its use."""
+        """Load each constant that is no immediate once, before the outermost loop around its use."""
         made: set[tuple[str, str]] = set()
         for label in self.flow.order:
             block: list[MachineInstruction] = []

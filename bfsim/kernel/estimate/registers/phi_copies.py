@@ -1,4 +1,4 @@
-"""Copies of values where ways meet: what phis need at the ends of the blocks before them, as GCC's out-of-SSA pass makes them [tree-outof-ssa.cc]."""
+"""Copies of values where paths join: what phis need at the ends of the blocks before them, as GCC's out-of-SSA pass makes them [tree-outof-ssa.cc]."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LAST = 1 << 16
 
 
 class PhiCopies:
-    """Inserts the copies into the code of a routine; `on_edges` are those that belong to an edge."""
+    """Inserts the copies into the code of a routine; `on_edges`: those that belong to an edge."""
 
     def __init__(self, webs: Webs) -> None:
         self.webs, self.flow, self.code = webs, webs.flow, webs.code
@@ -25,7 +25,7 @@ class PhiCopies:
         self._copies()
 
     def _copies(self) -> None:
-        """What phis need at the ends of the blocks before them; values that swap places take a third register."""
+        """Insert the copies that phis need at the ends of the blocks before them; values that swap places take a third register."""
         onto: dict[tuple[str, str], dict[str, str]] = {}
         for phi, arms in sorted(self.webs.phis.items(), key=lambda each: _declared(each[0])):
             home = self.flow.defined[phi][0]
@@ -40,7 +40,7 @@ class PhiCopies:
                     if ALONG in phi and self._is_kept_apart(
                         value, self._following(value, label), label, home
                     ):
-                        continue  # the copy of the next one is made for this one, too
+                        continue  # the copy for the next one also serves this one
                     if self._is_kept_apart(phi, value, label, home):
                         kept = MachineInstruction(
                             Op.MOVE, line, None, RegisterBank.ANY, ((phi, RegisterBank.ANY),)
@@ -60,9 +60,10 @@ class PhiCopies:
     def _is_kept_apart(self, phi: str, value: str, label: str, home: str) -> bool:
         """Whether the old value is copied in the header, before the new one is computed there [insert_backedge_copies].
 
-        Then the two share a register, and nothing is copied on the way back. It is if the old value is wanted after that or
-        behind the header, unless another variable takes it over. What goes along is even then, if GCC sees that it is taken over: not in
-        a loop of one block with a variable before it, for which the statements have been numbered already.
+        Then the two share a register, and nothing is copied on the back edge. It is copied if the old value is used
+        after that or after the header, unless another variable takes it over. A carried value is copied even then, if
+        GCC sees that it is taken over: not in a loop of one block with a variable before it, for which the statements
+        have already been numbered.
         """
         where, new = self.flow.defined.get(value.removesuffix(".wide"), ("", None))
         critical = home in self.flow.dominators[label] and len(set(self.flow.blocks[label].successors)) > 1
@@ -82,15 +83,15 @@ class PhiCopies:
         return any(place > made for place in places)
 
     def _chosen_in(self, phi: Instruction) -> str:
-        """The block that computes a phi without a branch; none if it is no such."""
+        """The block that computes a phi without a branch; empty for other phis."""
         conversions = self.webs.context.conversions_of(phi)
         is_one = len(conversions) == 1 and not self.webs.context.others(phi)
         return conversions[0].label if is_one else ""
 
     def _is_numbered(self, along: str, home: str) -> bool:
-        """Whether a variable before `along` is used and computed anew in a loop of one block [maybe_renumber_stmts_bb]."""
+        """Whether a variable before `along` is used and recomputed in a loop of one block [maybe_renumber_stmts_bb]."""
         if f"{ALONG}0." not in along:
-            return True  # the last one of the chain before
+            return True  # the last one of the previous chain
         for phi in self.webs.phis:
             new = self.flow.instruction(self._following(phi, home).removesuffix(".wide"))
             if (
@@ -103,7 +104,7 @@ class PhiCopies:
         return False
 
     def _following(self, phi: str, label: str) -> str:
-        """What a phi is behind block `label`; nothing if the value is no phi."""
+        """The next value of a phi after block `label`; empty if the value is no phi."""
         return next((value for value, source in self.webs.phis.get(phi, ()) if source == label), "")
 
     def _is_taken_over(self, phi: str, label: str) -> bool:
@@ -111,10 +112,10 @@ class PhiCopies:
         return any((phi, label) in arms for arms in self.webs.phis.values())
 
     def _is_before_the_test(self, phi: str, value: str, label: str, home: str) -> bool:
-        """Whether a copy that goes with a back edge is made before the test there [insert_backedge_copies, tree-outof-ssa.cc].
+        """Whether the copy of a back edge is made before the test there [insert_backedge_copies, tree-outof-ssa.cc].
 
-        So it is unless a variable that was declared later takes over the old value in turn, or one that goes along with it, or the old
-        value is still wanted behind the loop.
+        It is, unless a variable that was declared later, or one that is carried along, takes over the old value in
+        turn, or the old value is still used after the loop.
         """
         if label not in self.flow.blocks or home not in self.flow.dominators[label]:
             return False
@@ -128,16 +129,16 @@ class PhiCopies:
 
     def _on_edge(self, label: str, home: str, instruction: MachineInstruction) -> None:
         ways = set(self.flow.blocks[label].successors)
-        is_converted = home not in ways  # both sides of its branch lead there, and it has none any more
+        is_converted = home not in ways  # both sides of its branch led there, so it has none any more
         if is_converted or len(ways) == 1 or self._is_loaded_early(label, home, instruction):
             self.code.add(label, instruction)
         else:
             self.on_edges.setdefault((label, home), []).append(instruction)
 
     def _is_loaded_early(self, label: str, home: str, instruction: MachineInstruction) -> bool:
-        """Whether a constant that one side of a test wants is loaded before its branch [find_if_case_1 in ifcvt.cc].
+        """Whether a constant that one side of a test needs is loaded before its branch [find_if_case_1 in ifcvt.cc].
 
-        So it is where the condition was computed before the loop; else that side is too seldom come to.
+        It is if the condition was computed before the loop; otherwise that side runs too seldom.
         """
         others = (way for way in self.flow.blocks[label].successors if way != home)
         return (
@@ -152,13 +153,13 @@ class PhiCopies:
 
 
 def _declared(phi: str) -> int:
-    """In which place the variable of a phi was declared, behind those that have no name in the source."""
+    """The place of the declaration of a phi's variable, after those that have no name in the source."""
     found = DECLARED.search(phi)
     return int(found.group(1)) if found else LAST
 
 
 def _is_circular(copies: dict[str, str]) -> bool:
-    """Whether a value that is copied ends up where another one came from, all the way round."""
+    """Whether copied values form a circle, each ending up where another one came from."""
     for start, source in copies.items():
         name, seen = source, {start}
         while name in copies and name not in seen:

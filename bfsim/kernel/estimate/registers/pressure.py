@@ -1,10 +1,11 @@
-"""Register pressure: what does not fit in the registers of a loop is reloaded where it is used.
+"""Register pressure: values that do not fit in the registers of a loop are reloaded where they are used.
 
-The one to go is used least for the room it takes: the places where there are too many while it is alive [allocno_spill_priority in
-ira-color.cc of GCC 12].
+The value to go is the one used least for the room it takes, which is the number of crowded places where it is alive
+[allocno_spill_priority in ira-color.cc of GCC 12].
 
-Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move. A sum that is only added to stays
-in an I register: what is added moves to an M register, I0 += M0 [addsi3 in bfin.md]. How many of these there are, four, is not asked.
+Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move. A sum that
+is only added to stays in an I register: the addend moves to an M register, I0 += M0 [addsi3 in bfin.md]. That there are
+only four of these is ignored.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class Pressure:
         self._spill()
 
     def _spill(self) -> None:
-        """Innermost loops first: what is used least there gives up its register."""
+        """Spill in the innermost loops first: the value used least there gives up its register."""
         spilled: set[str] = set()
         for loop in self.flow.loops:
             for bank in (RegisterBank.DATA, RegisterBank.POINTER):
@@ -53,7 +54,7 @@ class Pressure:
                     self._reload(victim, loop)
 
     def _gives_way(self, crowded: list[set[str]], bank: RegisterBank) -> bool:
-        """Let one of the values of a bank that is full be in the other one, if that costs nothing; return whether there is any."""
+        """Move one value of a full bank to the other one, if that costs nothing; return whether there was one."""
         if not self.webs.context.profile.applies(Rule.EITHER_BANK):
             return False
         other = RegisterBank.DATA if bank is RegisterBank.POINTER else RegisterBank.POINTER
@@ -94,7 +95,7 @@ class Pressure:
         return found
 
     def _victim(self, loop: Loop, bank: RegisterBank, spilled: set[str], crowded: list[set[str]]) -> str:
-        """What is used least for the places in which there are too many."""
+        """The value used least in relation to the crowded places where it is alive."""
         constants = self._constants(loop, bank, spilled)
         places = Tally(name for here in crowded for name in here) + Tally(
             dict.fromkeys(constants, len(crowded))
@@ -116,7 +117,7 @@ class Pressure:
         return {name: weight for name, weight in self.constants_in(loop).items() if name not in spilled}
 
     def _crowded(self, loop: Loop, bank: RegisterBank, spilled: set[str]) -> list[set[str]]:
-        """What is alive in a bank, at each place of a loop where that is too much."""
+        """The values alive in a bank, at each place of a loop where they are too many."""
         extra = len(self._constants(loop, bank, spilled))
         has_call = any(
             instruction.op is Op.CALL
@@ -155,7 +156,7 @@ class Pressure:
                 alive.discard(self.find(instruction.result))
             if (
                 across_calls and instruction.op is Op.CALL and instruction.code_bytes
-            ):  # not what a library routine calls
+            ):  # not those that a library routine calls
                 found.append(set(alive))
             alive.update(self.find(name) for name, _ in instruction.uses if not name.startswith("#"))
             if not across_calls:
@@ -189,7 +190,7 @@ class Pressure:
                         and _is_copy_for(block[-1], instruction)
                         and web in map(self.find, instruction.overwrites)
                     ):
-                        block.pop()  # what was reloaded may be overwritten
+                        block.pop()  # a reloaded value may be overwritten
                     block.append(self._reloading(web, instruction))
                 block.append(instruction)
                 if instruction.result and self.find(instruction.result) == web:
@@ -211,7 +212,7 @@ class Pressure:
         )
 
     def _reloading(self, web: str, instruction: MachineInstruction) -> MachineInstruction:
-        """What brings a value, or a constant, to where an instruction uses it."""
+        """The operation that brings a value, or a constant, to where an instruction uses it."""
         constant = web.startswith("#")
         if constant and not self.webs.context.profile.applies(Rule.CONSTANT_MOVES):
             return load_constant(web, instruction.line)
@@ -221,5 +222,5 @@ class Pressure:
 
 
 def _is_copy_for(before: MachineInstruction, instruction: MachineInstruction) -> bool:
-    """Whether the instruction before only saves an operand that this one overwrites."""
+    """Whether the previous instruction only saves an operand that this one overwrites."""
     return bool(instruction.overwrites) and before.op is Op.MOVE and before.result is None and not before.uses

@@ -1,9 +1,10 @@
-"""Classes of registers: in which bank GCC has what a chain of sums adds up, by the two passes of find_costs_and_classes (ira-costs.cc of GCC 12).
+"""Register classes: the bank in which GCC keeps the values of a chain of sums, by the two passes of find_costs_and_classes (ira-costs.cc of GCC 12).
 
-An addition can also be done in an I register, I0 += M0 [addsi3 in bfin.md]. So the first pass finds that a sum that is only added to costs
-nothing in the class IPREGS, which has no data registers in it, and to the second pass, an addition on data registers needs a move. What is
-free to be in either bank, such as a word that is loaded, goes to a pointer register then; the sum itself is in a data register in the end.
-But what a load without a step loads for one use stays in memory until that, rather than to have a register saved [update_equiv_regs in ira.cc].
+An addition can also be done in an I register, I0 += M0 [addsi3 in bfin.md]. So the first pass finds that a sum that is
+only added to costs nothing in the class IPREGS, which has no data registers, and to the second pass an addition on data
+registers needs a move. A value that may be in either bank, such as a loaded word, then goes to a pointer register; the
+sum itself ends up in a data register. But a value that a load without a step loads for a single use stays in memory
+until then, so that no register has to be saved for it [update_equiv_regs in ira.cc].
 """
 
 from __future__ import annotations
@@ -20,21 +21,21 @@ from bfsim.kernel.operations import Op
 
 ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
 PASSING = {Op.MOVE, Op.IMM, Op.IMM32}
-"""What any register will do for."""
+"""Operations for which any register will do."""
 TIED = {Op.ALU: 2, Op.COMPARE: 2, Op.ADD_SHIFT: 2, Op.SHIFT: 1}
-"""Operations whose operands must all be in one bank, if they are so many."""
+"""Operations whose operands must all be in one bank, if there are that many."""
 
 
 @dataclass(slots=True)
 class _Value:
-    """What uses and computes a value, by the banks that it has to be in there."""
+    """The instructions that use and compute a value, by the bank that it must be in there."""
 
     strict: Tally[RegisterBank] = field(default_factory=Tally)
     is_plain: bool = False
     """Whether something other than a sum uses or computes it in either bank."""
     is_sum: bool = False
     is_merged: bool = False
-    """Whether it is something else than one word that is loaded, or one sum."""
+    """Whether it is something other than one loaded word or one sum."""
 
     @property
     def is_between(self) -> bool:
@@ -48,14 +49,14 @@ class _Value:
 
 
 class RegisterClasses:
-    """Puts the values of one routine that chains of sums add into the banks that GCC has them in."""
+    """Puts the values that chains of sums of one routine add into the banks where GCC has them."""
 
     def __init__(self, webs: Webs) -> None:
         self.webs, self.flow, self.code = webs, webs.flow, webs.code
         self.values: defaultdict[str, _Value] = defaultdict(_Value)
         self.costs: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         self.behind: defaultdict[str, set[str]] = defaultdict(set)
-        """Of each value that is added in a chain: the sums."""
+        """The sums of each value that is added in a chain."""
         self.waiting: set[str] = set()
         """Words that may stay in memory until they are used."""
         for label in self.flow.order:
@@ -68,20 +69,20 @@ class RegisterClasses:
                 self._note_bytes(instruction)
 
     def _note_bytes(self, instruction: MachineInstruction) -> None:
-        """What adds up bytes or half-words is best in a data register, as they are."""
+        """Note that sums of bytes or half-words are best in data registers, where these are."""
         names = [self.webs.find(name) for name, _ in instruction.uses if not name.startswith("#")]
         total = self.webs.find(instruction.result or "")
         if total in names and any(self.values[name].strict[DATA] for name in names):
             self.values[total].is_plain = True
 
     def _steps(self, instruction: MachineInstruction) -> bool:
-        """Whether an instruction adds a number to a variable, which can be done in either bank."""
+        """Whether an instruction adds a number to a variable, which either bank can do."""
         names = [self.webs.find(name) for name, _ in instruction.uses if not name.startswith("#")]
         is_either = instruction.bank is ANY and all(bank is ANY for _, bank in instruction.uses)
         return instruction.op is Op.ALU and is_either and names == [self.webs.find(instruction.result or "")]
 
     def _may_wait(self, instruction: MachineInstruction, label: str) -> bool:
-        """Whether an instruction loads a word by a pointer that it does not step, and what follows it in its block is the only one to use that."""
+        """Whether an instruction loads a word by a pointer that it does not step, and the word has a single use, later in its block."""
         access = instruction.access
         if instruction.op is not Op.LOAD32 or access is None:
             return False
@@ -125,7 +126,7 @@ class RegisterClasses:
             result.is_plain = True
 
     def place(self) -> None:
-        """Put each value that chains of sums add into the bank that costs less in the second pass, where a register is left."""
+        """Put each value that chains of sums add into the bank that costs less in the second pass, if a register is left."""
         for label in self.flow.order:
             for instruction in self.code.of[label]:
                 self._second_pass(instruction, int(self.webs.frequency[label] * 1000) + 1)
@@ -138,7 +139,7 @@ class RegisterClasses:
         for web in sorted(gains, key=lambda web: (-gains[web], web)):
             if gains[web] > 0 and self.values[web].is_free:
                 self._to_pointers(web, room)
-        for web in sorted(gains, reverse=True):  # what costs as much in either is where the next sum is
+        for web in sorted(gains, reverse=True):  # if either costs the same, it is where the next sum is
             if (
                 gains[web] == 0
                 and self.values[web].is_between
@@ -147,7 +148,7 @@ class RegisterClasses:
                 self._to_pointers(web, room)
 
     def _place_bounds(self) -> None:
-        """Put each number that is loaded to be compared into the bank of what it is compared with."""
+        """Put each number that is loaded for a comparison into the bank of the value that it is compared with."""
         bank, find = self.webs.bank, self.webs.find
         for instruction in (each for label in self.flow.order for each in self.code.of[label]):
             if instruction.op is Op.COMPARE and len(instruction.uses) == 2:
@@ -156,7 +157,7 @@ class RegisterClasses:
                     bank[find(bound)] = bank[find(compared)]
 
     def _second_pass(self, instruction: MachineInstruction, weight: int) -> None:
-        """Add what an operation costs its values in each bank, in moves; note what is behind those of a chain."""
+        """Add the cost of an operation to its values in each bank, in moves; note what follows those of a chain."""
         webs = self._tied(instruction)
         if self.is_sum(instruction) and any(self.values[web].is_between for web in webs):
             for web in webs:
@@ -164,7 +165,7 @@ class RegisterClasses:
         moves = {bank: sum(self._excludes(web, bank) for web in webs) for bank in (DATA, POINTER)}
         for web in webs:
             self.costs[web][DATA] += weight * min(moves[DATA], moves[POINTER] + 1)
-            more = self.values[web].is_between  # out of IPREGS, it is one move more
+            more = self.values[web].is_between  # from IPREGS, it takes one more move
             self.costs[web][POINTER] += weight * (min(moves[POINTER], moves[DATA] + 1) + more)
 
     def _to_pointers(self, web: str, room: _Room) -> None:
@@ -183,7 +184,7 @@ class RegisterClasses:
         return {self.webs.find(name) for name in (*either, *result) if not name.startswith("#")}
 
     def _excludes(self, web: str, bank: RegisterBank) -> bool:
-        """Whether the class that the first pass finds best for a value has nothing of a bank in it."""
+        """Whether the class that the first pass finds best for a value has no register of a bank."""
         value = self.values[web]
         if value.is_between:
             return bank is DATA
@@ -191,7 +192,7 @@ class RegisterClasses:
 
 
 class _Room:
-    """How many pointer registers are taken at each point of a routine, counters of counted loops included."""
+    """The number of pointer registers taken at each point of a routine, counters of counted loops included."""
 
     def __init__(self, webs: Webs) -> None:
         self.webs = webs
@@ -208,7 +209,7 @@ class _Room:
                 self.points.append((set(alive), counters))
 
     def has(self, web: str, *, saves: bool) -> bool:
-        """Whether a pointer register is free wherever a value is alive; if it `saves` none more, one that is scratch or taken elsewhere."""
+        """Whether a pointer register is free wherever a value is alive; without `saves`, one that needs no saving or is taken elsewhere."""
         taken = [
             (web in alive, sum(self.webs.bank.get(name) is POINTER for name in alive) + counters)
             for alive, counters in self.points

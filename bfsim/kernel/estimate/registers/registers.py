@@ -1,4 +1,4 @@
-"""Registers: a model of what an allocator would cost, not one.
+"""Registers: a model of what an allocator's result costs, not an allocator.
 
 It counts the moves between the banks, the constants, the reloads and the saved registers, and places them where an
 allocator would: see `webs`, `moves` and `pressure`.
@@ -27,13 +27,13 @@ from bfsim.kernel.rules import Rule
 
 @dataclass(slots=True)
 class Allocation:
-    """What the registers of one routine cost beside its operations, and where each value is."""
+    """What the registers of one routine cost besides its operations, and where each value is."""
 
     bank: dict[str, RegisterBank]
     register: dict[str, str]
-    """Values that share one, by a name for it."""
+    """Values that share a register, by a name for it."""
     alive: dict[str, frozenset[str]]
-    """Of each block: the registers that are wanted behind it."""
+    """The registers that are live after each block."""
     on_edges: dict[tuple[str, str], list[MachineInstruction]]
     calls: bool
     entry: list[MachineInstruction] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Allocation:
 
 
 def allocate(context: Context, code: MachineCode) -> Allocation:
-    """Insert moves, constants and reloads into `code`; return what belongs to edges and to the function's ends."""
+    """Insert moves, constants and reloads into `code`; return those that belong to edges and to the function's ends."""
     loads_late = context.profile.applies(Rule.ARGUMENT_LOADS)
     loaded = load_where_used(context, code) if loads_late else frozenset()
     if context.profile.applies(Rule.BYTE_ADDRESSES):
@@ -72,7 +72,7 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
 
 
 class _Ends:
-    """What a function saves when it is entered, and where its arguments go."""
+    """The registers that a function saves when it is entered, and where its arguments go."""
 
     def __init__(self, webs: Webs, pressure: Pressure, result: Allocation, loaded: frozenset[str]) -> None:
         """`loaded`: arguments that are loaded where they are used."""
@@ -103,7 +103,7 @@ class _Ends:
         self._load_staying()
 
     def _results(self) -> None:
-        """The next call destroys R0: a result that is wanted behind it moves to a register that survives."""
+        """The next call destroys R0: a result that is used after it moves to a register that survives."""
         kept = self._kept_results()
         for label, block in self.code.of.items():
             moved: list[MachineInstruction] = []
@@ -122,7 +122,7 @@ class _Ends:
                 alive.discard(instruction.result or "")
                 if (
                     instruction.op is Op.CALL and instruction.code_bytes
-                ):  # not what a library routine calls itself
+                ):  # not those that a library routine itself calls
                     kept |= alive
                 alive.update(name for name, _ in instruction.uses)
         return kept
@@ -155,7 +155,7 @@ class _Ends:
                         self.result.on_edges.setdefault((label, home), []).append(load)
 
     def _loaded(self, name: str, instruction: MachineInstruction) -> list[MachineInstruction]:
-        """An instruction and the load of the argument `name`, if it uses that; a copy is a load then."""
+        """An instruction, with the load of the argument `name` if it uses that; a copy becomes a load."""
         if name not in (used for used, _ in instruction.uses):
             return [instruction]
         load = MachineInstruction(Op.LOAD32, instruction.line, instruction.result, instruction.bank)

@@ -1,11 +1,12 @@
-"""How many registers of each bank are taken at once, from which follows how many a function saves; and which arguments stay on the stack.
+"""How many registers of each bank are taken at once, and so how many a function saves; and which arguments stay on the stack.
 
-A constant that is no immediate takes a register beside the operands of its instruction: from its first use in a block to its last one, and all the
-time in the loops that use it. The register of an operand that is done with may be that of the result; in a loop, unless the operand was moved to a
-pointer register for that [order_regs_for_reload in reload1.cc of GCC 12].
+A constant that is no immediate takes a register besides the operands of its instruction: from its first use in a block
+to its last one, and throughout the loops that use it. The result may take the register of an operand that is no longer
+needed; in a loop, not if the operand was moved to a pointer register for it [order_regs_for_reload in reload1.cc of GCC
+12].
 
-To save one more register costs a store and a load. So where all others are taken, an argument on the stack that is used seldom stays
-there, and is loaded wherever it is used [assign_hard_reg in ira-color.cc].
+Saving one more register costs a store and a load. So if all others are taken, an argument on the stack that is seldom
+used stays there, and is loaded wherever it is used [assign_hard_reg in ira-color.cc].
 """
 
 from __future__ import annotations
@@ -25,19 +26,19 @@ DATA, POINTER = RegisterBank.DATA, RegisterBank.POINTER
 SCRATCH = {DATA: operations.SCRATCH_DATA_REGISTERS, POINTER: operations.SCRATCH_POINTER_REGISTERS}
 AVAILABLE = {DATA: operations.DATA_REGISTERS, POINTER: POINTERS}
 COUNTER = "count "
-"""In front of the names of what counts iterations."""
+"""Begins the names of values that count iterations."""
 SELDOM = 2
-"""Uses for each time that the function is entered: as many accesses as a register takes that is saved."""
+"""Uses per entry of the function: as many as the accesses that saving a register takes."""
 
 
 class TakenRegisters:
-    """The registers of one routine that are taken at each of its points."""
+    """The registers that are taken at each point of one routine."""
 
     def __init__(self, webs: Webs, pressure: Pressure) -> None:
         self.webs, self.flow, self.code, self.bank = webs, webs.flow, webs.code, webs.bank
         self.counts = IterationCounts(webs.context)
         self.in_loops = defaultdict[str, set[str]](set)
-        """Of each block: constants that loops around it have in registers, which are loaded before the outermost one."""
+        """For each block: constants that loops around it keep in registers, loaded before the outermost one."""
         for loop in self.flow.loops:
             if self.flow.loops_of(loop.header)[-1] is loop:
                 for label in self.flow.inside(loop):
@@ -52,7 +53,7 @@ class TakenRegisters:
                 self._leave(bank)
 
     def _is_only_chosen(self, name: str) -> bool:
-        """Whether nothing but one choice outside of loops needs an argument: it is loaded on the way there [combine_and_move_insns in ira.cc]."""
+        """Whether an argument's only use is a choice outside loops: it is loaded on the edge there [combine_and_move_insns in ira.cc]."""
         homes = [(phi, arm) for phi, arms in self.webs.phis.items() for arm in arms if arm[0] == name]
         uses = [
             each
@@ -64,11 +65,11 @@ class TakenRegisters:
         return is_once and all(self.flow.innermost(label) is None for _, (_, label) in homes)
 
     def most(self, bank: RegisterBank) -> int:
-        """How many of a bank are taken at once."""
+        """How many registers of a bank are taken at once."""
         return min(max(map(len, self._points(bank)), default=0), AVAILABLE[bank])
 
     def _points(self, bank: RegisterBank) -> list[set[str]]:
-        """What takes registers of a bank, at each point of the routine."""
+        """The values that take registers of a bank, at each point of the routine."""
         points = [
             taken | self.in_loops[label] | self._counters(label)
             for label in self.flow.blocks
@@ -78,16 +79,16 @@ class TakenRegisters:
         return [taken & of_bank for taken in points]
 
     def _counters(self, label: str) -> set[str]:
-        """Counters of counted loops, which are in pointer registers until they are the hardware's [loop_end in bfin.md]."""
+        """Counters of counted loops, which are in pointer registers until they become the hardware's [loop_end in bfin.md]."""
         if not self.webs.context.profile.applies(Rule.COUNTER_REGISTERS):
             return set()
         counted = self.webs.context.counters.counted
         return {f"{COUNTER}{each.header}" for each in self.flow.loops_of(label) if each.header in counted}
 
     def _counts(self, label: str) -> set[str]:
-        """What takes pointer registers while it is computed how often the loop behind a block iterates.
+        """The values that take pointer registers while the number of iterations of the loop after a block is computed.
 
-        The bound is moved to one that is not that of the result [find_reg in reload1.cc].
+        The bound is moved to a register other than the result's [find_reg in reload1.cc].
         """
         found = set[str]()
         for loop in self.flow.loops if self.webs.context.profile.applies(Rule.SHIFTED_COUNTS) else ():
@@ -106,11 +107,11 @@ class TakenRegisters:
         return DATA if name.startswith("#") else self.bank.get(self.webs.find(name))
 
     def _key(self, name: str) -> str:
-        """What has a register of its own: a web, or an argument on the stack."""
+        """The owner of a register: a web, or an argument on the stack."""
         return name if name in self.on_stack else self.webs.find(name)
 
     def _taken(self, label: str) -> Iterator[set[str]]:
-        """What takes registers behind and during each instruction of a block, the last one first."""
+        """The values that take registers after and during each instruction of a block, the last one first."""
         alive = {self._key(name) for name in self.webs.live.out[label]}
         yield set(alive) | self._counts(label)
         in_loop = self.flow.innermost(label) is not None
@@ -129,7 +130,7 @@ class TakenRegisters:
                 yield behind | moved | {self._key(instruction.result or "")}
 
     def _constants(self, label: str) -> dict[str, range]:
-        """Constants that a block has in registers, and from which of its instructions to which: one that is used again stays [cse.cc]."""
+        """Constants that a block keeps in registers, each with its first and last instruction: one that is used again stays [cse.cc]."""
         found: dict[str, range] = {}
         for number, instruction in enumerate(self.code.of[label]):
             for name in _constants(instruction):
@@ -143,7 +144,7 @@ class TakenRegisters:
         return {self._key(name) for name, bank in instruction.uses if bank is POINTER and "@" in name}
 
     def _leave(self, bank: RegisterBank) -> None:
-        """Leave those on the stack that are used least of what is taken while a register would be saved for one of them."""
+        """Leave the least used of the taken values on the stack while a register would be saved for one of them."""
         frequency = self._frequencies()
         while True:
             points = self._points(bank)
@@ -156,13 +157,13 @@ class TakenRegisters:
             self.staying.add(min(able, key=lambda name: (frequency[name], name)))
 
     def _last(self, taken: set[str], frequency: Mapping[str, float]) -> set[str]:
-        """Arguments on the stack that get a register only after what else is `taken`, and are used seldom."""
+        """Arguments on the stack that get a register only after the others that are `taken`, and are seldom used."""
         rivals = (name for name in taken - self.on_stack if not name.startswith(COUNTER))
         others = min((frequency[name] for name in rivals), default=0.0)
         return {name for name in taken & self.on_stack if frequency[name] <= min(others, 1 + SELDOM)}
 
     def _frequencies(self) -> defaultdict[str, float]:
-        """How often each of what takes a register is computed or used, each time that the function is entered."""
+        """How often each owner of a register is computed or used per entry of the function."""
         found = defaultdict[str, float](float)
         for name in self.webs.context.parameters():
             found[self._key(name)] += 1
@@ -182,7 +183,7 @@ class TakenRegisters:
 
 
 def _constants(instruction: MachineInstruction) -> set[str]:
-    """Constants that an instruction has in registers."""
+    """Constants that an instruction needs in registers."""
     if instruction.op is Op.IMM:
         return set()
     return {

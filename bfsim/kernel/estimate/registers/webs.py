@@ -1,4 +1,4 @@
-"""Webs: values that share one register, and the bank of registers in which each of them lives."""
+"""Webs: values that share one register, and the bank in which each of them lives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.kernel.estimate.selection.machine_code import MachineCode, MachineIns
 from bfsim.kernel.ir.text import each_arm
 from bfsim.kernel.rules import Rule
 
-ROUNDS = 3  # in which values settle in the bank of those they are computed with
+ROUNDS = 3  # in which values settle in the bank of the other operands
 
 
 class Webs:
@@ -52,7 +52,7 @@ class Webs:
         return found
 
     def analyse(self) -> None:
-        """Find what is alive where; again whenever instructions were inserted."""
+        """Find the live values; call again whenever instructions were inserted."""
         merged = {
             phi: [(value, label) for value, label in arms if not value.startswith("#")]
             for phi, arms in self.phis.items()
@@ -66,7 +66,7 @@ class Webs:
         return name
 
     def _coalesce(self) -> None:
-        """Give a phi and its arms one register, the most frequent copies first, unless both are wanted at once."""
+        """Give a phi and its arms one register, the most frequent copies first, unless both are live at once."""
         apart = self._interference()
         for phi, value in self._stepped() if self.context.profile.applies(Rule.STEPPED_COUNTERS) else ():
             apart[phi].discard(value)
@@ -83,7 +83,7 @@ class Webs:
             mine |= theirs
 
     def _is_merged(self, phi: str, value: str) -> bool:
-        """Whether a value is chosen for a phi alone, in a block without code: GCC chooses for that phi at once [pass_merge_phi in tree-cfgcleanup.cc]."""
+        """Whether a value is chosen only for another phi, in a block without code: GCC merges it into that phi [pass_merge_phi in tree-cfgcleanup.cc]."""
         home, made = self.flow.defined.get(value, ("", None))
         block = self.flow.blocks.get(home)
         return (
@@ -96,9 +96,9 @@ class Webs:
         )
 
     def _copies(self) -> dict[tuple[str, str], float]:
-        """What copying a value to a phi costs, of all ways together; twice where it needs a block [coalesce_cost_edge in tree-ssa-coalesce.cc].
+        """The cost of copying a value to a phi, summed over all edges; twice if an edge needs a block [coalesce_cost_edge in tree-ssa-coalesce.cc].
 
-        GCC 12 decides before an `if` becomes branchless, so that the ways through one count, too.
+        GCC 12 decides before an `if` becomes branchless, so the edges through one count, too.
         """
         found: defaultdict[tuple[str, str], float] = defaultdict(float)
         taken, before = self.context.likelihood.taken, self.flow.predecessors
@@ -113,7 +113,7 @@ class Webs:
         return found
 
     def _stepped(self) -> list[tuple[str, str]]:
-        """Counters of loops and their next values, which only the next iteration wants: they are stepped last, in place."""
+        """Counters of loops and their next values, which only the next iteration uses: they are stepped last, in place."""
         found = []
         for phi, arms in self.phis.items():
             label, each = self.flow.defined[phi]
@@ -128,7 +128,7 @@ class Webs:
         return found
 
     def _interference(self) -> defaultdict[str, set[str]]:
-        """Of each value: those that are alive where it is computed, or that are computed while it is alive."""
+        """For each value: those that are alive where it is computed, or that are computed while it is alive."""
         apart: defaultdict[str, set[str]] = defaultdict(set)
 
         def keep_apart(name: str, alive: set[str]) -> None:
@@ -150,7 +150,7 @@ class Webs:
         return apart
 
     def _choose_banks(self) -> None:
-        """Where a value's definition leaves the choice, the bank that needs fewer moves."""
+        """Choose the bank that needs fewer moves, if a value's definition leaves the choice."""
         fixed, wants, friends = self._wishes()
         names = {self.find(each) for each in self._names()}
         self.bank = {name: _majority(fixed.get(name)) or RegisterBank.DATA for name in names}
@@ -173,7 +173,7 @@ class Webs:
     def _wishes(
         self,
     ) -> tuple[dict[str, Tally[RegisterBank]], dict[str, Tally[RegisterBank]], dict[str, Tally[str]]]:
-        """Of each web: banks that its definitions fix, banks that its uses want, and webs it is computed with."""
+        """For each web: banks that its definitions fix, banks that its uses want, and webs it is computed with."""
         fixed: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         wants: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         friends: defaultdict[str, Tally[str]] = defaultdict(Tally)
@@ -198,7 +198,7 @@ class Webs:
         return fixed, wants, friends
 
     def _subtracts(self, instruction: MachineInstruction) -> bool:
-        """Whether it takes one value from another into a third, which is done in data registers alone [subsi3 in bfin.md]."""
+        """Whether it subtracts two values into a third, which only data registers can do [subsi3 in bfin.md]."""
         made_for = self.flow.instruction(instruction.result or "")
         names = [name for name, _ in instruction.uses]
         return (

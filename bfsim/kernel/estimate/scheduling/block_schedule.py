@@ -1,9 +1,10 @@
-"""In which order the instructions of one block are issued, and which accesses share a bundle with a 32-bit instruction.
+"""The order in which the instructions of one block are issued, and the accesses that share a bundle with a 32-bit instruction.
 
-GCC 12 schedules each block behind its register allocation, and bundles what it issues in one cycle [bfin_reorg and bfin_gen_bundles in
-bfin.cc]: a DSP instruction, then an access of 16 bits of code, whose units are free only if the other came first [`absence_set` in
-bfin.md]. All other instructions are issued alone. For this, a move between data registers and a zero are DSP instructions, too
-[`splitting_for_sched`], and a shift whose operand is still wanted.
+GCC 12 schedules each block after register allocation, and bundles what it issues in one cycle [bfin_reorg and
+bfin_gen_bundles in bfin.cc]: a DSP instruction, then an access of 16 bits of code, whose units are free only if the DSP
+instruction came first [`absence_set` in bfin.md]. All other instructions are issued alone. For this, a move between
+data registers and a zero are DSP instructions, too [`splitting_for_sched`], and so is a shift whose operand is still
+needed.
 """
 
 from __future__ import annotations
@@ -30,16 +31,16 @@ SHORT_BYTES = 2
 CHANGES_CC = {Op.COMPARE, Op.BIT_TEST}
 KINDS = {"barrier": BARRIERS, "store": STORES, "access": LOADS | STORES, "test": TESTS}
 WAITING = {"barrier": {*Op}, "store": LOADS, "access": STORES, "test": TESTS}
-"""Which instructions wait for those of a kind."""
+"""The kinds of instructions that wait for those of a kind."""
 
 _Reason = tuple[str, str]
-"""What one instruction has to do with another: a kind, or a value or register and its name."""
+"""A relation between instructions: a kind, or a value or register and its name."""
 
 
 class BlockSchedule:
-    """The schedule of one block: what has the longest way to its end is issued first.
+    """The schedule of one block: the instruction with the longest path to the end is issued first.
 
-    `renews`: the phi that each value becomes the next one of.
+    `renews`: the phi whose next value each value becomes.
     """
 
     def __init__(self, registers: LocalRegisters, renews: Mapping[str, str]) -> None:
@@ -47,10 +48,10 @@ class BlockSchedule:
         self.instructions, self.bank_of = registers.instructions, registers.bank_of
         self.registers_are_enough = registers.are_enough
         self.behind: list[dict[int, int]] = [{} for _ in self.instructions]
-        """Of each instruction: those that wait for it, and for how many cycles."""
+        """For each instruction: those that wait for it, and for how many cycles."""
         met = defaultdict[_Reason, list[int]](list)
         for then, each in enumerate(self.instructions):
-            # of a long block these are few; to look at every pair would take most of the time
+            # in a long block these are few; looking at every pair would take most of the time
             related = {*range(then)[-1:]}.union(*(met.get(reason, ()) for reason in self._asks(then)))
             for first in range(then) if each.op in BARRIERS else related:
                 gap = self._gap(first, then)
@@ -64,7 +65,7 @@ class BlockSchedule:
             self.priority[number] = max(paths, default=1)
 
     def paired(self) -> frozenset[tuple[int, int]]:
-        """Return the places of 32-bit instructions and of the accesses that are issued with them."""
+        """Return the positions of 32-bit instructions and of the accesses that are issued with them."""
         before = Tally(then for each in self.behind for then in each)
         earliest = [0] * len(self.instructions)
         ready = {number for number in range(len(self.instructions)) if not before[number]}
@@ -119,7 +120,7 @@ class BlockSchedule:
         return each.op in LOADS | STORES and each.code_bytes == SHORT_BYTES and not is_reload
 
     def _offers(self, first: int) -> Iterator[_Reason]:
-        """Why a later instruction may wait for this one: its kind, what it computes, reads, writes and keeps."""
+        """The reasons for which a later instruction may wait for this one: its kind, what it computes, reads, writes and keeps."""
         each, registers = self.instructions[first], self.registers
         yield from ((kind, "") for kind, ops in KINDS.items() if each.op in ops)
         yield from (("register", name) for name in {*registers.read[first], registers.written[first]} if name)
@@ -129,7 +130,7 @@ class BlockSchedule:
             yield "kept", each.uses[0][0]
 
     def _asks(self, then: int) -> Iterator[_Reason]:
-        """Why this instruction may wait for an earlier one that is not right before it, unless it is a barrier."""
+        """The reasons for which this instruction may wait for an earlier one that is not right before it, unless it is a barrier."""
         each, registers = self.instructions[then], self.registers
         yield from ((kind, "") for kind, ops in WAITING.items() if each.op in ops)
         yield from (("value", name) for name in registers.uses[then])
@@ -139,7 +140,7 @@ class BlockSchedule:
             yield "kept", renewed
 
     def _gap(self, first: int, then: int) -> int | None:
-        """Cycles from the issue of `first` to that of `then` at the earliest; None if they are independent."""
+        """The least number of cycles from the issue of `first` to the issue of `then`; None if they are independent."""
         one, other = self.instructions[first], self.instructions[then]
         if {one.op, other.op} & BARRIERS:
             return 1
@@ -176,5 +177,5 @@ class BlockSchedule:
 
 
 def is_kept(each: MachineInstruction) -> bool:
-    """Whether an instruction copies the old value of what a loop carries, before the new one is there."""
+    """Whether an instruction copies the old value of a loop's variable before the new one is computed."""
     return each.op is Op.MOVE and each.result is None and bool(each.uses)

@@ -1,4 +1,4 @@
-"""Which accesses of a routine share a bundle, and so take no cycle of their own [bfin_gen_bundles in bfin.cc of GCC 12]."""
+"""The accesses of a routine that share a bundle, and so take no extra cycle [bfin_gen_bundles in bfin.cc of GCC 12]."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from bfsim.kernel.ir.text import each_arm
 
 
 def bundled(context: Context, code: MachineCode, allocation: Allocation) -> frozenset[tuple[str, int]]:
-    """Return the blocks of such accesses, and their places in them.
+    """Return the blocks of such accesses, and their positions in them.
 
-    Blocks between which no branch is left are scheduled as one; what a test stood between is not brought together, for GCC may have kept it.
+    Blocks between which no branch is left are scheduled as one, but not those that a test separated, because GCC may
+    have kept it.
     """
     renews = {
         context.chosen(each, value): each.result or ""
@@ -42,7 +43,7 @@ def bundled(context: Context, code: MachineCode, allocation: Allocation) -> froz
 def _with_copies_in_front(
     places: list[tuple[str, int]], code: MachineCode, allocation: Allocation
 ) -> list[tuple[str, int]]:
-    """Places of instructions, those of copies of old values before what computes the new ones: they are noted at the loop's end."""
+    """Positions of instructions, with copies of old values before the instructions that compute the new ones: they are noted at the loop's end."""
 
     def register(name: str | None) -> str:
         return allocation.register.get(name or "", name or "")
@@ -58,7 +59,7 @@ def _with_copies_in_front(
 
 
 def _merged(context: Context) -> Iterator[list[str]]:
-    """Blocks that are one, for no branch is left between them."""
+    """Blocks that are one because no branch is left between them."""
     flow, gone, converted = context.flow, context.if_conversion.gone, context.if_conversion.by_label
     behind = dict[str, str]()
     for label, block in flow.blocks.items():

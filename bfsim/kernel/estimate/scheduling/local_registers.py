@@ -1,7 +1,7 @@
-"""Which data and pointer registers the values of one block share, as far as the order of its instructions depends on that.
+"""The data and pointer registers that the values of one block share, as far as the order of its instructions depends on them.
 
-A register is taken again as soon as its value is no longer wanted, that of an operand first. So an instruction that writes it waits for
-those that read it before.
+A register is reused as soon as its value is no longer needed, that of an operand first. So an instruction that writes
+it waits for those that read it before.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ DESTROYING = {Op.MUL32, Op.SHIFT}
 
 @dataclass
 class LocalRegisters:
-    """The registers of one block. `alive`: the values that are wanted behind it; `bank_of` tells in which bank a value is.
+    """The registers of one block. `alive`: the values that are live after it; `bank_of` returns the bank of a value.
 
-    `uses` and `results` are values of each instruction, those of loops by the name of their web; `read` and `written` are registers.
+    `uses` and `results` are the values of each instruction, those of loops by the name of their web; `read` and
+    `written` are registers.
     """
 
     instructions: Sequence[MachineInstruction]
@@ -32,7 +33,7 @@ class LocalRegisters:
     written: list[str | None] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        """Give each value that only this block knows the first register that is free as long as it is wanted."""
+        """Give each value that only this block uses the first register that is free as long as it is needed."""
         self.uses = [
             {self.register_of(name) for name in used(self.instructions, number)}
             for number in range(len(self.instructions))
@@ -41,7 +42,7 @@ class LocalRegisters:
         last = self._last_uses()
         own = {each for each in self.results if each is not None} - self.alive
         home: dict[str, str] = {}
-        # of each register: until which instruction its value is wanted
+        # for each register: the last instruction that needs its value
         busy = {name: last[name] for name in sorted(last) if name not in own}
         for number, result in enumerate(self.results):
             self.read.append({home.get(name, name) for name in self.uses[number]})
@@ -53,18 +54,18 @@ class LocalRegisters:
 
     @property
     def are_enough(self) -> bool:
-        """Whether the data registers suffice: where they do not, values come from others when they are wanted, and not before."""
+        """Whether the data registers suffice; if not, values come from other registers when they are needed, and not before."""
         names = {name for names in (*self.read, self.alive) for name in names} | {*self.written} - {None}
         return sum(self.bank_of(name or "") is RegisterBank.DATA for name in names) <= DATA_REGISTERS
 
     def _last_uses(self) -> dict[str, int]:
-        """Where each value is used last; behind the block if it is wanted there."""
+        """Where each value is used last; after the block if it is live there."""
         last = {each: number for number, each in enumerate(self.results) if each is not None}
         last |= {name: number for number, uses in enumerate(self.uses) for name in uses}
         return last | dict.fromkeys(self.alive, len(self.instructions))
 
     def _free(self, number: int, result: str, until: int, busy: dict[str, int], home: dict[str, str]) -> str:
-        """A register for the result of an instruction: that of an operand that it uses last, or the first one that is free."""
+        """A register for the result of an instruction: that of an operand that it uses last, or the first free one."""
         operands = [home.get(name, name) for name, _ in self.instructions[number].uses]
         for register in (*operands, *busy):
             same_bank = self.bank_of(register) is self.bank_of(result)

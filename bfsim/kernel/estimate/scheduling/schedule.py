@@ -1,7 +1,7 @@
 """When operations are issued: how long they wait for pointer registers, and which share a bundle.
 
-A list scheduler over one block: in each cycle the first operation, in the order of the program, whose operands are
-there. What no other operation fills is a stall. Waits across the ends of blocks are not modelled.
+A list scheduler over one block: in each cycle it issues the first operation, in program order, whose operands are
+ready. A cycle that no operation fills is a stall. Waits across the ends of blocks are not modelled.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ BUNDLING = {
 
 @dataclass(frozen=True, slots=True)
 class Issue:
-    """When an operation is issued: after `stall_cclk` idle cycles, or in the same bundle as one before it."""
+    """When an operation is issued: after `stall_cclk` idle cycles, or in the same bundle as an earlier one."""
 
     stall_cclk: int = 0
     paired: bool = False
@@ -78,7 +78,7 @@ def _cclk(instruction: MachineInstruction) -> int:
 def _gap(
     first: MachineInstruction, then: MachineInstruction, bank_of: Callable[[str], RegisterBank | None]
 ) -> int | None:
-    """Cycles from the issue of `first` to that of `then` at the earliest; None if they are independent."""
+    """The least number of cycles from the issue of `first` to the issue of `then`; None if they are independent."""
     used = {name for name, _ in then.uses}
     if first.result is not None and first.result in used:
         return _cclk(first) + _latency(first, then, bank_of)

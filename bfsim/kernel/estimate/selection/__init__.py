@@ -1,1 +1,1 @@
-"""Instruction selection: what of the optimised IR a Blackfin computes, and by which operations."""
+"""Instruction selection: the operations by which a Blackfin computes the optimised IR."""

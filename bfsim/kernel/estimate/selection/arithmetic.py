@@ -26,7 +26,7 @@ class Arithmetic:
         self.context, self.flow = emitter.context, emitter.context.flow
         self.divisions = divisions
         self.factors = set[tuple[str, str]]()
-        """Bytes that have been extended for a product, with the block in which that was: other products there take the same."""
+        """Bytes that have been extended for a product, with the block: other products there take the same extension."""
 
     def add(self, each: Instruction) -> None:
         if self.context.folding.in_shifted_sum(each):
@@ -139,12 +139,12 @@ class Arithmetic:
             )
 
     def _is_made_narrow(self, each: Instruction) -> bool:
-        """Whether LLVM multiplies bytes where the product fits: it is one of half-words."""
+        """Whether LLVM multiplies bytes because the product fits: it becomes a product of half-words."""
         users = self.flow.users.get(each.result or "", [])
         return each.bits == BYTE and bool(users) and all(user.opcode == "zext" for user in users)
 
     def _steps_along(self, each: Instruction) -> bool:
-        """A product of a counter: an addition per iteration takes its place (strength reduction)."""
+        """Whether it is a product of a counter: an addition per iteration replaces it (strength reduction)."""
         loop, increment = self.flow.innermost(self.emitter.label), self.context.demanded.stepped(each)
         if loop is None or increment is None:
             return False

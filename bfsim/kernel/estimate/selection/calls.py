@@ -1,4 +1,4 @@
-"""Calls: of other kernels, of the run-time library, and of what fills or moves memory."""
+"""Calls: of other kernels, of the run-time library, and of routines that fill or move memory."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ class Calls:
                 self.append(Op.IMM if not value.startswith("%") else Op.MOVE, each, None, DATA, (value, ANY))
 
     def memory(self, call: MemoryCall) -> None:
-        """Call memset or memmove instead of iterating; of an unknown length, the loop's counters tell (`memory_lengths`)."""
+        """Call memset or memmove instead of iterating; the loop's counters give an unknown length (`memory_lengths`)."""
         each, root = call.store, self.context.flow.root
         self.emitter.label = self.context.flow.entering(call.place)
         if call.is_inline:
             self.append(Op.MOVE, each, None, POINTER, (root(each.operands[1]), ANY))
-            self.append(Op.ALU, each, None, POINTER)  # a pointer of its own that walks, and a step
+            self.append(Op.ALU, each, None, POINTER)  # a separate pointer that walks, and a step
             for _ in range(call.total or 0):
                 self.append(Op.STORE8, each, None, DATA, (each.operands[0], ANY))
             return
@@ -64,7 +64,7 @@ class Calls:
             self.append(Op.LIBRARY, each, None, DATA, cclk=call.routine.blocks_of(call.total or 0), nbytes=0)
 
     def library(self, each: Instruction, routine: LibraryRoutine, name: str) -> None:
-        """What a routine of the run-time library takes."""
+        """The cost of a routine of the run-time library."""
         if routine.mix:
             for op, count in routine.mix:
                 for _ in range(count):

@@ -8,7 +8,7 @@ from bfsim.kernel.ir.text import SourceLine
 from bfsim.kernel.operations import Op
 
 BOUND = ".bound"
-"""Ends the name of a number that is loaded since something is compared with it."""
+"""Ends the name of a number that is loaded for a comparison."""
 
 
 def load_constant(

@@ -1,4 +1,4 @@
-"""What the lowering of one routine knows about it, gathered once."""
+"""The analyses that the lowering of one routine needs, made once."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Context:
         converted = frozenset({*self.if_conversion.by_label, *self.if_conversion.gone})
         self.ranges = ranges(self.flow, converted, neighbours=profile.applies(Rule.NEIGHBOURS))
         self.second_parts = {each.second: each.inside for each in self.ranges.values()}
-        """Blocks whose test is part of the one before, and where they lead if both hold."""
+        """Blocks whose test is part of the previous one, and where they lead if both hold."""
         self.likelihood = Likelihood(self.flow, self.second_parts, profile.without)
         self.induction_variables = InductionVariables(self.flow, self.evolution, profile)
         has_fields = profile.applies(Rule.FIELD_ADDRESSES)
@@ -80,11 +80,11 @@ class Context:
         )
         self.narrow = NarrowValues(self.folding, self.induction_variables, self.counters, self.demanded.emits)
         self.replaced = frozenset({*self.bit_counts, *self.memory_calls})
-        """Loops of one block that are an operation or a call."""
+        """Loops of one block that become an operation or a call."""
 
     @cached_property
     def tail_calls(self) -> dict[str, TailCall]:
-        """Calls that are jumps, by the labels of their blocks."""
+        """Calls that become jumps, by the labels of their blocks."""
         return tail_calls(self.flow, self.arguments, len(self.parameters()), self.memory_calls)
 
     def is_kept(self, block: BasicBlock) -> bool:
@@ -100,7 +100,7 @@ class Context:
         )
 
     def tests_flag(self, block: BasicBlock) -> bool:
-        """Whether the branch at the end of a block tests a flag that a register has, 0 or 1, such as one that the iteration before has set."""
+        """Whether the branch at the end of a block tests a flag in a register, 0 or 1, such as one that the previous iteration has set."""
         flag = self.flow.instruction(block.terminator.operands[0])
         return flag is not None and flag.opcode == "phi" and not self.conversions_of(flag)
 
@@ -113,22 +113,22 @@ class Context:
         return found
 
     def conversions_of(self, phi: Instruction) -> list[ConvertedIf]:
-        """The branchless `if`s that compute a phi, each on ways of its own."""
+        """The branchless `if`s that compute a phi, each on its own edges."""
         return self._conversions_by_phi.get(phi.result or "", [])
 
     def others(self, phi: Instruction) -> list[tuple[str, str]]:
-        """Arms of a phi that come from elsewhere than from a branchless `if` that computes it."""
+        """Arms of a phi that do not come from a branchless `if` that computes it."""
         own = {label for each in self.conversions_of(phi) for label in (each.label, *each.arms)}
         return [(value, label) for value, label in each_arm(phi) if label not in own]
 
     def converted(self, conversion: ConvertedIf) -> str:
-        """Name of what a branchless `if` computes: a value of its own where other ways lead to the phi as well."""
+        """Name of the result of a branchless `if`: a separate value if other edges also lead to the phi."""
         phi = conversion.phi
         is_alone = not self.others(phi) and len(self.conversions_of(phi)) == 1
         return phi.result or "" if is_alone else f"{phi.result}.converted.{conversion.label}"
 
     def is_alias(self, each: Instruction) -> bool:
-        """Whether an instruction only renames a register: widening what a load has extended already, or a flag that a register has, or narrowing."""
+        """Whether an instruction only renames a register: narrowing, or widening a value that a load has extended, or a flag in a register."""
         if each.opcode in ("trunc", "freeze") or (each.opcode == "lshr" and each.bits == PAIR):
             return True
         if each.opcode == "zext" and " i1 " in each.text:
@@ -139,7 +139,7 @@ class Context:
         return self._is_clean(each.operands[0]) and not self.is_extended_late(each)
 
     def _is_clean(self, narrow: str, depth: int = 8) -> bool:
-        """Whether the register of a narrow value holds it extended already: all it is made of was, and nothing overflows."""
+        """Whether the register of a narrow value already holds it extended: all its operands are, and nothing overflows."""
         each = self.flow.instruction(narrow)
         if each is None or each.opcode == "load" or depth == 0:
             return True
@@ -157,7 +157,7 @@ class Context:
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)
 
     def is_extended_late(self, extension: Instruction) -> bool:
-        """Whether what is extended was masked, or joined bit by bit, before (`narrow_bits`)."""
+        """Whether the extended value was masked, or joined bit by bit, before the extension (`narrow_bits`)."""
         return self.profile.applies(Rule.NARROW_BITS) and is_joined_before(self.flow, extension)
 
     def name(self, value: str) -> str:
@@ -178,7 +178,7 @@ class Context:
         return value
 
     def chosen(self, phi: Instruction, value: str) -> str:
-        """The register of what a phi takes: of what is loaded narrow and extended apart, that of the word."""
+        """The register of a phi's operand: for a narrow load that is extended separately, that of the word."""
         load = self.flow.instruction(value)
         is_word = load is not None and ALONG not in (phi.result or "") and self.narrow.extended_apart(load)
         return f"{value}.wide" if is_word else self.name(value)
@@ -197,7 +197,7 @@ class Context:
         return pointer
 
     def arguments(self, call: Instruction) -> list[str]:
-        """What C code would pass: without the lengths that follow the arrays."""
+        """The arguments that C code would pass: without the lengths that follow the arrays."""
         inside = call.text[call.text.index("(") + 1 : call.text.rindex(")")].split(",")
         values = [part.split() for part in inside if part.strip()]
         kept = []
@@ -207,13 +207,13 @@ class Context:
         return kept
 
     def parameters(self) -> list[str]:
-        """Parameters of the C function, in order: behind them come the lengths that it asks for."""
+        """Parameters of the C function, in order, followed by the lengths that it asks for."""
         lengths = [each for each in self.routine.parameters if each.endswith(HIDDEN)]
         own = [each for each in self.routine.parameters if each not in lengths]
         return [*own, *(each for each in lengths if each in self.flow.users)]
 
     def is_there(self, value: str, number: int, call: Instruction) -> bool:
-        """Whether a value is in the register of argument `number` already: computed there, or passed on in its place."""
+        """Whether a value is already in the register of argument `number`: computed there, or passed on in its place."""
         if self.demanded.ends_in(value, call):
             return True
         parameters, users = self.parameters(), self.flow.users.get(value)

@@ -46,7 +46,7 @@ class Divisions:
         self.calls.library(each, routine, "division" if each.opcode.endswith("div") else "remainder")
 
     def _divide_by_power(self, each: Instruction) -> None:
-        """The likelier way, of a dividend that is not negative, has no code in between."""
+        """Divide by a power of two, at the cost of the likelier path, for a dividend that is not negative."""
         branch = Op.BRANCH_TAKEN_BP if each.opcode == "sdiv" else Op.BRANCH_NOT_TAKEN
         for op in by_power(each.opcode, int(each.operands[1]), branch) or ():
             self.append(op, each, each.result, DATA, (each.operands[0], DATA))

@@ -1,4 +1,4 @@
-"""What rules write into: the operations of each block, and the block at hand."""
+"""The output of the rules: the operations of each block, and the current block."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Emitter:
         )
 
     def load_bound(self, each: Instruction, number: str) -> str:
-        """Load a number that is compared with and that no comparison takes as an immediate; return its name."""
+        """Load a number for a comparison that cannot take it as an immediate; return its name."""
         name = f"{each.result}{BOUND}"
         self.code.add(self.label, load_constant(f"#{number}", each.line, name))
         return name

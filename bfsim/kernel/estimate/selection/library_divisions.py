@@ -17,7 +17,7 @@ from bfsim.kernel.rules import Rule
 
 
 class LibraryDivisions:
-    """Those of one routine."""
+    """The divisions of one routine."""
 
     def __init__(self, flow: ControlFlow, profile: CompilerProfile) -> None:
         self.flow, self.profile = flow, profile
@@ -29,7 +29,7 @@ class LibraryDivisions:
         return self.divides_signed(each) or not each.operands[1].isdigit()
 
     def divides_signed(self, each: Instruction) -> bool:
-        """Whether a quotient comes from the signed routine: it was signed, or the compiler knows its dividend's sign.
+        """Whether a quotient comes from the signed routine: it was signed, or the compiler knows the sign of its dividend.
 
         GCC then takes the cheaper of the two ways, and counts a call as one [expand_divmod in expmed.cc of GCC 12];
         a byte or half-word that was just extended is not known to be positive there.
@@ -55,7 +55,7 @@ class LibraryDivisions:
         return UnsignedRanges(self.flow).found
 
     def _name_of(self, each: Instruction) -> str:
-        """Return the name of a division. Where LLVM has made it one of bytes, what extends it to an i32 has it."""
+        """Return the name of a division. If LLVM has narrowed it to bytes, its extension to an i32 has the name."""
         result = each.result or ""
         extended = [user for user in self.flow.users.get(result, ()) if user.opcode == "zext"]
         return " ".join([result, *(user.result or "" for user in extended)])

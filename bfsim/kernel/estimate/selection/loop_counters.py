@@ -1,4 +1,4 @@
-"""Loops whose iterations a register counts, and counters of the program that are computed from pointers then."""
+"""Loops whose iterations a register counts, and counters of the program that are then computed from pointers."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from bfsim.kernel.ir.text import Instruction
 from bfsim.kernel.rules import Rule
 
 FEWEST_ITERATIONS = 3
-"""A loop of so few keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]."""
+"""A loop with this few iterations keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]."""
 
 
 class LoopCounters:
-    """Those of one routine. `counted`: headers of loops that a register counts; `eliminated`: counters by their names."""
+    """The counters of one routine. `counted`: headers of loops that a register counts; `eliminated`: counters by their names."""
 
     def __init__(
         self,
@@ -50,7 +50,7 @@ class LoopCounters:
         )
 
     def _iterations_by_counter(self, loop: Loop) -> bool:
-        """Counted, and without calls and computed jumps: a register counts the iterations, not the program's variable."""
+        """Whether a loop is counted, without calls and computed jumps: a register counts the iterations, not the program's variable."""
         inside = (each for label in self.flow.inside(loop) for each in self.flow.blocks[label].instructions)
         library = any(
             each.is_call
@@ -65,7 +65,7 @@ class LoopCounters:
         return not library and not self._jumps(loop) and many and counted and known
 
     def _jumps(self, loop: Loop) -> bool:
-        """Whether a loop has a computed jump, as a switch is that does not test for bits."""
+        """Whether a loop has a computed jump, as from a switch that does not test for bits."""
         blocks = (self.flow.blocks[label] for label in self.flow.inside(loop))
         return any(
             each.terminator.opcode == "switch" and masks_of_places(each, self.flow) is None for each in blocks
@@ -76,7 +76,7 @@ class LoopCounters:
         return self.evolution.code_motion.of[each.result or ""] in loop.blocks
 
     def _steps_by_power(self, loop: Loop) -> bool:
-        """Whether the number of iterations takes a shift to find, not a division ["Costs of niter computation too high" there]."""
+        """Whether finding the number of iterations takes a shift, not a division ["Costs of niter computation too high" there]."""
         if not self.profile.applies(Rule.DIVIDED_COUNTS):
             return True
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")

@@ -10,7 +10,7 @@ from bfsim.kernel.operations import COSTS, Op
 
 
 class RegisterBank(Enum):
-    """Where a value must be: data register, pointer register, or either; some pointers are in index registers in the end."""
+    """Where a value must be: data register, pointer register, or either; some pointers end up in index registers."""
 
     DATA = "R"
     POINTER = "P"
@@ -29,13 +29,13 @@ class MachineInstruction:
     uses: tuple[tuple[str, RegisterBank], ...] = ()
     overwrites: tuple[str, ...] = ()
     cclk: int | None = None
-    """Cycles, where they are not those of the operation."""
+    """Cycles, if they differ from those of the operation."""
     nbytes: int | None = None
-    """Bytes of code, where they are not those of the operation."""
+    """Bytes of code, if they differ from those of the operation."""
     access: Instruction | None = None
     """The access of the IR that it makes."""
     routine: str = ""
-    """The routine of the run-time library that it is an operation of."""
+    """The routine of the run-time library that it belongs to."""
 
     @property
     def code_bytes(self) -> int:
@@ -45,7 +45,7 @@ class MachineInstruction:
 
 @dataclass(slots=True)
 class MachineCode:
-    """The operations of each block of a routine, but for its branches."""
+    """The operations of each block of a routine, without its branches."""
 
     of: dict[str, list[MachineInstruction]] = field(default_factory=dict)
 

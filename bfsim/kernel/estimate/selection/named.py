@@ -1,4 +1,4 @@
-"""What LLVM has names for and the Blackfin has not, and what has a name in the kernel language."""
+"""Operations that LLVM names and the Blackfin lacks, and the intrinsics of the kernel language."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Named:
         self.context, self.calls = emitter.context, calls
 
     def operation(self, each: Instruction) -> None:
-        """What LLVM calls by a name, or an intrinsic of the kernel language."""
+        """An operation that LLVM calls by name, or an intrinsic of the kernel language."""
         values = tuple((value, DATA) for value in each.operands if not value.startswith(("true", "false")))
         if (intrinsic := each.intrinsic) is not None:
             self._instructions(each, intrinsic.ops)
@@ -55,7 +55,7 @@ class Named:
         self.append(Op.ALU, each, each.result, DATA, (each.operands[0], DATA))
 
     def _unsigned_extreme(self, each: Instruction, values: tuple[tuple[str, RegisterBank], ...]) -> None:
-        """A comparison, of what is extended if it is narrow, and a conditional move, which overwrites either operand."""
+        """A comparison, of extended values if they are narrow, and a conditional move, which overwrites either operand."""
         (left, _), (right, _) = values
         if is_number(right) and int(right) not in operations.COMPARE_UNSIGNED_IMMEDIATE:
             right = self.emitter.load_bound(each, right)
@@ -74,14 +74,14 @@ class Named:
         self.append(ops[-1], each, each.result, DATA, *values)
 
     def _shift_by_zeros(self, each: Instruction) -> None:
-        """LLVM divides by what it knows to be a power of two with a count of zeros; the Blackfin calls its library."""
+        """LLVM divides by a known power of two with a count of zeros; the Blackfin calls its library."""
         routine = self.context.profile.library.divide_unsigned
         self.calls.hand_over(each, list(each.operands[:1]) * 2)
         self.append(Op.CALL, each, each.result, DATA)
         self.calls.library(each, routine, "division")
 
     def _swap_bytes(self, each: Instruction) -> None:
-        """Both bytes of a half-word are shifted, the upper one of a word, as the source does of which LLVM has read a swap."""
+        """Both bytes of a half-word are shifted, the upper one of a word, as in the source that LLVM has read as a swap."""
         value, up, down = (each.operands[0], DATA), f"{each.result}.up", f"{each.result}.down"
         self.append(Op.SHIFT, each, up, DATA, value)
         self.append(Op.EXTEND, each, down, DATA, value)
@@ -89,7 +89,7 @@ class Named:
         self.append(Op.ALU, each, each.result, DATA, (up, DATA), (down, DATA))
 
     def _reverse_bytes(self, each: Instruction) -> None:
-        """Each byte of a word is shifted to its place, both inner ones are masked, and all are joined, as most write it."""
+        """Each byte of a word is shifted to its place, both inner ones are masked, and all are joined, as most people write it."""
         value = (each.operands[0], DATA)
         parts = [(f"{each.result}.part{number}", DATA) for number in range(4)]
         for number, (name, _) in enumerate(parts):
@@ -101,7 +101,7 @@ class Named:
         self.append(Op.ALU, each, each.result, DATA, parts[-2], parts[-1])
 
     def _swap_bits(self, each: Instruction) -> None:
-        """Halves are swapped over and over, as the source does from which LLVM has read the whole reversal."""
+        """Halves are swapped over and over, as in the source that LLVM has read as a reversal."""
         for stage in range(4):
             self.append(Op.SHIFT, each, f"{each.result}.up", DATA, (each.operands[0], DATA))
             self.append(Op.SHIFT, each, f"{each.result}.down", DATA, (each.operands[0], DATA))

@@ -1,8 +1,9 @@
-"""Bytes and half-words that are masked, or joined bit by bit, before they are extended.
+"""Bytes and half-words that are masked, or combined bitwise, before they are extended.
 
-C computes with words, but GCC does such an operation before the extension ["(bitop (convert @0) (convert? @1))" in match.pd of GCC 12; of
-numbers that fit, for masks]. Where nothing wants a word, but a test some of the bits, only the test extends: what a mask in a register leaves
-of a byte GCC does not know. So the mask is done also where a single bit is tested then, and the result is extended where several are.
+C computes with words, but GCC does such an operation before the extension ["(bitop (convert @0) (convert? @1))" in
+match.pd of GCC 12; for masks, with numbers that fit]. If nothing uses a word, but a test uses some of the bits, only
+the test extends: GCC does not know what a mask in a register leaves of a byte. So the mask is done even if a single bit
+is tested later, and the result is extended if several are.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from bfsim.kernel.ir.widths import BYTE, WORD
 BITWISE = ("and", "or", "xor")
 SHIFTS = ("lshr", "ashr", "shl")
 EXTENDING = (0xFF, 0xFFFF)
-"""Masks that are an extension themselves, whatever is loaded."""
+"""Masks that are themselves an extension, whatever is loaded."""
 SIGN = 1 << (BYTE - 1)
-"""The highest bit of a byte: whether it is set is a comparison with 0."""
+"""The highest bit of a byte: its test is a comparison with 0."""
 
 
 def is_joined_before(flow: ControlFlow, extension: Instruction) -> bool:
-    """Whether what is extended is a mask of what is loaded, which is no extension itself, or made bit by bit of values that are loaded."""
+    """Whether the extended value is a mask of a load, which is itself no extension, or combined bitwise from loaded values."""
     each = flow.instruction(extension.operands[0])
     if each is not None and each.opcode in ("add", "sub", "mul") and is_number(each.operands[1]):
         each = flow.instruction(each.operands[0])  # LLVM computes with bytes what fits
@@ -33,7 +34,7 @@ def is_joined_before(flow: ControlFlow, extension: Instruction) -> bool:
 
 
 def is_masked_for_test(flow: ControlFlow, each: Instruction) -> bool:
-    """Whether an instruction is a mask of what is loaded, of which only tests want some bits."""
+    """Whether an instruction is a mask of a loaded value, and only tests use some of its bits."""
     if each.opcode != "and" or each.bits >= WORD or not is_number(each.operands[1]):
         return False
     mask, source = int(each.operands[1]), flow.instruction(each.operands[0])
@@ -51,7 +52,7 @@ def _is_mask(user: Instruction) -> bool:
 
 
 def _is_loaded(flow: ControlFlow, value: str) -> bool:
-    """Whether a narrow value is loaded, or made bit by bit of such."""
+    """Whether a narrow value is loaded, or combined bitwise from loaded ones."""
     each = flow.instruction(value)
     if each is None or each.opcode == "load":
         return each is not None

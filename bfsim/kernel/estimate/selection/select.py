@@ -1,6 +1,7 @@
 """Optimised IR → Blackfin operations: one rule per kind of instruction.
 
-Each rule says what a C compiler emits for an instruction in its surroundings; what nothing needs is not emitted.
+Each rule says what a C compiler emits for an instruction in its context; instructions that nothing needs are not
+emitted.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def select(context: Context) -> MachineCode:
 
 
 def _extended_where_used(block: list[MachineInstruction]) -> list[MachineInstruction]:
-    """A narrow value that is used as it is, too, is extended right before the first use that wants it wide [TER in tree-ssa-ter.cc]."""
+    """A narrow value that is also used as narrow is extended right before its first wide use [TER in tree-ssa-ter.cc]."""
     wanted = {name for each in block for name, _ in each.uses}
     found: list[MachineInstruction] = []
     waiting: dict[str, MachineInstruction] = {}
@@ -87,7 +88,7 @@ class _Selector:
         }
 
     def in_place_of_loop(self, header: str) -> None:
-        """Append what is in place of a loop to the block before it."""
+        """Append the operations that replace a loop to the block before it."""
         context = self.emitter.context
         for call in context.memory_calls.get(header, ()):
             self.calls.memory(call)

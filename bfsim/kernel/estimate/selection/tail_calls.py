@@ -1,7 +1,7 @@
-"""Calls right before a return: the called function returns in the caller's place, so that the call is a jump.
+"""Calls right before a return: the called function returns for the caller, so the call is a jump.
 
-GCC does so at -O2 (-foptimize-sibling-calls), where the arguments on the stack need no more room than the caller's own
-[expand_call in calls.cc]. What the caller has saved it restores before the jump.
+GCC does so at -O2 (-foptimize-sibling-calls), if the arguments on the stack need no more room than the caller's own
+[expand_call in calls.cc]. The caller restores the registers that it has saved before the jump.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from bfsim.kernel.operations import REGISTER_ARGUMENTS
 
 
 class TailCall(NamedTuple):
-    """A call that is a jump, and the return behind it, which the caller does not execute then.
+    """A call that is a jump, and the return after it, which the caller then does not execute.
 
-    The return may be in another block, where other ways end, too, and of another source line.
+    The return may be in another block, where other paths also end, and in another source line.
     """
 
     call: Instruction
@@ -53,7 +53,7 @@ def tail_calls(
 
 
 def _returning(flow: ControlFlow, label: str, value: str | None) -> Instruction | None:
-    """Return the `ret` of `value`, or of nothing, that alone is left to do at the end of a block, if so."""
+    """Return the `ret` of `value`, or of nothing, if it is all that is left to do at the end of a block."""
     seen = {label}
     while flow.blocks[label].terminator.opcode == "br" and len(flow.blocks[label].successors) == 1:
         (way,) = flow.blocks[label].successors

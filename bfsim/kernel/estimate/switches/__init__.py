@@ -1,1 +1,1 @@
-"""Switches: chains of tests for numbers, and what becomes of them."""
+"""Switches: chains of tests for numbers, and what they become."""

@@ -1,8 +1,8 @@
-"""Tests of a value for several numbers that lead to one place are made fewer [optimize_range_tests in tree-ssa-reassoc.cc of GCC 12].
+"""Tests of a value for several numbers that lead to one place, made fewer [optimize_range_tests in tree-ssa-reassoc.cc of GCC 12].
 
-Of `c == 9 or c == 10 or c == 13 or c == 32` numbers side by side are a range; two that differ in one bit are one test without that bit; and
-of three or more that are left, all within a word from the least of them are a test for a range, and one for a bit of a mask. Hints of how
-likely one of the tests is are lost: which way the tests of a range and a mask go was not said.
+In `c == 9 or c == 10 or c == 13 or c == 32`, neighbouring numbers are a range; two that differ in one bit are one test
+without that bit; and if three or more are left, those within a word from the least become a test for a range, and one
+for a bit of a mask. Hints for single tests are lost: they say nothing about the tests of a range and a mask.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from bfsim.kernel.ir.edges import with_arms
 from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, written
 from bfsim.kernel.ir.widths import WORD, widest
 
-FEWEST = 3  # tests that a mask replaces [the threshold in optimize_range_tests_to_bit_test]
+FEWEST = 3  # least number of tests that a mask replaces [the threshold in optimize_range_tests_to_bit_test]
 SMALL_BITS = 5  # of the number of a bit of a word
-HIT = (1, 1)  # as likely a bit of the mask is set, and not: what was guessed of the single tests is lost
+HIT = (1, 1)  # a bit of the mask is as likely set as not: the guesses for the single tests are lost
 
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
     """Numbers from `low` to `high`, with the bit of `free` set or not.
 
-    With `mask`, those whose bit in it is set: `low` is the number of its lowest bit. `is_sure`: every value is one from `low` to `high`.
+    With `mask`, those whose bit in it is set: `low` is the number of its lowest bit. `is_sure`: every value is from
+    `low` to `high`.
     """
 
     low: int
@@ -37,7 +38,7 @@ class Numbers:
     is_sure: bool = False
 
     def of_mask(self, low: int) -> int:
-        """Return the numbers as bits of a mask, that of `low` the lowest."""
+        """Return the numbers as bits of a mask; the lowest is for `low`."""
         bits = (1 << (self.high - self.low + 1)) - 1
         return bits << self.low - low | bits << (self.low | self.free) - low
 
@@ -65,7 +66,7 @@ def with_bit_tests(routine: Routine) -> Routine:
 
 
 def _is_switch(flow: ControlFlow, chain: Sequence[NumberTest]) -> bool:
-    """Whether a chain to one place is a `switch` first, of which numbers side by side are one case [`is_beneficial` in gimple-if-to-switch.cc]."""
+    """Whether a chain to one place first becomes a `switch`, in which neighbouring numbers are one case [`is_beneficial` in gimple-if-to-switch.cc]."""
     if len({each.hit for each in chain}) > 1 or not come_alike(
         flow, chain[0].hit, [each.label for each in chain]
     ):
@@ -77,7 +78,7 @@ def _is_switch(flow: ControlFlow, chain: Sequence[NumberTest]) -> bool:
 
 
 def _may_join(flow: ControlFlow, tests: Sequence[NumberTest], parts: Sequence[Numbers]) -> bool:
-    """Whether it makes no difference which of the tests it was, and fewer do."""
+    """Whether it makes no difference which of the tests held, and fewer tests suffice."""
     same = come_alike(flow, tests[0].hit, [each.label for each in tests])
     is_pair = len(tests) == 2 and not parts[0].free  # which the lowering joins where it can [`joined_tests`]
     fewer = len(parts) < len(tests) or len(parts) >= FEWEST
@@ -85,7 +86,7 @@ def _may_join(flow: ControlFlow, tests: Sequence[NumberTest], parts: Sequence[Nu
 
 
 def _parts(tests: Sequence[NumberTest], *, pairs: bool) -> list[Numbers]:
-    """Return the numbers of tests as ranges, and with `pairs` those of them that are a bit apart as one."""
+    """Return the numbers of tests as ranges; with `pairs`, those that differ in one bit as one."""
     ranges: list[Numbers] = []
     for number in sorted(each.number for each in tests):
         if ranges and ranges[-1].high == number - 1:
@@ -109,7 +110,7 @@ def _is_bit_apart(one: Numbers, other: Numbers) -> bool:
 
 
 def _steps(tests: Sequence[NumberTest], parts: Sequence[Numbers], *, is_small: bool) -> list[Numbers]:
-    """Return what is tested for, in the order of the tests for its least number. `is_small`: every value is the number of a bit of a word."""
+    """Return the sets of numbers to test for, in the order of the tests for their least numbers. `is_small`: every value is the number of a bit of a word."""
     is_small = is_small and all(0 <= each.number < WORD for each in tests)
     place = {each.number: number for number, each in enumerate(tests)}
     steps, left = list[Numbers](), list(parts)
@@ -168,9 +169,9 @@ def _join(blocks: dict[str, BasicBlock], tests: Sequence[NumberTest], steps: Seq
 def _range_test(
     test: NumberTest, numbers: Numbers, branch: Instruction, label: str, *, is_word: bool
 ) -> Iterator[Instruction]:
-    """Return what tests the value for a range, or for a number; what is computed of a narrow one is extended again.
+    """Return the test of the value for a range, or for a number; results computed from a narrow value are extended again.
 
-    A range alone is tested as a word, for C's operators do that before [fold_range_test in fold-const.cc].
+    A single range is tested as a word, because C's operators do so earlier [fold_range_test in fold-const.cc].
     """
     steps = [("and", ~numbers.free)] if numbers.free else []
     if numbers.low < numbers.high and numbers.low:
@@ -193,7 +194,7 @@ def _range_test(
 def _bit_test(
     test: NumberTest, before: Sequence[Instruction], mask: int, branch: Instruction, label: str
 ) -> list[Instruction]:
-    """Return what tests the bit of a mask whose number is what the test for the range has made of the value, in `before`."""
+    """Return the test of the bit of a mask; its number is what the test for the range, in `before`, has computed from the value."""
     rows, value = list[Instruction](), (before[-1].result or "") if before else test.value
     if not before and test.bits < WORD:
         rows.append(written(f"%{label}.wide", f"zext i{test.bits} {value} to i{WORD}", (value,), branch))

@@ -1,4 +1,4 @@
-"""A chain of tests each of which only chooses a constant is a load from a table [`switch_conversion` in tree-switch-conversion.cc of GCC 12]."""
+"""Chains of tests that only choose constants, turned into loads from tables [`switch_conversion` in tree-switch-conversion.cc of GCC 12]."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from bfsim.kernel.ir.edges import come_to_from
 from bfsim.kernel.ir.text import BasicBlock, Instruction, arms_of, is_number, with_values, written
 
 Values = dict[str, dict[int, int]]
-"""Of each phi behind a chain, what it is for each number."""
+"""For each phi after a chain, its value for each number."""
 
 
 def chosen(flow: ControlFlow, chain: Sequence[NumberTest]) -> tuple[str, Values] | None:
-    """Return the block behind a chain, and what its phis are there, if the chain only chooses between more than two constants.
+    """Return the block after a chain, and the values of its phis, if the chain only chooses between more than two constants.
 
-    Numbers between those of the chain choose what others do, so that must be a constant, too, where there are any.
+    Numbers between those of the chain get the value of the default, so if there are any, that must be a constant, too.
     """
     labels = {each.label for each in chain}
     ways = {each.number: _landing(flow, labels, each.label, each.hit) for each in chain}
@@ -45,7 +45,7 @@ def chosen(flow: ControlFlow, chain: Sequence[NumberTest]) -> tuple[str, Values]
 
 
 def _landing(flow: ControlFlow, labels: set[str], label: str, way: str) -> tuple[str, str]:
-    """Return where a way ends, and from which block it comes there: an empty block on it, that only `labels` lead to, is passed by."""
+    """Return where a path ends, and from which block it comes there: an empty block to which only `labels` lead is skipped."""
     block = flow.blocks[way]
     is_empty = len(block.instructions) == 1 and len(block.successors) == 1 and not block.enters
     return (block.successors[0], way) if is_empty and labels >= {*flow.predecessors[way]} else (way, label)
@@ -54,7 +54,7 @@ def _landing(flow: ControlFlow, labels: set[str], label: str, way: str) -> tuple
 def load_chosen(
     flow: ControlFlow, blocks: dict[str, BasicBlock], chain: Sequence[NumberTest], end: str, values: Values
 ) -> Iterator[str]:
-    """Put a load in the place of a chain that only chooses; return the tables, as definitions of LLVM's."""
+    """Replace a chain that only chooses by a load; return the tables, as LLVM's definitions."""
     first, last = chain[0], chain[-1]
     branch = blocks[first.label].terminator
     name, low = f"{first.label}.table", min(each.number for each in chain)
@@ -97,7 +97,7 @@ def load_chosen(
 
 
 def _come_to(block: BasicBlock, come: Collection[str], name: str, brought: Mapping[str, str]) -> BasicBlock:
-    """Return a block whose phis have what a table has `brought`, in place of what comes from several blocks."""
+    """Return a block whose phis take the values that a table has `brought`, in place of those from several blocks."""
     rows = []
     for each in block.instructions:
         if each.opcode == "phi":

@@ -1,4 +1,4 @@
-"""Ways that are copied for what is known on them, while variables are in memory, where blocks can be copied as they are."""
+"""Paths that are copied for what is known on them, while variables are in memory, so that blocks can be copied as they are."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ from bfsim.kernel.ir.text import (
 )
 
 MOST_COPIED = 100
-"""Instructions, but loads and stores of variables, of the ways that are copied from a block [param_max_fsm_thread_path_insns]."""
+"""Most instructions, without loads and stores of variables, of the paths that are copied from a block [param_max_fsm_thread_path_insns]."""
 MOST_NODES = 300
-"""[ours] Of blocks with what is known before them, on the ways from one block."""
+"""[ours] Most nodes, blocks with what is known before them, on the paths from one block."""
 RELATIONS = {"eq": int.__eq__, "slt": int.__lt__, "sgt": int.__gt__}
 Known = frozenset[tuple[str, int]]
-"""What is known to be in variables, by their names."""
+"""The known values of variables, by name."""
 Node = tuple[str, Known]
 """A block, and what is known before it."""
 
 
 @dataclass(slots=True)
 class Ways:
-    """Where a block leads with what is known before it, and what is known behind it."""
+    """Where a block leads with what is known before it, and what is known after it."""
 
     block: BasicBlock
     ways: tuple[str, ...]
     known: Known
     is_past: bool
-    """Whether it is a test that is to be passed, and where that leads is known."""
+    """Whether it is a test to be skipped, and where it leads is known."""
     is_set: bool
-    """Whether a variable is set to a number there: ways begin there, and none goes on."""
+    """Whether a variable is set to a number there: paths begin there, and none goes on."""
 
 
 def _all(nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
@@ -52,17 +52,17 @@ def _all(nodes: Mapping[Node, Ways], first: Node) -> set[Node]:
 
 @dataclass
 class CopiedWays:
-    """Copies ways of a routine that lead past tests; what tests those are, and which ways are copied, say the functions that it is given."""
+    """Copies paths of a routine that lead past tests; the given functions decide which tests these are, and which paths are copied."""
 
     flow: ControlFlow
     is_past: Callable[[BasicBlock, str], bool]
-    """Whether a block makes a test that is to be passed, where it leads to this block for sure."""
+    """Whether a block makes a test to be skipped, if it surely leads to this block."""
     goes_on: Callable[[Ways], bool]
-    """Whether a way that is copied goes on behind a block."""
+    """Whether a copied path goes on after a block."""
     short_ways: Callable[[Mapping[Node, Ways], Node], set[Node]] = _all
-    """Of the nodes from each of which a way leads past a test: those on a way from the first one that is short enough to be copied."""
+    """Of the nodes from which a path leads past a test: those on a path from the first one that is short enough to be copied."""
     ending: str = "in"
-    """Of the names of copies, before a number: others that copies of copies have are others."""
+    """Goes into the names of copies, before a number; copies of copies need another one."""
     blocks: dict[str, BasicBlock] = field(init=False)
     variables: set[str] = field(init=False, default_factory=set)
     leading: set[str] = field(init=False, default_factory=set)
@@ -77,9 +77,9 @@ class CopiedWays:
         return replace(self.flow.routine, blocks=tuple(self.blocks.values()))
 
     def lead(self, labels: Iterable[str], leading: set[str], variables: set[str]) -> None:
-        """Lead those of the blocks that set a number past the tests of it.
+        """Lead the blocks that set a number past its tests.
 
-        `leading`: blocks that lead to the tests. `variables`: of which something may be known.
+        `leading`: blocks that lead to the tests. `variables`: those of which something may be known.
         """
         self.leading, self.variables = leading, variables
         self.copies.clear()
@@ -93,7 +93,7 @@ class CopiedWays:
             return
         goals = {
             way: goal
-            for way in dict.fromkeys(block.successors)  # in order, for copies are numbered
+            for way in dict.fromkeys(block.successors)  # in order, because copies are numbered
             if (goal := self._copy(way, found.known)) != way
         }
         for way, goal in goals.items():
@@ -129,7 +129,7 @@ class CopiedWays:
         return Ways(block, ways, frozenset(variables.items()), is_past, is_set)
 
     def _copy(self, label: str, known: Known) -> str:
-        """Return a copy of the ways from a block with what is known, or the block where none of them leads past the chain."""
+        """Return a copy of the paths from a block with what is known, or the block if none of them leads past the chain."""
         nodes = dict[Node, Ways]()
         waiting = [(label, known)]
         while waiting:
@@ -160,7 +160,7 @@ class CopiedWays:
         return self.copies[label, known]
 
     def _add(self, label: str, of: Ways) -> None:
-        """Add the copy of a block; where the number is known its test is left out."""
+        """Add the copy of a block; if the number is known, without its test."""
         block = copied_block(of.block, label, of.ways[0] if len(of.ways) == 1 else "")
         for way in set(of.ways):
             block = going_to(block, way, self.copies.get((way, of.known), way))
@@ -168,7 +168,7 @@ class CopiedWays:
 
 
 def copied_block(block: BasicBlock, label: str, goal: str = "") -> BasicBlock:
-    """Return a block with names of its own, which end as its `label` does; it leads to `goal`, if there is one, and makes no test."""
+    """Return a block with new names that end like its `label`; if there is a `goal`, it leads there and makes no test."""
     ending = label.rsplit(".", 1)[1]
     names = {each.result: f"{each.result}.{ending}" for each in block.instructions if each.result}
     rows = [renamed(replace(each, result=names.get(each.result or "")), names) for each in block.instructions]
@@ -179,7 +179,7 @@ def copied_block(block: BasicBlock, label: str, goal: str = "") -> BasicBlock:
 
 
 def _leading_past(nodes: Mapping[Node, Ways]) -> set[Node]:
-    """Those from which a way leads past a test."""
+    """The nodes from which a path leads past a test."""
     leading = {node for node, each in nodes.items() if each.is_past}
     while more := {
         node
@@ -205,7 +205,7 @@ def copied_to(flow: ControlFlow, variables: set[str]) -> set[str]:
 
 
 def answered(relation: str, one: int | None, other: int | None) -> int | None:
-    """Return whether a relation holds between two numbers, None where one is not known."""
+    """Return whether a relation holds between two numbers; None if one is not known."""
     if one is None or other is None or relation[0] == "u":
         return None
     holds = RELATIONS.get(relation) or RELATIONS[INVERTED[relation]]

@@ -1,4 +1,4 @@
-"""Numbers of which LLVM is to know nothing: it would leave out tests that cannot hold any more, where GCC has made a table of them by then."""
+"""Numbers hidden from LLVM: it would leave out tests that can no longer hold, although GCC has already made a table of them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from bfsim.kernel.ir.text import HIDES, NAME, BasicBlock, Instruction, arms_of, 
 
 DECLARED = f"declare i32 @{HIDES}(i32) nounwind willreturn memory(none)"
 HIDDEN = re.compile(rf"^  (%[\w.$-]+) = .*@{re.escape(HIDES)}\(i32 (\S+?)\)", re.MULTILINE)
-FUNCTIONS = re.compile(r"^(?=define )", re.MULTILINE)  # each has names of its own
+FUNCTIONS = re.compile(r"^(?=define )", re.MULTILINE)  # each has its own names
 
 
 def hide(flow: ControlFlow, blocks: dict[str, BasicBlock], value: str, test: str) -> None:
-    """Let instructions take a word of which LLVM knows nothing in place of `value`, if they do not already.
+    """Let instructions take a word unknown to LLVM in place of `value`, if they do not already.
 
-    All that have it as an operand do; of a phi, for a loop may carry it, only those in block `test` and the blocks that it dominates.
+    All instructions with this operand do; if it is a phi, which a loop may carry, only those in block `test` and the
+    blocks that it dominates.
     """
     if not any(_asks(row, value) for row in blocks[test].instructions):
         return
@@ -60,7 +61,7 @@ def _asks(each: Instruction, value: str) -> bool:
 
 
 def revealed(text: str) -> str:
-    """Return a module in which such numbers are what was hidden."""
+    """Return a module with the hidden numbers back in place."""
     return "".join(_revealed(part) for part in FUNCTIONS.split(text))
 
 

@@ -1,6 +1,7 @@
-"""A chain of tests for single numbers becomes a jump by a table [gimple-if-to-switch.cc, `jump_table_cluster` in tree-switch-conversion.cc of GCC 12].
+"""Chains of tests for single numbers, turned into jumps by a table [gimple-if-to-switch.cc, `jump_table_cluster` in tree-switch-conversion.cc of GCC 12].
 
-Of `if state == 1: ..., elif state == 2: ...` a block that does more than test, as the first one mostly does, is none of the chain.
+In `if state == 1: ..., elif state == 2: ...`, a block that does more than test, as the first one mostly does, is not
+part of the chain.
 """
 
 from __future__ import annotations
@@ -17,18 +18,19 @@ from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine
 FEWEST_CASES = 5
 """[default_case_values_threshold in targhooks.cc, where the target has no `casesi`]"""
 MOST_ENTRIES = 8
-"""Of a table, for each comparison that it replaces [param_jump_table_max_growth_ratio_for_speed]."""
+"""Most entries of a table for each comparison that it replaces [param_jump_table_max_growth_ratio_for_speed]."""
 SMALL = 2
-"""A table whose first case is no more begins at 0, which saves a subtraction [emit_case_dispatch_table in stmt.cc]."""
+"""A table whose first case is at most this begins at 0, which saves a subtraction [emit_case_dispatch_table in stmt.cc]."""
 MARK = ".case"
-"""Ends the labels of the blocks of a chain: which ones are, GCC decides before most of its other passes. LLVM may add a number to it.
+"""Ends the labels of a chain's blocks: GCC decides which they are before most of its other passes. LLVM may add a number to it.
 
-A chain stays a table even if later passes leave fewer tests of it [pass_lower_switch is before vrp2 and threadfull2 in passes.def].
+A chain stays a table even if later passes leave fewer of its tests [pass_lower_switch is before vrp2 and threadfull2 in
+passes.def].
 """
 
 
 def has_table(flow: ControlFlow, tests: Sequence[NumberTest]) -> bool:
-    """Whether a jump to one of so many cases is made by a table; numbers side by side that lead to one place are one case."""
+    """Whether a jump to one of these cases is made by a table; neighbouring numbers that lead to one place are one case."""
     plain = {each.hit for each in tests if flow.blocks[each.hit].instructions[0].opcode != "phi"}
     runs: list[list[NumberTest]] = []
     for each in sorted(tests, key=lambda each: each.number):
@@ -61,12 +63,12 @@ def with_jump_tables(routine: Routine) -> Routine:
 
 
 def _switch(blocks: dict[str, BasicBlock], chain: Sequence[NumberTest]) -> None:
-    """Let the first block of a chain switch; the others go on to where they lead, so that phis there need not change."""
+    """Let the first block of a chain switch; the others go on to their targets, so that phis there need not change."""
     first, otherwise = chain[0], chain[-1].other
     branch = blocks[first.label].terminator
     conversions = [row for each in chain for row in blocks[each.label].instructions[:-2]]
     way = first.hit
-    if way == otherwise:  # a phi there has one value of each block
+    if way == otherwise:  # a phi there has one value from each block
         way = f"{first.label}{MARK}"
         put_between(blocks, first.label, otherwise, way)
     ways = [way, *(each.label for each in chain[1:])]

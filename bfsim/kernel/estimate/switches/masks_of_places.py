@@ -1,4 +1,4 @@
-"""A switch to few places as tests of a bit: 1 << x, and for each place a mask of its numbers [bit_test_cluster in tree-switch-conversion.cc of GCC 12]."""
+"""Switches to few targets as tests of a bit: 1 << x, and for each target a mask of its numbers [bit_test_cluster in tree-switch-conversion.cc of GCC 12]."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from bfsim.kernel.ir.text import BasicBlock
 from bfsim.kernel.ir.widths import WORD, widest
 
 FEWEST = {1: 3, 2: 5, 3: 6}
-"""Cases, for so many places [is_beneficial]."""
+"""Least number of cases, by the number of targets [is_beneficial]."""
 
 
 @dataclass(frozen=True)
 class MasksOfPlaces:
-    """What a switch tests for: numbers, by value, and the places that they lead to. `is_bit`: whether the value is known to be the number of a bit."""
+    """The tests of a switch: numbers, by value, and their targets. `is_bit`: whether the value is known to be the number of a bit."""
 
     places: dict[int, str]
     is_bit: bool
 
     @property
     def order(self) -> list[str]:
-        """The places in the order of their tests: those of more numbers first, then later ones [case_bit_test::cmp]."""
+        """The targets in the order of their tests: those with more numbers first, then later ones [case_bit_test::cmp]."""
         counts = Tally(self.places.values())
         turn = {place: number for number, place in enumerate(counts)}
         return sorted(counts, key=lambda place: (-counts[place], -turn[place]))
 
 
 def masks_of_places(block: BasicBlock, flow: ControlFlow) -> MasksOfPlaces | None:
-    """Return the tests of the switch that ends a block, or None if it is none of GCC's, or has too few cases for its places."""
+    """Return the tests of the switch that ends a block, or None if it is none of GCC's, or has too few cases for its targets."""
     places = {number: _place(flow, way) for number, way in block.cases}
     cases = sum(places.get(number - 1) != place for number, place in places.items())
     is_wide = max(places) - min(places) >= WORD
@@ -45,7 +45,7 @@ def masks_of_places(block: BasicBlock, flow: ControlFlow) -> MasksOfPlaces | Non
 
 
 def _place(flow: ControlFlow, label: str) -> str:
-    """Where a way of a switch leads through a block without code; one whose phis tell the ways apart is a place of its own."""
+    """Where an edge of a switch leads through a block without code; a block whose phis tell the edges apart is a separate target."""
     block = flow.blocks[label]
     if len(block.instructions) > 1 or len(block.successors) != 1:
         return label

@@ -1,7 +1,8 @@
-"""Ways to a switch on which its number is known lead past it [tree-ssa-threadbackward.cc of GCC 12].
+"""Paths to a switch on which its number is known, led past it [tree-ssa-threadbackward.cc of GCC 12].
 
-Of `if state == 1: ..., elif state == 2: ...` in a loop, each way round the loop on which the state is set to a number leads straight to what is
-done in that state. The ways are copied while variables are in memory, where blocks can be copied as they are.
+For `if state == 1: ..., elif state == 2: ...` in a loop, each path round the loop on which the state is set to a number
+leads straight to the code of that state. The paths are copied while variables are in memory, so that blocks can be
+copied as they are.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from bfsim.kernel.ir.text import HIDES, BasicBlock, Routine
 
 
 def with_state_machines(routine: Routine) -> Routine:
-    """Return `routine`, whose variables are in memory, with copies of such ways to the chains of tests that are marked."""
+    """Return `routine`, whose variables are in memory, with copies of such paths to the marked chains of tests."""
     flow = ControlFlow(routine)
     ways = CopiedWays(flow, _ends_chain, _goes_on)
     for block in routine.blocks:
@@ -32,13 +33,13 @@ def _ends_chain(block: BasicBlock, way: str) -> bool:
 
 
 def _goes_on(found: Ways) -> bool:
-    """Whether neither the chain is passed, nor a number set: other ways begin there."""
+    """Whether the chain is not passed and no number is set: other paths begin there."""
     is_open = len(found.ways) == 1 or not found.block.label.endswith(MARK)
     return is_open and not (found.is_past or found.is_set)
 
 
 def _thread(ways: CopiedWays, variable: str, kept: set[str]) -> None:
-    """Lead each block in the loop around a chain that sets its number past it. `kept`: where the hidden number is."""
+    """Lead each block that sets a chain's number, in the loop around it, past the chain. `kept`: where the hidden number is."""
     flow = ways.flow
     chains = {label for label in flow.blocks if label.endswith(MARK)}
     tests = {

@@ -1,7 +1,7 @@
-"""Chains of tests that GCC makes a `switch` of, before most of its other passes [gimple-if-to-switch.cc of GCC 12].
+"""Chains of tests that GCC turns into a `switch`, before most of its other passes [gimple-if-to-switch.cc of GCC 12].
 
-What becomes of them is said elsewhere: a jump by a table (`jump_tables`), a load from one (`constant_tables`), ways that lead past the tests
-(`state_machines`).
+Other modules say what they become: a jump by a table (`jump_tables`), a load from one (`constant_tables`), or paths
+that lead past the tests (`state_machines`).
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 MOST_BLOCKS = 100
-"""[ours] In a module of which a routine has more blocks, no ways are copied: LLVM's value numbering gives up on what can become of it."""
+"""[ours] If a routine has more blocks, no paths are copied in its module: LLVM's value numbering gives up on the result."""
 
 
 def with_switches(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
-    """Return a module with such chains marked, or replaced, and ways past them; of one without any, the module itself."""
+    """Return a module with such chains marked, or replaced, and paths past them; the module itself if there are none."""
     text = with_names(str(module))
     tables = list[str]()
     marked = write_module(text, [_marked(each, tables, profile) for each in read_module(text)])
@@ -55,7 +55,7 @@ def _threaded(module: llvm.ModuleRef) -> llvm.ModuleRef:
 
 
 def _marked(routine: Routine, tables: list[str], profile: CompilerProfile) -> Routine:
-    """Return `routine` with its chains marked; those that only choose constants are loads from `tables`, which are added."""
+    """Return `routine` with its chains marked; those that only choose constants become loads from `tables`, to which theirs are added."""
     flow = ControlFlow(with_direct_conditions(routine))
     switches = [each for each in chains(flow, is_alone) if has_table(flow, each) and each[0].bits == WORD]
     if not switches:
@@ -73,7 +73,7 @@ def _marked(routine: Routine, tables: list[str], profile: CompilerProfile) -> Ro
 
 
 def _renamed(block: BasicBlock, names: Mapping[str, str]) -> BasicBlock:
-    """Return a block with other names for some blocks."""
+    """Return a block with some blocks renamed."""
     for old in {*block.successors} & names.keys():
         block = going_to(block, old, names[old])
     for old, new in names.items():

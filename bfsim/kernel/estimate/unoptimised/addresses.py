@@ -14,7 +14,7 @@ BYTE_MASKS = (0xFF, 0xFFFF)
 def offset_of(code: Computing, index: Expr, size: int) -> bool:
     """Compute `index * size`; return whether it is in a pointer register.
 
-    Factors of the index merge with the size, and a number that is added to the index is added to the product then.
+    Factors of the index merge with the size, and a number added to the index is then added to the product.
     """
     added = 0
     if index.op == "+" and index.args[1].is_const:
@@ -36,7 +36,7 @@ def offset_of(code: Computing, index: Expr, size: int) -> bool:
 
 
 def _converted(code: Computing, index: Expr, *, to_pointer: bool) -> bool:
-    """Convert an index: a copy of what was computed, none of what was just loaded or extended."""
+    """Convert an index: a copy of a computed value, none of one that was just loaded or extended."""
     if index.op in ("local", "load", "widen", "register") or index.unsigned:
         return code.value(index)
     if index.op == "&" and index.args[1].is_const and index.args[1].value >= 0:

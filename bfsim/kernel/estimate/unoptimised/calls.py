@@ -49,9 +49,9 @@ def _library(code: Computing, op: str) -> list[Charge]:
 
 
 def _arguments(code: Computing, given: tuple[Expr, ...]) -> None:
-    """Compute what is no variable, then put everything in its place.
+    """Compute the arguments that are no variables, then put all in their places.
 
-    What is computed first must not be in the way: it is moved to its register last.
+    The first computed one must not be in the way: it is moved to its register last.
     """
     computed = [at for at, each in enumerate(given) if not each.is_leaf]
     last = max((at for at in computed if at < REGISTER_ARGUMENTS), default=0)

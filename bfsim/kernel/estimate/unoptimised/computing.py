@@ -1,4 +1,4 @@
-"""What computes an expression at -O0, as the parts of an expression know it: each has it compute what is in them."""
+"""The interface that computes expressions at -O0, as the parts of an expression see it: each lets it compute its operands."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from bfsim.kernel.estimate.unoptimised.registers import Registers
 
 
 class Computing(Registers, ABC):
-    """Computes expressions and addresses. A method that returns a truth value tells whether the result is in a pointer register."""
+    """Computes expressions and addresses. A method that returns a bool says whether the result is in a pointer register."""
 
     @abstractmethod
     def value(self, each: Expr, *, adds: bool = False, waits: bool = False, outermost: bool = False) -> bool:
-        """Compute `each`. `adds`: an addition or a copy takes it; `waits`: others are computed before it is used.
+        """Compute `each`. `adds`: an addition or a copy uses it; `waits`: others are computed before it is used.
 
         `outermost`: it is all that an assignment computes.
         """

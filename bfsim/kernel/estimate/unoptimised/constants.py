@@ -1,7 +1,7 @@
 """Products and quotients with a constant, as GCC expands them at -O0.
 
-Costs are those that GCC believes in, not those of the chip: a sum with a value shifted by one or two counts as one
-operation, as does a difference with any shifted value [bfin_rtx_costs of bfin.cc; synth_mult of expmed.cc].
+Costs are those that GCC assumes, not the chip's: a sum with a value shifted by one or two counts as one operation, as
+does a difference with any shifted value [bfin_rtx_costs of bfin.cc; synth_mult of expmed.cc].
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from bfsim.kernel.ir.widths import WORD
 from bfsim.kernel.operations import Op
 
 MOST_COST = 3  # [GCC] beyond, a multiplication is no worse
-CHEAP_SHIFT = 2  # [PRM] P = P + (P << 1), P = P + (P << 2): at -O0 not used, but believed in
+CHEAP_SHIFT = 2  # [PRM] P = P + (P << 1), P = P + (P << 2): not used at -O0, but assumed
 
 
 class ProductPlan(NamedTuple):
-    """Operations that multiply: what GCC thinks they cost, what they are, and whether the last is an addition."""
+    """Operations that multiply: their cost as GCC sees it, what they are, and whether the last is an addition."""
 
     cost: int
     ops: tuple[Op, ...]
@@ -36,7 +36,7 @@ def product(factor: int) -> ProductPlan | None:
 
 
 class _Step(NamedTuple):
-    """What comes last: the factor before it, the cost and the operations."""
+    """A last step: the factor before it, its cost and its operations."""
 
     factor: int
     cost: int
@@ -63,7 +63,7 @@ def _then(step: _Step, limit: int) -> ProductPlan | None:
 
 
 def _steps(factor: int) -> list[_Step]:
-    """What `factor` can be made with."""
+    """The last steps that can make `factor`."""
     zeros = (factor & -factor).bit_length() - 1
     if zeros:
         return [_Step(factor >> zeros, 1, (Op.SHIFT,), is_sum=False)]

@@ -1,4 +1,4 @@
-"""Expressions as GCC's front end leaves them: what it folds before a single operation is chosen, at -O0 too."""
+"""Expressions as GCC's front end leaves them: it folds them before any operation is chosen, even at -O0."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Expr:
     bits: int = 32
     unsigned: bool = False
     access: Instruction | None = field(default=None, compare=False)
-    """Of an element: the load or store of the IR."""
+    """For an element: the load or store of the IR."""
 
     @property
     def is_const(self) -> bool:
@@ -35,19 +35,19 @@ class Expr:
 
     @property
     def is_leaf(self) -> bool:
-        """Whether it is read only where it is needed: a number or a variable."""
+        """Whether it is only read where it is needed: a number or a variable."""
         return self.op in ("const", "local")
 
     @property
     def is_call(self) -> bool:
-        """Whether a function returns it, of the library or another kernel."""
+        """Whether a function of the library or another kernel returns it."""
         if self.op not in DIVISIONS or not self.args[1].is_const:
             return self.op in ("call", *DIVISIONS)
         return self.op[0] == "s" and by_power(self.op, self.args[1].value, Op.BRANCH_TAKEN) is None
 
     @property
     def calls(self) -> bool:
-        """Whether it or a part of it comes of a call."""
+        """Whether it or a part of it comes from a call."""
         return self.is_call or any(each.calls for each in self.args)
 
     @property
@@ -65,7 +65,7 @@ class Expr:
 
 @dataclass(frozen=True, slots=True)
 class TreeStatement:
-    """Something that a block does: `target` is what is written, a local or a load, or None."""
+    """A statement of a block: `target` is what is written, a local or a load, or None."""
 
     value: Expr
     target: Expr | None
@@ -115,7 +115,7 @@ def compare(predicate: str, left: Expr, right: Expr) -> Expr:
 
 
 def _compared_truths(predicate: str, left: Expr, right: Expr) -> Expr:
-    """Compare two comparisons: two signs as the sign of a ^ b, others as a ^ b, the first of which is inverted if they are to be equal."""
+    """Compare two comparisons: two signs as the sign of a ^ b, others as a ^ b, with the first inverted if they are to be equal."""
     signs = [
         each.args[0] for each in (left, right) if each.name in ("slt", "sge") and each.args[1] == const(0)
     ]
@@ -145,7 +145,7 @@ def _nearest_zero(predicate: str, value: int) -> int:
 
 
 def _bit_test(predicate: str, masked: Expr, right: Expr) -> tuple[Expr, Expr]:
-    """Ask for a single bit: of (a & 127) < 64 for bit 6, of (a >> 3) & 1 for bit 3; of bit 31 as for the sign."""
+    """Test a single bit: bit 6 for (a & 127) < 64, bit 3 for (a >> 3) & 1; bit 31 by the sign."""
     inner, mask = masked.args
     half = (mask.value + 1) // 2
     is_order = predicate in ("slt", "sge", "sgt", "sle")

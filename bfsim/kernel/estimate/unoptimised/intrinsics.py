@@ -21,7 +21,7 @@ UPPER_WORD = (Op.LOAD32, Op.SHIFT, Op.STORE32, Op.IMM, *THROUGH_MEMORY)
 
 
 def intrinsic(code: Computing, each: Expr) -> None:
-    """Compute the operands, then let them and the result through memory."""
+    """Compute the operands, then pass them and the result through memory."""
     found = BY_NAME[each.name]
     for value in each.args:
         code.value(value)
@@ -32,5 +32,5 @@ def intrinsic(code: Computing, each: Expr) -> None:
 
 
 def word(code: Computing, each: Expr) -> None:
-    """Take one word of two."""
+    """Take one of two words."""
     code.op(*(UPPER_WORD if each.name == "upper" else (Op.LOAD32,)))

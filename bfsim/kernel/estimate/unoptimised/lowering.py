@@ -98,7 +98,7 @@ class _UnoptimisedLowering:
         cost.nbytes += _nbytes(restoring)
 
     def _save(self, op: Op, cclk: int | None, line: SourceLine) -> list[Charge]:
-        """Save or restore the registers whose values wait during calls."""
+        """Save or restore the registers that keep values during calls."""
         return [Charge(op, line, len(self.saved) if cclk is None else cclk)] if self.saved else []
 
 

@@ -1,7 +1,7 @@
-"""Where control goes in code that nobody optimised: the order of the blocks, and both ends of every branch.
+"""Control flow of unoptimised code: the order of the blocks, and both targets of every branch.
 
-`and`, `or` and `not` leave no trace but jumps: whoever decides them goes straight to where the whole condition
-leads. Loops are tested at the bottom, as GCC lays them out at -O0.
+`and`, `or` and `not` leave only jumps: the part that decides goes straight to where the whole condition leads. Loops
+are tested at the bottom, as GCC lays them out at -O0.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from bfsim.kernel.ir.text import BasicBlock, Routine
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """A decision: the i1 value it asks for, and the blocks that run next when it is true and when it is false."""
+    """A decision: the tested i1 value, and the blocks that run next when it is true and when it is false."""
 
     value: str
     if_true: str
@@ -92,7 +92,7 @@ class Paths:
                 label = self._onward(block)
 
     def _landing(self, block: BasicBlock) -> str | None:
-        """Where GCC puts the jump of `if test: break` and the like: behind what is left, with a NOP for the debugger.
+        """Where GCC puts the jump of `if test: break` and the like: after the rest, with a NOP for the debugger.
 
         The branch then goes there when the test is true. "" is the end of the function.
         """
@@ -146,7 +146,7 @@ class Paths:
         return Branch(value, if_true, if_false)
 
     def _decides(self, block: BasicBlock) -> str | None:
-        """The value that `block` computes and goes by."""
+        """The value that `block` computes and branches by."""
         if self._is_extreme(block):
             return None
         if len(block.successors) == 2:
@@ -158,13 +158,13 @@ class Paths:
         return None
 
     def _is_extreme(self, block: BasicBlock) -> bool:
-        """Whether the branch is that of a minimum or the like, which needs none."""
+        """Whether the branch belongs to a minimum or the like, which needs none."""
         if [base(each) for each in block.successors] != ["yes", "no"]:
             return False
         return self.blocks[block.successors[0]].instructions[-2].operands[-1] in self.trees.extremes
 
     def _leaf(self, block: BasicBlock, value: str) -> str | None:
-        """Look through `not` and hidden slots; None if an earlier block knew the value, or the compiler."""
+        """Look through `not` and hidden slots; None if an earlier block or the compiler knows the value."""
         if value not in self.trees.home:
             return None
         each = self.trees.home[value][1]
@@ -217,19 +217,19 @@ class Paths:
         return all(hidden)
 
     def _truth(self, block: BasicBlock) -> bool | None:
-        """Whether a branch goes by a number, as in `while True`."""
+        """Whether a branch tests a number, as in `while True`."""
         tree = self.trees.condition(block.terminator.operands[0])
         if tree.op == "compare" and all(arg.is_const for arg in tree.args):
             return tree.name == "ne" and tree.args[0] != tree.args[1]
         return None
 
     def _is_empty(self, block: BasicBlock) -> bool:
-        """Whether no code comes of `block`: it is only a way, or only passes on what `and` and `or` decided."""
+        """Whether `block` makes no code: it only goes on, or only passes on what `and` and `or` decided."""
         is_first = block.label == self.labels[0]
         if is_first or self.branches[block.label] or not block.successors or block.label in self.landed:
             return False
         if base(block.label) in ("then", "else") and base(block.successors[0]) == "test":
-            return False  # `continue` in a `while` is a jump of its own
+            return False  # `continue` in a `while` is a separate jump
         if base(block.label) == "decided" and self._only_logic(block):
             return True
         return not list(self.trees.statements(block)) and self.only_way(block) is not None

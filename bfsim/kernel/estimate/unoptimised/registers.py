@@ -1,6 +1,6 @@
 """Operations and the moves between registers at -O0, one after the other.
 
-A value that an addition makes and an addition or a copy takes is kept in a pointer register, every other one in a
+The result of an addition that another addition or a copy uses is kept in a pointer register, every other value in a
 data register, and each crossing is a move [GCC: record_reg_classes of ira-costs.cc, with addsi3 of bfin.md, which
 pointer registers can do too]. An addition runs where it needs fewer moves.
 """
@@ -16,14 +16,14 @@ from bfsim.kernel.profile import CompilerProfile
 MODIFIERS = (
     2,
     4,
-)  # [GCC] addsi3 can add these to an index register, so that the sum prefers a pointer register
+)  # [GCC] addsi3 can add these to an index register, so the sum prefers a pointer register
 LONG_MOVE_NBYTES = 4  # R = n with 16 bits
 HALF = 16
 LARGEST_SIGNED = (1 << 15) - 1
 
 
 class Registers:
-    """Code in the making: `charges` and `nbytes`; `saved`: registers that its function must save for it.
+    """Code under construction: `charges` and `nbytes`; `saved`: registers that its function must save for it.
 
     `accesses`: loads and stores of the IR that it makes.
     """
@@ -37,7 +37,7 @@ class Registers:
         self.accesses: list[Instruction] = []
 
     def op(self, *ops: Op) -> None:
-        """Append operations at their cost in the instruction set."""
+        """Append operations, at their cost in the instruction set."""
         self.charges.extend(Charge(each, self.line, COSTS[each].cclk) for each in ops)
         self.nbytes += sum(COSTS[each].nbytes for each in ops)
 
@@ -67,7 +67,7 @@ class Registers:
             self.nbytes += 2 * (LONG_MOVE_NBYTES - COSTS[Op.IMM].nbytes)
 
     def add(self, pointers: list[bool], *, to_pointer: bool) -> bool:
-        """Add two values, of which `pointers` says whether they are in pointer registers. Returns `to_pointer`."""
+        """Add two values; `pointers`: whether each is in a pointer register. Return `to_pointer`."""
         as_pointers = pointers.count(False) + (not to_pointer)
         as_data = pointers.count(True) + to_pointer
         self.move(min(as_pointers, as_data))

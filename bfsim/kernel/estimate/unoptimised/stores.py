@@ -1,6 +1,6 @@
-"""Assignments at -O0. What is stored in few bits is computed in few bits [convert_to_integer_1 of convert.cc].
+"""Assignments at -O0. A value that is stored in few bits is computed in few bits [convert_to_integer_1 of convert.cc].
 
-The last operation, of an assignment to an array, comes after the address of the element.
+In an assignment to an array, the last operation comes after the address of the element.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from bfsim.kernel.ir.widths import PAIR
 from bfsim.kernel.operations import ADD_IMMEDIATE, Op
 
 STORES = {1: Op.STORE8, 8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
-FOLDED = ("+", "-", "*", "<<", "neg", "inverse")  # low bits of these come of low bits alone
+FOLDED = ("+", "-", "*", "<<", "neg", "inverse")  # the low bits of these depend only on low bits
 
 
 def assign(code: Computing, each: TreeStatement) -> None:
@@ -47,7 +47,7 @@ def _store_low_bits(code: Computing, value: Expr, target: Expr) -> None:
 
 
 def low_bits_of(code: Computing, value: Expr, target: Expr, *, late: bool) -> bool:
-    """Compute as many bits of `value` as `target` has; return whether they are in a pointer register.
+    """Compute as many bits of `value` as `target` has; return whether the result is in a pointer register.
 
     The operands are converted, each by a copy. `late`: the operation comes after the address of an element, and its
     operands wait.
@@ -98,7 +98,7 @@ def _operation(code: Computing, value: Expr, pointers: list[bool]) -> bool:
 
 
 def _stripped(value: Expr, bits: int) -> Expr:
-    """Leave out what does not change the low bits: extensions, masks."""
+    """Leave out operations that do not change the low bits: extensions, masks."""
     while True:
         if value.op == "widen" and value.bits >= bits:
             value = value.args[0].args[0] if value.args[0].op == "narrow" else value.args[0]
@@ -116,7 +116,7 @@ def _is_shifted_element(value: Expr, target: Expr) -> bool:
 
 
 def _moves_after(value: Expr, target: Expr) -> int:
-    """Moves between a narrow value and its store: for waiting until the address is there, and for a conversion then."""
+    """Moves between a narrow value and its store: for waiting until the address is computed, and then for a conversion."""
     if value.op in ("const", "local", "register", "widen") or _is_shifted_element(value, target):
         return 0
     if value.op == "load":

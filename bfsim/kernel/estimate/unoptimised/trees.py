@@ -1,8 +1,8 @@
 """Plain IR → the statements of the C program that it stands for.
 
 `emit` writes one load for every mention of a variable and one block for every branch of the source, so that the C
-statements can be read back. What C would not compute is dropped here: the correction of a division that rounds
-down, the mask of a shift count, the second counter of a loop.
+statements can be read back. Code that C would not have is dropped here: the correction of a division that rounds down,
+the mask of a shift count, the second counter of a loop.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ class Trees:
         """Slots of conditional expressions, which C keeps in a register."""
         self.extensions = self._extensions()
         self.extremes: dict[str, Expr] = {}
-        """Those of them that are a minimum, maximum or absolute value, inner ones first."""
+        """The slots that are a minimum, maximum or absolute value, inner ones first."""
         self._find_extremes()
 
     def statements(self, block: BasicBlock) -> Iterator[TreeStatement]:
-        """What `block` does, in order, but for its branch."""
+        """The statements of `block`, in order, without its branch."""
         for each in block.instructions:
             if each.opcode == "store":
                 yield from self._store(each, block.label)
@@ -69,7 +69,7 @@ class Trees:
         return self.expr(operand, None)
 
     def expr(self, operand: str, label: str | None) -> Expr:
-        """The value of `operand` in block `label`; None: wherever it was computed, as C computes a loop's bound."""
+        """The value of `operand` in block `label`; if None, where it was computed, as C computes a loop's bound."""
         if not operand.startswith("%"):
             return const(TRUTHS.get(operand) or int(operand if operand[-1].isdigit() else 0))
         if operand not in self.home:
@@ -110,7 +110,7 @@ class Trees:
         return self.expr(stores[-1].operands[0], block.label) if len(stores) == 1 else Expr("register")
 
     def is_hidden(self, slot: str) -> bool:
-        """Whether a slot belongs to `and` and `or`, not to a variable."""
+        """Whether a slot belongs to `and` and `or` and not to a variable."""
         return slot.startswith("%.")
 
     def _outlives(self, each: Instruction, block: BasicBlock) -> bool:
@@ -150,7 +150,7 @@ class Trees:
 
     def _element(self, address: Instruction, access: Instruction, label: str) -> Expr:
         (array, index), bits = address.operands[-2:], access.bits
-        unsigned = self.extensions.get(array, bits == BYTE)  # of what is only stored: bytes are pixels
+        unsigned = self.extensions.get(array, bits == BYTE)  # if only stored: bytes are pixels
         return Expr(
             "load", (self.expr(index, label),), name=array[1:], bits=bits, unsigned=unsigned, access=access
         )
@@ -187,7 +187,7 @@ class Trees:
         return Expr("call", tuple(self.expr(operand, label) for operand in given))
 
     def _is_corrected(self, each: Instruction) -> bool:
-        """Whether `each` makes a quotient or rest that is rounded down of one that is rounded towards zero."""
+        """Whether `each` corrects a quotient or remainder from rounding towards zero to rounding down."""
         if each.opcode not in ("add", "sub") or each.operands[1] not in self.home:
             return False
         other = self.home[each.operands[1]][1]
@@ -205,7 +205,7 @@ class Trees:
 
 
 def _operation(call: Instruction, args: tuple[Expr, ...]) -> Expr:
-    """A call by which LLVM, or the kernel language, writes an operation."""
+    """An operation that LLVM, or the kernel language, writes as a call."""
     if (intrinsic := call.intrinsic) is not None:
         return Expr("intrinsic", args, name=intrinsic.name)
     found = next(INTRINSICS[name] for name in INTRINSICS if f"@llvm.{name}." in call.text)

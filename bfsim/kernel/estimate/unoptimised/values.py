@@ -1,7 +1,7 @@
 """The operations of an expression at -O0: variables are loaded where they are used, and nothing is remembered.
 
-What is neither variable nor number is computed first, from the left; variables and numbers follow, just before the
-operation. Patterns and immediates are those of bfin.md of GCC 12.
+Operands that are neither variables nor numbers are computed first, from the left; variables and numbers follow, just
+before the operation. Patterns and immediates are those of bfin.md of GCC 12.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ OPERATIONS = {"-": Op.ALU, "neg": Op.ALU, "inverse": Op.ALU, "abs": Op.DSP_ALU}
 
 
 class ExpressionCode(Computing):
-    """Computes expressions: of each kind of them, its operations."""
+    """Computes expressions: for each kind, its operations."""
 
     def value(self, each: Expr, *, adds: bool = False, waits: bool = False, outermost: bool = False) -> bool:
         match each.op:
@@ -44,7 +44,7 @@ class ExpressionCode(Computing):
         return each.is_call and adds
 
     def copied(self, each: Expr) -> None:
-        """Compute what a function returns: a copy of what was computed."""
+        """Compute a function's result: a copy of the computed value."""
         self.move(int(self.value(each, adds=not (each.is_call or each.is_leaf))))
 
     def _product(self, left: Expr, right: Expr, *, waits: bool, outermost: bool) -> None:
@@ -56,7 +56,7 @@ class ExpressionCode(Computing):
         self.op(Op.MUL32)
 
     def _data(self, each: Expr) -> None:
-        """Compute what only data registers can hold."""
+        """Compute a value that only data registers can hold."""
         if each.op in DIVISIONS:
             divide(self, each)
         elif each.op in BITWISE:
@@ -128,7 +128,7 @@ class ExpressionCode(Computing):
                 self.value(each)
 
     def _save(self, left: Expr, right: Expr, register: str) -> None:
-        """A value that waits while a function is called needs a register that calls leave alone."""
+        """Note that a value that waits during a call needs a register that calls preserve."""
         if not left.is_leaf and right.calls:
             self.saved.add(register)
 
