@@ -1,4 +1,4 @@
-"""What `bfsim check` runs: the runs of a baseline file as arguments of `simulate`, and whether they are what they were."""
+"""The runs of a baseline file as arguments of `simulate`, and whether they are still what was measured."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
 
 
 def configuration_given(given: Mapping[str, Any], folder: Path) -> Configuration:
-    """Return what options say, as a baseline file in `folder` has it; `given` are those that are not their defaults."""
+    """Return the options as a baseline file in `folder` has them; `given` are those that are not their defaults."""
     plain = dict(given)
     for key in ("recording", "script"):
         if key in plain:
@@ -64,7 +64,7 @@ def configuration_given(given: Mapping[str, Any], folder: Path) -> Configuration
 
 
 def name_of(configuration: Configuration) -> str:
-    """Return the name of a run that nobody named: its recording, and the options that are not their defaults."""
+    """Return a name for a run without one: its recording, and the options that are not their defaults."""
     words = [Path(configuration.recording or shipped.RECORDING).stem]
     for key, value in configuration.model_dump(exclude_defaults=True, exclude={"recording"}).items():
         match value:
@@ -78,9 +78,10 @@ def name_of(configuration: Configuration) -> str:
 
 
 def require_comparable(case: Case, path: Path) -> None:
-    """Read and check all that a run needs.
+    """Read and check everything that a run needs.
 
-    Raises ConfigError if it is not what its limits were measured on, has no stage that one is about, or cannot be at all.
+    Raises ConfigError if the run differs from what its limits were measured on, lacks a stage that a limit is about, or
+    is not possible.
     """
     arguments = arguments_of(case.configuration, path.parent)
     try:
@@ -95,7 +96,7 @@ def require_comparable(case: Case, path: Path) -> None:
 
 
 def require_held(case: Case, path: Path) -> None:
-    """Raise ConfigError if a run has nothing to be held against: it would pass, whatever it costs."""
+    """Raise ConfigError if a run has no limits: it would pass, whatever it costs."""
     if not (case.limits or case.require):
         raise ConfigError(
             f"{path}: run {shown(case.name)} must have limits or a require, but has neither; "
@@ -106,7 +107,10 @@ def require_held(case: Case, path: Path) -> None:
 def _require_alike(
     case: Case, path: Path, then: MeasuredOn, now: MeasuredOn, names: Mapping[str, str]
 ) -> None:
-    """Raise ConfigError that says all in which a run is not what its limits were measured on; `names` of its hardware and script."""
+    """Raise ConfigError with every difference between a run and what its limits were measured on.
+
+    `names` are those of its hardware and script.
+    """
     recording = arguments_of(case.configuration, path.parent).get("recording")
     differences = [*_recording_differences(then, now, recording)]
     for key, name in names.items():
@@ -130,7 +134,7 @@ def _require_alike(
 
 
 def _difference(key: str, then: MeasuredOn, now: MeasuredOn) -> str:
-    """Say what of a board, compiler or script is not as it was."""
+    """Say what has changed in a board, compiler or script."""
     old, new = (list(getattr(each, f"{key}_numbers", [])) for each in (then, now))
     if old == new:
         return "is another than when the limits were measured"
@@ -164,7 +168,7 @@ def _recording_differences(then: MeasuredOn, now: MeasuredOn, recording: Path | 
 
 
 def _moved(name: str, folder: Path) -> str:
-    """Return FILE.py:NAME with a path from here; a name of a package, or a shipped one, as it is."""
+    """Return FILE.py:NAME with a path from here; names of packages and shipped ones stay as they are."""
     return str(folder / name) if ".py" in name else name
 
 

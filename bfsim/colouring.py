@@ -27,7 +27,7 @@ Area = tuple[int, int, int, int]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coloured:
-    """A picture, UYVY of shape (height, 2 · width), its colours, and what the firmware says of its grey patch, if asked for one."""
+    """A picture, UYVY of shape (height, 2 · width), its colours, and what the firmware says of a given grey patch."""
 
     picture: NDArray[np.uint8]
     colours: PictureColours
@@ -44,8 +44,8 @@ def coloured(
 ) -> Coloured:
     """Return what `firmware` calls the colours of the picture at `path`, or of the left picture of `frame` of a recording.
 
-    `script`: what the firmware's device is told, whose orders may change the colours. `grey`: a patch that is known to be
-    grey. Raises a BfsimError for anything that is wrong with what was given.
+    `script` is for the firmware's device, whose orders may change the colours. `grey` is a patch that is known to be
+    grey. Raises a BfsimError if anything given is wrong.
     """
     loaded = load_firmware(firmware)
     if loaded.firmware.colours is None:
@@ -80,7 +80,7 @@ def _picture(path: Path, frame: int | None) -> NDArray[np.uint8]:
 
 
 def _patch(picture: NDArray[np.uint8], area: Area) -> NDArray[np.uint8]:
-    """Return a part of a picture; its ends lie between pairs of pixels, which share their colour."""
+    """Return a part of a picture; its edges lie between pairs of pixels, which share their colour."""
     left, top, width, height = area
     right, bottom = left + width, top + height
     rows, columns = picture.shape[0], picture.shape[1] // 2
@@ -92,7 +92,7 @@ def _patch(picture: NDArray[np.uint8], area: Area) -> NDArray[np.uint8]:
 
 
 def _is_colour(named: object) -> bool:
-    """Whether it has a name, and a colour to draw it with."""
+    """Whether `named` has a name, and a colour to draw it with."""
     if not isinstance(named, NamedColour) or not isinstance(named.name, str):
         return False
     parts: Any = named.colour
@@ -103,9 +103,9 @@ def _is_colour(named: object) -> bool:
 def _named(
     loaded: LoadedFirmware, picture: NDArray[np.uint8], *, told: Script, script: Path | None, frame: int
 ) -> PictureColours:
-    """Return what the firmware makes of a picture; `told` stands in the file `script`, if there is one.
+    """Return what the firmware calls the colours of a picture; `told` comes from the file `script`, if there is one.
 
-    Raises FirmwareError where it fails, or where that cannot be drawn, and ConfigError for what it says against the script.
+    Raises FirmwareError if it fails or its answer cannot be drawn, and ConfigError for its objections to the script.
     """
     ask = loaded.firmware.colours
     assert ask is not None
@@ -132,7 +132,7 @@ def _named(
 
 
 def _check_drawable(found: PictureColours, name: str, shape: tuple[int, int]) -> None:
-    """Raise FirmwareError unless each pixel of a picture of `shape` has a number, and each number a colour to draw it with."""
+    """Raise FirmwareError unless each pixel of a picture of `shape` has a number, and each number a colour."""
     numbers: Any = found.numbers
     if not isinstance(numbers, np.ndarray):
         raise FirmwareError(

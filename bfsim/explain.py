@@ -1,6 +1,6 @@
 """One kernel, line by line: the operations that stand for it, what each execution costs, and how often it ran.
 
-What llvm-mca and uiCA give for machine code, for kernels: the answer to "why does this line cost so much".
+It does for kernels what llvm-mca and uiCA do for machine code: it answers "why does this line cost so much?"
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from bfsim.trace.explanation import (  # fmt: skip
 BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_NOT_TAKEN_BP}
 
 OBJECT_CODE = "as compiled"
-"""Shown in place of a profile of what is no Python."""
+"""Shown in place of a profile for kernels that are not in Python."""
 
 
 def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None = None) -> Explanation:
-    """Explain the kernel called `name`, FILE.py:NAME, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
+    """Explain the kernel `name`: FILE.py:NAME, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
     kernel, build = (
         load_kernel(name, firmware),
         build_for(load_firmware(firmware), find_profile(profile).value),
@@ -47,7 +47,7 @@ def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None 
 def explain(
     kernel: Kernel, profile: CompilerProfile, records: Sequence[KernelRecord] | None = None
 ) -> Explanation:
-    """Explain `kernel` as `profile` compiles it; with the `records` of a run, how often each line ran and what it cost.
+    """Explain `kernel` as `profile` compiles it; `records` of a run tell how often each line ran and what it cost.
 
     Raises ConfigError when the kernel did not run, and KernelError when the profile refuses it.
     """
@@ -78,7 +78,7 @@ def _explained(kernel: Kernel, build: Build, records: Sequence[KernelRecord] | N
 
 
 def _kernel_calls(function: Function, profile: CompilerProfile) -> tuple[ExplainedCall, ...]:
-    """What becomes of the calls in the code of `function`, those in kernels that are inlined into it among them."""
+    """Return the calls of `function`, including those in kernels that are inlined into it, and what becomes of each."""
     kernels = {each.symbol: each for each in (*function.callees(), function)}
     found, waiting = [], [function.symbol]
     every = decisions(function, profile)
@@ -104,7 +104,7 @@ def _kernel_calls(function: Function, profile: CompilerProfile) -> tuple[Explain
 def _lines(
     function: Function, counters: Sequence[Counter], records: Sequence[KernelRecord] | None
 ) -> tuple[ExplainedLine, ...]:
-    """The lines of a kernel, with what of `counters` comes from them."""
+    """Return the lines of a kernel, each with its share of `counters`."""
     own = [
         replace(each, charges=tuple(one for one in each.charges if one.line.routine == function.symbol))
         for each in counters
@@ -134,7 +134,7 @@ def _line(
     counters: Sequence[Counter],
     records: Sequence[KernelRecord] | None,
 ) -> Iterable[ExplainedLine]:
-    """One row per depth of loops at which a line has operations: what enters a loop runs once, its turns often."""
+    """Yield a row for each loop depth at which a line has operations: entering a loop happens once, its turns often."""
     depths = sorted(
         {each.depth for each in counters if any(charge.line.line == line for charge in each.charges)}
     )
@@ -166,7 +166,7 @@ def _line(
 
 
 def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
-    """Cycles of a line when every test is false, and what each test adds when it is true."""
+    """Return the cycles of a line when every test is false, and what each test adds when it is true."""
     always, sides = 0, []
     for each in counters:
         cclk = sum(
@@ -180,9 +180,9 @@ def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
 
 
 def _operations(line: int, counters: Sequence[Counter]) -> tuple[ExplainedOperation, ...]:
-    """The operations of a line, those of both sides of its tests; a branch once for each way.
+    """Return the operations of a line, those of both sides of its tests; a branch once for each way.
 
-    An access that shares a bundle takes no cycle, so that one operation may have several numbers of them.
+    An access that shares a bundle takes no cycles, so one operation may have several cycle counts.
     """
     counts: Tally[tuple[Op, int]] = Tally()
     for counter in counters:

@@ -33,10 +33,11 @@ def map_memory(
     include_dirs: Sequence[Path] = (),
     calibration: Calibration | None = None,
 ) -> MemoryMap:
-    """Return where the LDF (the board's own without one) puts `firmware` for pictures of that size, of cameras that a `calibration` knows.
+    """Return where the LDF, or without one the board's, puts `firmware`.
 
-    Firmware for other cores than the LDF's is left out, and the map holds what the LDF says by itself. Raises a
-    BfsimError for anything that is wrong with what was given, a firmware that does not fit included.
+    Pictures have the given size, and come from cameras that a `calibration` knows. Firmware for other cores than the
+    LDF's is left out, and the map then shows the LDF alone. Raises a BfsimError if anything given is wrong, or if the
+    firmware does not fit.
     """
     spec, compiler = find_board(board, settings).value, find_profile(profile).value
     script = read_placement(ldf, spec, defines, include_dirs)
@@ -62,7 +63,7 @@ def map_memory(
 
 
 def _misfit(firmware: Firmware, script: LinkerScript, spec: BoardSpec) -> str:
-    """Return what keeps the firmware out of the map: LDF and board, or one of them and it, are not about the same cores; or nothing."""
+    """Return why the firmware cannot be in the map: LDF, board and firmware are not about the same cores; else ""."""
     if not _is_of_chip(script, spec):
         return f"the LDF is for an {script.chip}, the board {spec.name} has an {spec.chip.name}"
     mains, cores = sorted(firmware.mains), sorted(spec.chip.cores)
@@ -84,14 +85,14 @@ def _is_of_chip(script: LinkerScript, spec: BoardSpec) -> bool:
 
 
 def _memories(script: LinkerScript, spec: BoardSpec) -> BoardMemories:
-    """Return the memories that an LDF is about: the board's, or none that bfsim knows where it is for another chip."""
+    """Return the memories of an LDF: the board's, or none for another chip, whose memories bfsim does not know."""
     if _is_of_chip(script, spec):
         return BoardMemories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes)
     return BoardMemories(board=script.chip, regions=(), bank_bytes=spec.sdram.bank_bytes)
 
 
 def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], ContentKind]:
-    """Return what each buffer is; what else the linker places is code."""
+    """Return what each buffer is; everything else that the linker places is code."""
     return {
         (PROCESSORS[owner], each.name): _kind(each, firmware.camera)
         for owner, buffers in firmware.buffers(size).items()

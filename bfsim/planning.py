@@ -1,4 +1,4 @@
-"""What a run would be, before it begins: everything that is given is read and checked, but the frames."""
+"""What a run would be: all inputs but the frames are read and checked, and nothing runs."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from bfsim.trace import Identity
 
 
 class _KnownError(Exception):
-    """Ends a run before its first frame, when all is known about it."""
+    """Ends a run before its first frame, once everything about it is known."""
 
 
 def planned(**what: Any) -> tuple[Identity, int]:
-    """Return what `simulate` would run, without the digest of the recording, and how many frames of it. Nothing runs.
+    """Return the identity of what `simulate` would run, without the recording's digest, and its number of frames.
 
-    Raises what `simulate` would before the first frame.
+    Nothing runs. Raises what `simulate` would raise before the first frame.
     """
     known = list[tuple[Identity, int]]()
 
@@ -32,6 +32,6 @@ def planned(**what: Any) -> tuple[Identity, int]:
 
 
 def identified(**what: Any) -> tuple[Identity, int]:
-    """Return what `planned` does, with the digest of the recording, for which all frames are read."""
+    """Return the same as `planned`, with the digest of the recording, for which all frames are read."""
     identity, frames = planned(**what)
     return replace(identity, recording_digest=recording_digest(what.get("recording"), frames)), frames

@@ -1,4 +1,4 @@
-"""The page of a run: what watches the run for it, and writes it when the run is done."""
+"""The page of a run: its watchers during the run, and writing it afterwards."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
 
 
 def require_page(path: Path, others: Iterable[Path | None]) -> None:
-    """Raise ConfigError unless a page can be written to `path`, which must be none of the `others`, and its packages are there."""
+    """Raise ConfigError unless a page can be written to `path`, not one of the `others`, with the packages installed."""
     require_place(path)
     require_apart(path, others)
     require_own(path, PAGE)
@@ -46,7 +46,7 @@ def require_page(path: Path, others: Iterable[Path | None]) -> None:
 
 @contextmanager
 def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[str, Any]) -> Iterator[None]:
-    """Have `watchers` write a page to `path` of the run that `what`, arguments of `simulate`, describes."""
+    """Have `watchers` write to `path` a page of the run that `what`, arguments of `simulate`, describes."""
     chosen = Chosen()
     with Pictures() as pictures, Gantts(chosen.has) as gantts:
         heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_with_heat], chosen.has)
@@ -56,15 +56,15 @@ def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[s
 
         watchers.before.extend((make_room, chosen.begin, gantts.begin, heats.begin))
         watchers.seen.append(heats.add)
-        watchers.spans.extend((chosen.add, gantts.add, heats.add_spans))  # what is chosen is drawn
+        watchers.spans.extend((chosen.add, gantts.add, heats.add_spans))  # in this order
         watchers.done.append(partial(_write, path, target, chosen, pictures, gantts, what))
         yield
 
 
 def write_page(run: RunRecord, again: partial[Any], path: Path, target: Target | None) -> None:
-    """Write the page of a run that is over: `again`, which makes it once more, shows what was seen and when.
+    """Write the page of a finished run; `again` makes the run once more, to show what was seen and when.
 
-    Raises ConfigError where `require_page` does, and where it does not come out as before.
+    Raises ConfigError as `require_page` does, and if the repeated run differs.
     """
     require_page(path, files_of_run(again.keywords))
     watchers = Watchers()

@@ -1,4 +1,4 @@
-"""Finding firmware by its name: a built-in one's, FILE.py:NAME or PACKAGE:NAME."""
+"""Find firmware by its name: a built-in one's, FILE.py:NAME or PACKAGE:NAME."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ FIRMWARE = NamedKind("firmware", "--firmware", Firmware, "bfsim.api", shipped.FI
 
 @dataclass(frozen=True, slots=True)
 class LoadedFirmware:
-    """Firmware with its name: that of a built-in one, or MODULE:NAME, and the file of that module.
+    """Firmware with its name, that of a built-in one or MODULE:NAME, and the file of that module.
 
-    `own` are its modules. All of their files are known only after a run, in which code may import more.
+    `own` are its modules. Their files are all known only after a run, whose code may import more.
     """
 
     name: str
@@ -31,7 +31,7 @@ class LoadedFirmware:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The source files, as they lie in the folder that they were imported from."""
+        """The source files, relative to the folder that they were imported from."""
         return self.own.files
 
     @property
@@ -41,11 +41,11 @@ class LoadedFirmware:
 
 
 def load_firmware(name: str) -> LoadedFirmware:
-    """Import the firmware `name`: that of a built-in one, FILE.py:NAME, or PACKAGE:NAME.
+    """Import the firmware `name`: a built-in one's name, FILE.py:NAME, or PACKAGE:NAME.
 
-    A package is sought in the current folder and then among the installed ones. :NAME may be left out where there is
-    only one Firmware. What is as it was when it was imported before is not imported again. Raises FirmwareError when it
-    cannot be imported or is no `Firmware`; refused kernels raise KernelError.
+    A package is sought in the current folder, then among the installed ones. :NAME may be left out if the file or
+    package has only one Firmware. Unchanged modules are not imported again. Raises FirmwareError if it cannot be
+    imported or is no `Firmware`, and KernelError for refused kernels.
     """
     if name in shipped.FIRMWARE:
         module, own = import_own(shipped.FIRMWARE_PACKAGE, SHIPPED)
@@ -60,6 +60,6 @@ def load_firmware(name: str) -> LoadedFirmware:
 
 
 def compilers_of(loaded: LoadedFirmware) -> set[str]:
-    """Return what compiled the kernels of a firmware that are in C or assembler."""
+    """Return the compilers of a firmware's kernels that are in C or assembler."""
     kernels = kernels_of(loaded.own) | entries_of(loaded.firmware)
     return {each.object_code.compiler for each in kernels if each.object_code and each.object_code.compiler}

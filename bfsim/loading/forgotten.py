@@ -1,7 +1,8 @@
-"""Generator functions of firmware that it calls as if they were functions: nothing of them runs, for lack of a `yield from`.
+"""Find calls of generator functions without `yield from`: such a call runs nothing.
 
-Waits that a core makes are noticed as firmware runs (`machine.core.waits`). Of the firmware's own ones its source tells: a statement that
-is nothing but such a call does nothing, and neither does one that gives it a name which nobody reads. So it does of waits of rings: a ring that is in use may have what is asked for at once.
+A core's own waits are noticed while the firmware runs (`machine.core.waits`). For generator functions of the firmware,
+its source tells: a statement that is only such a call does nothing, nor does one that assigns it to a name which is
+never read. This also finds waits of rings, since a ring in use may answer at once.
 """
 
 from __future__ import annotations
@@ -20,16 +21,16 @@ from bfsim.machine.firmware_lines import INSTALLED, is_firmware
 from bfsim.machine.program import Firmware
 
 Namespace = Mapping[str, Any]
-"""What a module holds by its names."""
+"""The names of a module and their values."""
 RINGS, RING_WAITS = ("input_ring", "output_ring"), ("line", "row", "flush")
-"""What of a core gives a ring, and which of a ring's methods wait."""
+"""Methods of a core that return a ring, and methods of a ring that wait."""
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
 def check_calls(firmware: Firmware) -> None:
-    """Look at the main loops of firmware that is not built in, and at what they call.
+    """Check the main loops of firmware that is not built in, and the functions that they call.
 
-    Raises FirmwareError for a statement that does nothing but make a generator.
+    Raises FirmwareError for a statement that only makes a generator.
     """
     pending: list[Any] = [*firmware.mains.values()]
     seen: set[FunctionType] = set()
@@ -37,7 +38,7 @@ def check_calls(firmware: Firmware) -> None:
         function = pending.pop()
         function = getattr(
             function, "__func__", getattr(function, "func", function)
-        )  # of a method, or a partial
+        )  # a method, or a partial
         if isinstance(function, FunctionType) and function not in seen and _is_own(function):
             seen.add(function)
             _check(function)
@@ -45,7 +46,7 @@ def check_calls(firmware: Firmware) -> None:
 
 
 def _is_own(function: FunctionType) -> bool:
-    """Whether a function is of the firmware, and this neither an installed package nor built in."""
+    """Whether a function belongs to the firmware, and is neither built in nor from an installed package."""
     path = Path(function.__code__.co_filename)
     return (
         is_firmware(str(path))
@@ -55,7 +56,10 @@ def _is_own(function: FunctionType) -> bool:
 
 
 def _named(function: FunctionType) -> Iterator[Any]:
-    """Yield what a function, and those in it, may call: what it closes over, and of its module, and of those that this has imported."""
+    """Yield what a function and its inner functions may call.
+
+    That is what they close over, and names of their module and of modules that it imports.
+    """
     yield from inspect.getclosurevars(function).nonlocals.values()
     names = {name for code in _codes(function.__code__) for name in code.co_names}
     own = [function.__globals__[name] for name in sorted(names) if name in function.__globals__]
@@ -72,7 +76,7 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _check(function: FunctionType) -> None:
-    """Look at a function and at those in it."""
+    """Check a function and its inner functions."""
     file = function.__code__.co_filename
     lines = {each.co_firstlineno for each in _codes(function.__code__)}
     for each, above in _functions(_parsed(file), ()):
@@ -91,7 +95,7 @@ def _check(function: FunctionType) -> None:
 
 
 def _is_forgotten(targets: Sequence[ast.expr], function: ast.AST) -> bool:
-    """Whether what is assigned is kept under a local name that nobody in the function reads."""
+    """Whether a value is assigned to a local name that the function never reads."""
     names = {each.id for each in targets if isinstance(each, ast.Name)}
     nodes = list(ast.walk(function))
     read = {each.id for each in nodes if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Load)}
@@ -100,7 +104,7 @@ def _is_forgotten(targets: Sequence[ast.expr], function: ast.AST) -> bool:
 
 
 def _parsed(file: str) -> ast.AST:
-    """Return the source of a file, or of a cell of a notebook; nothing where there is none."""
+    """Return the syntax tree of a file or a notebook's cell; an empty one if there is no source."""
     try:
         return ast.parse("".join(linecache.getlines(file)))
     except SyntaxError:  # it is being edited
@@ -110,7 +114,7 @@ def _parsed(file: str) -> ast.AST:
 def _functions(
     node: ast.AST, above: Sequence[ast.AST]
 ) -> Iterator[tuple[ast.FunctionDef, Sequence[ast.AST]]]:
-    """Yield each function of a source with the functions and classes that it stands in."""
+    """Yield each function of a source with the functions and classes around it."""
     for each in ast.iter_child_nodes(node):
         if isinstance(each, ast.FunctionDef):
             yield each, above
@@ -118,7 +122,7 @@ def _functions(
 
 
 def _own_nodes(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield what stands in a function or a class, but not in those within."""
+    """Yield the nodes of a function or class, without those of inner ones."""
     for each in ast.iter_child_nodes(function):
         yield each
         if not isinstance(each, DEFINITIONS):
@@ -132,7 +136,7 @@ def _is_generator(function: ast.AST) -> bool:
 
 
 def _makes_a_generator(called: ast.expr, above: Sequence[ast.AST], namespace: Namespace) -> bool:
-    """Whether a call of this is known to make a generator: a function of the source, or of a module that it imports."""
+    """Whether a call surely makes a generator: of a function in the source, or in a module that it imports."""
     if isinstance(called, ast.Name):
         for scope in reversed(above):
             if not isinstance(scope, ast.ClassDef) and (found := _bound(scope, called.id)):
@@ -149,7 +153,7 @@ def _makes_a_generator(called: ast.expr, above: Sequence[ast.AST], namespace: Na
 
 
 def _is_ring(name: str, above: Sequence[ast.AST]) -> bool:
-    """Whether a name is that of a ring and of nothing else in the function that gives it a value."""
+    """Whether a name stands for a ring and nothing else in the function that assigns it."""
     for scope in reversed(above):
         if found := _bound(scope, name):
             values = [
@@ -164,7 +168,7 @@ def _is_ring(name: str, above: Sequence[ast.AST]) -> bool:
 
 
 def _bound(function: ast.AST, name: str) -> list[ast.AST]:
-    """Return what gives a local name of a function its value."""
+    """Return the nodes that give a local name of a function its value."""
     return [
         each
         for each in ast.walk(function)

@@ -1,4 +1,4 @@
-"""Boards and compilers by their names: shipped ones, FILE.py:NAME, or PACKAGE:NAME; and whether they can be."""
+"""Find boards and compilers by name: shipped ones, FILE.py:NAME, or PACKAGE:NAME; check that they are possible."""
 
 from __future__ import annotations
 
@@ -24,17 +24,18 @@ BOARD = NamedKind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS
 PROFILE = NamedKind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))
 
 NAMES = {"name", "title"}
-"""Fields that say what something is called, and not what it is."""
+"""Fields that name a thing without describing it."""
 MOST_CCLK = 1_000_000
-"""As many cycles may a routine of a compiler's library take. [assumed] far beyond any."""
+"""The most cycles that a routine of a compiler's library may take. [assumed] far beyond any."""
 
 
 @dataclass(frozen=True, slots=True)
 class Found(Generic[Wanted]):
-    """A board or a compiler profile, called as the identity of a run calls it.
+    """A board or a compiler profile, named as in the identity of a run.
 
-    `files` are those that it was imported from, none for a shipped one; `digest` is of all its values and these files.
-    `numbers` are what it has otherwise than the shipped one that it is most like, which comes first; none for a shipped one.
+    `files` are those that it was imported from, none for a shipped one; `digest` covers all its values and these files.
+    `numbers` are the values that differ from the most similar shipped one, which is named first; none for a shipped
+    one.
     """
 
     value: Wanted
@@ -47,10 +48,10 @@ class Found(Generic[Wanted]):
 def find_board(
     board: str | BoardSpec, settings: Mapping[str, object] = MappingProxyType({})
 ) -> Found[BoardSpec]:
-    """Return a board that can be built, with other numbers by their paths as `with_settings` has it.
+    """Return a board that can be built, with other numbers by their paths, as in `with_settings`.
 
-    It is called NAME, or MODULE:NAME, and --set PATH=VALUE for each setting. Raises ConfigError, with the field, for a
-    board that cannot be, and for a BoardSpec that has the name of a shipped one and other numbers.
+    Its name is NAME or MODULE:NAME, with --set PATH=VALUE for each setting. Raises ConfigError, with the field, for an
+    impossible board, and for a BoardSpec that has the name of a shipped one but other numbers.
     """
     own = None
     if isinstance(board, BoardSpec):
@@ -74,7 +75,7 @@ def find_board(
 
 @once
 def find_profile(name: str) -> Found[CompilerProfile]:
-    """Return a compiler profile, called NAME or MODULE:NAME. Raises ConfigError, with the field, for one that cannot be."""
+    """Return a compiler profile, named NAME or MODULE:NAME. Raises ConfigError, with the field, for an impossible one."""
     if name in PROFILES:
         return _found(profile_named(name), None, PROFILES)
     found = _load(name, PROFILE, PROFILES)
@@ -96,19 +97,19 @@ def _load(name: str, kind: NamedKind[Wanted], shipped: Mapping[str, Wanted]) -> 
 
 
 def _named(found: Loaded[Wanted]) -> Wanted:
-    """Return what was found with its name in the user's files, which is nobody else's."""
+    """Return what was found, renamed after its place in the user's files: no other has that name."""
     return replace(found.value, name=found.name)  # type: ignore[type-var]
 
 
 def _found(value: Wanted, own: OwnModules | None, shipped: Mapping[str, Wanted]) -> Found[Wanted]:
-    """Note what a board or compiler is made of."""
+    """Return a board or compiler with its files, its digest and its numbers."""
     of_files = own.digest if own else ""
     digest = hashlib.sha256((repr(value) + of_files).encode()).hexdigest()
     return Found(value, own.files if own else (), digest, tuple(_numbers(value, shipped)))
 
 
 def _numbers(value: Wanted, shipped: Mapping[str, Wanted]) -> Iterator[str]:
-    """Yield which shipped one a board or compiler is most like, and what it has otherwise."""
+    """Yield the shipped one that a board or compiler is most like, and the values that differ from it."""
     if value in shipped.values():
         return
     mine = _leaves(value).items()

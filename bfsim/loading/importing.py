@@ -1,8 +1,8 @@
-"""Importing the modules of one firmware: from its own folder, from their sources, and apart from the process's other modules.
+"""Import the modules of one firmware from source, from its own folder, apart from the process's other modules.
 
-Python imports a module once per process, and whichever folder of its path has the name first. Firmware is code that
-changes between two runs, and the names of its modules are often taken. So each firmware has modules of its own, which
-stand under their names only while it is imported and while it runs.
+Python imports a module once per process, from the first folder of its path that has the name. But firmware changes
+between two runs, and the names of its modules are often taken. So each firmware has modules of its own, which stand
+under their names only while it is imported and while it runs.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from types import CodeType, ModuleType
 from bfsim.files import store
 
 NEVER_OWN = {*sys.stdlib_module_names, "__main__", "bfsim", "llvmlite", "numpy", "scipy", "simpy"}
-"""Names of the modules that firmware and bfsim have in common: of a second one of the name, objects would be no objects of the first."""
+"""Modules that firmware and bfsim share: objects of a second copy would not be instances of the first one's classes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Root:
     only: str = ""
 
     def find(self, name: str) -> ModuleSpec | None:
-        """Find the top-level module `name` in the folder, unless it is none of the firmware's own."""
+        """Find the top-level module `name` in the folder, unless it cannot be the firmware's own."""
         if name in NEVER_OWN or (self.only and name != self.only):
             return None
         spec = PathFinder.find_spec(name, [str(self.folder)])
@@ -49,9 +49,9 @@ class Root:
 
 
 class OwnModules(MetaPathFinder):
-    """The modules that a firmware imports from `roots`, the first one that has a name.
+    """The modules that a firmware imports from `roots`; the first root that has a name wins.
 
-    `modules` and `sources` hold them by name; the digests in `sources` are of the very bytes that were compiled.
+    `modules` and `sources` hold them by name; the digests in `sources` are those of the bytes that were compiled.
     """
 
     def __init__(self, roots: Sequence[Root]) -> None:
@@ -60,7 +60,7 @@ class OwnModules(MetaPathFinder):
         self.sources: dict[str, ImportedFile] = {}
 
     def has(self, name: str) -> bool:
-        """Whether a module, wherever its name comes from, would be the firmware's own."""
+        """Whether a module of this name would be the firmware's own."""
         top = name.partition(".")[0]
         return top.isidentifier() and any(root.find(top) for root in self.roots)
 
@@ -73,13 +73,13 @@ class OwnModules(MetaPathFinder):
 
     @contextmanager
     def named(self) -> Iterator[None]:
-        """Let the modules stand under their names: for code that imports, or looks itself up, while it runs."""
+        """Put the modules under their names: for code that imports, or looks itself up, while it runs."""
         with self._named({name.partition(".")[0] for name in self.modules}):
             yield
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The source files, as they lie in the folder that they were imported from."""
+        """The source files, relative to the folder that they were imported from."""
         return tuple(sorted(each.relative for each in self.sources.values()))
 
     @property
@@ -88,16 +88,16 @@ class OwnModules(MetaPathFinder):
         lines = sorted(f"{each.relative} {each.sha256}\n" for each in self.sources.values())
         return hashlib.sha256(
             "".join(lines).encode(errors="surrogateescape")
-        ).hexdigest()  # a name may be no text
+        ).hexdigest()  # a name may not be valid text
 
     @property
     def changed(self) -> bool:
-        """Whether one of the files is not what it was when it was imported, and would be imported anew."""
+        """Whether one of the files has changed since it was imported, and would be imported anew."""
         return any(each.is_own and not each.is_current() for each in self.sources.values())
 
     @contextmanager
     def _named(self, tops: set[str]) -> Iterator[None]:
-        """Put the own modules in the place of those that others have imported by these top-level names."""
+        """Replace modules that others have imported under these top-level names by the firmware's own."""
         others = _below(tops)
         for name in others:
             del sys.modules[name]
@@ -117,7 +117,7 @@ class OwnModules(MetaPathFinder):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find a module of the firmware's own for Python, if it is the firmware that imports it."""
+        """Find a module of the firmware's own for Python, if the firmware imports it."""
         parent = fullname.rpartition(".")[0]
         if parent:
             spec = PathFinder.find_spec(fullname, path) if parent in self.modules else None
@@ -133,7 +133,7 @@ class OwnModules(MetaPathFinder):
         return spec
 
     def _is_importing(self, frame: object) -> bool:
-        """Whether the code that imports is the firmware's, or `load`: what bfsim and the libraries import is theirs."""
+        """Whether the importing code is the firmware's, or `load`; imports by bfsim and libraries are left alone."""
         while (names := getattr(frame, "f_globals", None)) is not None:
             name = names.get("__name__") or ""
             if name.partition(".")[0] != "importlib":
@@ -144,7 +144,7 @@ class OwnModules(MetaPathFinder):
 
 
 def _below(tops: set[str]) -> dict[str, ModuleType]:
-    """Return what is imported by top-level names, and below them."""
+    """Return the imported modules with these top-level names, and those below them."""
     prefixes = tuple(f"{top}." for top in tops)
     return {name: each for name, each in sys.modules.items() if name in tops or name.startswith(prefixes)}
 
@@ -153,7 +153,7 @@ def _below(tops: set[str]) -> dict[str, ModuleType]:
 class ImportedFile:
     """A file that was imported, and its name below the folder that it was imported from.
 
-    `is_own`: whether it is imported for this firmware alone; Python keeps what it has imported from elsewhere.
+    `is_own`: whether it is imported for this firmware alone; what comes from elsewhere, Python keeps.
     """
 
     path: Path
@@ -171,12 +171,12 @@ class ImportedFile:
 
 def relative_name(module: str, path: Path) -> str:
     """Return the name of a module's file below the folder that it is imported from."""
-    below = len(module.split(".")) + (path.name == "__init__.py")  # parts of the path
+    below = len(module.split(".")) + (path.name == "__init__.py")  # number of path components
     return "/".join(path.parts[-below:])
 
 
 class _FromSource(SourceFileLoader):
-    """Compiles the source, or finds what was compiled of these very bytes: the time stamp of a .pyc is too coarse to tell an edit."""
+    """Compiles the source, or finds the code of these bytes: the time stamp of a .pyc is too coarse to notice edits."""
 
     def __init__(self, fullname: str, path: str, own: OwnModules) -> None:
         super().__init__(fullname, path)
@@ -192,7 +192,7 @@ class _FromSource(SourceFileLoader):
         relative = relative_name(fullname, path)
         self._own.sources[fullname] = ImportedFile(path, relative, hashlib.sha256(written).hexdigest())
         code = self._compiled(written)
-        # Kernels read their source there, which must be what was compiled.
+        # Kernels read their source from linecache, which must hold what was compiled.
         lines = io.StringIO(importlib.util.decode_source(written)).readlines()
         linecache.cache[self.path] = (stat.st_size, stat.st_mtime, lines, self.path)
         return code

@@ -1,4 +1,4 @@
-"""Finding a kernel by its name: in a file or a package, or among those of a firmware."""
+"""Find a kernel by its name: in a file or a package, or among those of a firmware."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from bfsim.loading.locating import located, parted
 from bfsim.loading.modules import import_own
 
 NEAREST_NAMES = 5
-"""As many names are offered to who asked for one that there is not."""
+"""How many similar names an error for an unknown name offers."""
 
 
 def load_kernel(name: str, firmware: str) -> Kernel:
     """Find the kernel `name`: FILE.py:NAME, PACKAGE:NAME, or the name of one of the kernels of `firmware`.
 
-    :NAME may be left out where the file has one kernel. Raises FirmwareError when there is no such kernel, or more than one.
+    :NAME may be left out if the file has only one kernel. Raises FirmwareError if there is no such kernel, or more than
+    one.
     """
     place, _, attribute = name.rpartition(":")
     if not place and attribute.endswith(".py"):
@@ -36,13 +37,13 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         advice = (
             _apart(found, place) if found else _nearest(attribute, {each.name for each in kernels_of(own)})
         )
-        told = cut(name) or shown(name)  # an empty word would not be seen
+        told = cut(name) or shown(name)  # an empty word would be invisible
         raise FirmwareError(f"{told} must name one kernel, but names {len(found) or 'none'}; {advice}")
     return found[0]
 
 
 def _kernels_called(name: str, module: ModuleType) -> list[Kernel]:
-    """Return the kernel that a module has under a name, or else those of that name, as a profile has it; all without one."""
+    """Return the kernel that a module holds under `name`, else those whose own name it is; without a name, all."""
     kernels = list({each: None for each in vars(module).values() if isinstance(each, Kernel)})
     named = getattr(module, name, None) if name else None
     if isinstance(named, Kernel):
@@ -51,7 +52,7 @@ def _kernels_called(name: str, module: ModuleType) -> list[Kernel]:
 
 
 def _apart(kernels: list[Kernel], place: str) -> str:
-    """Say by which names kernels are told apart, those of `place` or, without it, of several modules."""
+    """Say which names tell the kernels of `place`, or without it of several modules, apart."""
     names = sorted(
         f"{place or getattr(each.definition, '__module__', each.place)}:{each.name}" for each in kernels
     )

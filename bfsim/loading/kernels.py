@@ -1,4 +1,4 @@
-"""The kernels of firmware: those that its modules name, and those that its main loops do."""
+"""The kernels of firmware: those that its modules name, and those that its main loops name."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.machine.program import Firmware
 
 
 def kernels_of(own: OwnModules) -> set[Kernel]:
-    """Return every kernel that modules name; of firmware that others have imported, that theirs do."""
+    """Return every kernel that the firmware's modules name, or those of its sources if others have imported them."""
     others = (
         module for name, each in own.sources.items() if each.is_own and (module := sys.modules.get(name))
     )

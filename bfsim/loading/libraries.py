@@ -1,6 +1,6 @@
-"""Modules that firmware imports from elsewhere than its own folder or package: what changes in them changes what runs.
+"""Modules that firmware imports from outside its own folder or package: changes in them change what runs.
 
-Those of Python and of installed packages are left out: they change when somebody installs others.
+Python's own and installed packages are left out: they change only when somebody installs others.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from bfsim.loading.importing import ImportedFile, relative_name
 from bfsim.machine.firmware_lines import INSTALLED
 
 OURS = "bfsim"
-"""Our own package has its version in every identity."""
+"""The version of our own package is in every identity."""
 
 
 def add_libraries(sources: dict[str, ImportedFile], built_in: Path) -> None:
-    """Add to the sources of firmware the libraries that they import, and that these do; those in the folder `built_in` import none.
+    """Add to the sources of firmware the libraries that they import, directly or through each other.
 
-    They must have been imported.
+    These must have been imported already. Files in the folder `built_in` import none.
     """
     pending = [*sources.items()]
     while pending:
         module, source = pending.pop()
-        if source.path.is_relative_to(built_in) or not source.path.is_file():  # a cell of a notebook is none
+        if source.path.is_relative_to(built_in) or not source.path.is_file():  # a cell of a notebook has no file
             continue
         package = module if source.path.name == "__init__.py" else module.rpartition(".")[0]
         imports = imports_of(source.path.read_bytes(), package)
@@ -41,7 +41,7 @@ def add_libraries(sources: dict[str, ImportedFile], built_in: Path) -> None:
 
 
 def _library(name: str) -> Path | None:
-    """Return the source of a module that was imported, if it is neither Python's, nor ours, nor of an installed package."""
+    """Return the source of an imported module, unless it is Python's, ours, or from an installed package."""
     if name.partition(".")[0] in {OURS, *sys.stdlib_module_names}:
         return None
     path = Path(getattr(sys.modules.get(name), "__file__", None) or "")
@@ -50,7 +50,7 @@ def _library(name: str) -> Path | None:
 
 @functools.lru_cache(maxsize=1024)
 def imports_of(text: str | bytes, package: str) -> tuple[str, ...]:
-    """Return all that may be a module in the import statements of a source."""
+    """Return every name in the import statements of a source that may be a module."""
     names = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):

@@ -1,4 +1,4 @@
-"""Names of firmware, kernels, boards and compilers as they are given, FILE.py:NAME or PACKAGE:NAME → a module, and where to import it from."""
+"""Names of firmware, kernels, boards and compilers, FILE.py:NAME or PACKAGE:NAME → a module and where it is."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from bfsim.loading.importing import NEVER_OWN, Root
 def parted(name: str, must_be: str) -> tuple[str, str]:
     """Split a name into the file or package and, if there is one, the name in it.
 
-    Raises FirmwareError, which begins with what it `must_be`, if it is neither.
+    Raises FirmwareError, beginning with `must_be`, if it is neither.
     """
     if name.endswith(".py"):
         return name, ""
@@ -28,14 +28,14 @@ def parted(name: str, must_be: str) -> tuple[str, str]:
 
 
 def file_named(name: str) -> Path | None:
-    """Return the file of such a name that is here, without importing anything; None for what is shipped, or elsewhere."""
+    """Return the file that a name means, without importing anything; None for shipped names and files elsewhere."""
     place = name.rpartition(":")[0] if ":" in name else name
     path = Path(place if place.endswith(".py") else f"{place.replace('.', '/')}.py")
     return path if _is_file(path) else None
 
 
 def located(place: str, advice: str = "") -> tuple[str, Root]:
-    """Return the name of the module that is a file or a package, and where to import it from.
+    """Return the name of a file's or package's module, and where to import it from.
 
     Raises FirmwareError, with the `advice`, if there is none.
     """
@@ -71,12 +71,12 @@ def _in_file(name: str) -> tuple[str, Root]:
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
-    except OSError:  # a name that is too long
+    except OSError:  # the name may be too long
         return False
 
 
 def _root_of(top: str) -> Root | None:
-    """Find the folder that has the package or module `top`: the current one or, second, one of Python's path."""
+    """Find the folder that has the package or module `top`: the current one or, failing that, one of Python's path."""
     here = PathFinder.find_spec(top, [str(Path.cwd())])
     specs = (finder.find_spec(top, None) for finder in sys.meta_path)
     there = next((each for each in specs if each), None)
@@ -86,7 +86,7 @@ def _root_of(top: str) -> Root | None:
 
 
 def _root_in(spec: ModuleSpec) -> Root:
-    """Return where a module was found; packages that are installed side by side have nothing to do with each other."""
+    """Return where a module was found; packages that are installed side by side are not each other's modules."""
     inside = [*(spec.submodule_search_locations or ())]
     folder = Path(inside[0] if inside else spec.origin or "").parent
     return Root(folder, spec.name if folder in _installed() else "")

@@ -1,4 +1,4 @@
-"""Importing a module that a user named, with what it imports: once, unless a source of it has changed."""
+"""Import a module that a user named, and what it imports: once, unless one of its sources has changed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _imported: dict[tuple[str, Root], tuple[ModuleType, OwnModules]] = {}
 
 
 def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
-    """Import a module from `root`, and what it imports of built-in firmware from what is shipped.
+    """Import a module from `root`, and the shipped firmware that it imports.
 
     Raises FirmwareError when that fails.
     """
@@ -34,12 +34,12 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
 
 
 def import_more(module: str, own: OwnModules) -> ModuleType:
-    """Import a module among those of a firmware. Raises FirmwareError when that fails."""
+    """Import a module as one of a firmware's. Raises FirmwareError when that fails."""
     try:
         return own.load(module)
     except BfsimError as error:
         place = line_of(error)
-        if place.strip(" ()").rpartition(":")[0] in str(error):  # which it names itself
+        if place.strip(" ()").rpartition(":")[0] in str(error):  # its message names the place already
             raise
         raise type(error)(f"{error}{place}") from error
     except BaseException as error:
@@ -57,7 +57,7 @@ def _failed(module: str, error: BaseException) -> FirmwareError:
     said, place = printable(failure_of(error)), line_of(error)
     if (
         isinstance(error, SyntaxError) and error.filename and error.lineno
-    ):  # a file that is no text has no place
+    ):  # a file that is not text has no line
         said, place = f"{type(error).__name__}: {cut(error.msg)}", f" ({error.filename}:{error.lineno})"
         if error.text and error.offset:
             place += pointed(error.text.rstrip(), max(0, error.offset - 1))
@@ -65,5 +65,5 @@ def _failed(module: str, error: BaseException) -> FirmwareError:
 
 
 def path_of(module: ModuleType) -> Path:
-    """Return the file of a module, or the folder of one that has no file."""
+    """Return the file of a module, or the folder of a module without a file."""
     return Path(getattr(module, "__file__", None) or next(iter(module.__path__)))

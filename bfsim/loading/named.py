@@ -1,4 +1,4 @@
-"""Finding by its name what users write in Python. It is code: nothing is imported that the user did not name."""
+"""Find by name what users write in Python. It is code: nothing is imported that the user did not name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Wanted = TypeVar("Wanted")
 
 @dataclass(frozen=True, slots=True)
 class NamedKind(Generic[Wanted]):
-    """What an option takes by name: things of one type, which users import from `module`; some are `built_in`."""
+    """What an option takes by name: objects of one type, which users import from `module`; some are `built_in`."""
 
     noun: str
     option: str
@@ -27,11 +27,11 @@ class NamedKind(Generic[Wanted]):
 
     @property
     def must_be(self) -> str:
-        """Say what names the option takes."""
+        """Say which names the option takes."""
         return f"{self.option} must be one of {', '.join(self.built_in)}, FILE.py:NAME or PACKAGE:NAME"
 
     def advice(self, attribute: str) -> str:
-        """Say how what is built in is written to who may have meant it."""
+        """Say how the built-in ones are written, in case the user meant one."""
         *names, last = self.built_in
         if attribute in self.built_in:
             return f"; the built-in {self.noun} is written {attribute}"
@@ -40,7 +40,7 @@ class NamedKind(Generic[Wanted]):
 
 @dataclass(frozen=True, slots=True)
 class Loaded(Generic[Wanted]):
-    """What was found under a name, the name as MODULE:NAME, its module, and all of its modules."""
+    """What was found under a name, the name as MODULE:NAME, its module, and all of its own modules."""
 
     name: str
     value: Wanted
@@ -49,9 +49,9 @@ class Loaded(Generic[Wanted]):
 
 
 def load_named(name: str, kind: NamedKind[Wanted], apart: Collection[Wanted] = ()) -> Loaded[Wanted]:
-    """Import what is called FILE.py:NAME or PACKAGE:NAME, as `load_firmware` does.
+    """Import the object called FILE.py:NAME or PACKAGE:NAME, as `load_firmware` does.
 
-    :NAME may be left out where the module has one thing of that kind; those in `apart` are not counted.
+    :NAME may be left out if the module has only one object of that kind; those in `apart` do not count.
     """
     place, attribute = parted(name, kind.must_be)
     module, own = import_own(*located(place, kind.advice(attribute)))

@@ -1,4 +1,4 @@
-"""Finding scenes to render by their name: a built-in one, FILE.py:NAME, or PACKAGE:NAME."""
+"""Find scenes to render by their name: a built-in one, FILE.py:NAME, or PACKAGE:NAME."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.recording.scenes import Scene, SceneAtDistances, Scenes
 
 
 def load_scenes(name: str) -> Scenes:
-    """Return the scene or scenes of this name. Raises RecordingError if there is none, and FirmwareError as `load_firmware`."""
+    """Return the scene or scenes of this name. Raises RecordingError if there is none, else as `load_firmware`."""
     place, colon, attribute = name.rpartition(":")
     if not colon:
         return _built_in(name)

@@ -1,4 +1,4 @@
-"""What kinds of values a script may give for a run: a mistake is told where it was made, not by what stumbles over it."""
+"""The kinds of values that a script may give to a run: mistakes are reported here rather than deep inside."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Choice = TypeVar("Choice", Feed, Fidelity)
 
 
 class _Allowed(NamedTuple):
-    """The types that an argument may have, and these in words."""
+    """The types that an argument may have, and their description."""
 
     types: tuple[type, ...]
     words: str
@@ -40,7 +40,7 @@ _ALLOWED = {
 
 
 def require_kinds(arguments: Mapping[str, object]) -> None:
-    """Raise ConfigError for the first argument of `simulate` that is of another kind than it can be."""
+    """Raise ConfigError for the first argument of `simulate` whose value is of a wrong kind."""
     for name, kind in _ALLOWED.items():
         given = arguments[name]
         if not isinstance(given, kind.types):
@@ -48,7 +48,7 @@ def require_kinds(arguments: Mapping[str, object]) -> None:
 
 
 def _advice(given: object) -> str:
-    """Return the end of an error for a module, which has firmware in it rather than being one."""
+    """Return the end of an error for a module: firmware is in it, but it is not firmware."""
     if not isinstance(given, ModuleType):
         return ""
     names = [f"{given.__name__}.{name}" for name, each in vars(given).items() if isinstance(each, Firmware)]
@@ -56,7 +56,7 @@ def _advice(given: object) -> str:
 
 
 def one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
-    """Return the member of an enumeration that was given, or whose name was. Raises ConfigError if there is none."""
+    """Return the member of an enumeration, given as such or by its name. Raises ConfigError if there is none."""
     try:
         return kind(name)
     except ValueError:
@@ -65,7 +65,7 @@ def one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
 
 
 def path_of(what: str, given: object) -> Path | None:
-    """Return what was given as a file's path. Raises ConfigError if it is none."""
+    """Return what was given as the path of a file. Raises ConfigError if it is no path."""
     if given is None:
         return None
     if isinstance(given, (str, PathLike)):

@@ -1,4 +1,4 @@
-"""What a run takes from nowhere but bfsim, or doubts: a geometry that nobody gave, cameras that seem exchanged or not rectified, clocks that no PLL makes, tables too large for L1."""
+"""What a run assumes or doubts: the geometry, the cameras, the clocks, and tables that may not fit into L1."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.trace import RunWarning, WarningKind
 
 
 def geometry_in_words(program: Firmware, calibration: Calibration) -> str:
-    """Return which geometry the firmware computes with; nothing for firmware that takes none."""
+    """Return the geometry that the firmware computes with, in words; "" for firmware that takes none."""
     if program.calibration is not None:
         for each in calibration.geometries:
             return f"{each} (of the recording)"
@@ -20,7 +20,7 @@ def geometry_in_words(program: Firmware, calibration: Calibration) -> str:
 
 
 def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
-    """Yield a warning where the firmware has to assume where the cameras are, or their height or tilt."""
+    """Yield a warning if the firmware has to assume where the cameras are, or their height or tilt."""
     if not program.assumed_geometry:
         return
     for each in calibration.geometries:
@@ -43,12 +43,12 @@ def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[Ru
 
 
 def doubted_cameras(doubts: Iterable[str]) -> Iterator[RunWarning]:
-    """Yield a warning for each reason to doubt where the cameras are, by what their pictures show."""
+    """Yield a warning for each reason to doubt the positions of the cameras, found in their pictures."""
     yield from (RunWarning(kind=WarningKind.GEOMETRY, text=each) for each in doubts)
 
 
 def assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
-    """Yield a warning where the clocks of a board are none that its chip can have."""
+    """Yield a warning if the chip of a board cannot have the board's clocks."""
     if spec.pll is None:
         clocks = f"{float(spec.clocks.cclk_hz) / 1e6:.6g} and {float(spec.clocks.sclk_hz) / 1e6:.6g} MHz"
         text = f"no PLL setting makes the clocks of {spec.name}, {clocks}, of one crystal"
@@ -58,7 +58,7 @@ def assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
 def assumed_tables(
     kernels: Mapping[str, Iterable[Kernel]], spec: BoardSpec, link_map: LinkMap
 ) -> Iterator[RunWarning]:
-    """Yield a warning where files of C and assembler have more variables and tables than the L1 of a core has room for.
+    """Yield a warning if files of C and assembler have more variables and tables than a core's L1 can hold.
 
     `kernels`: those of each core's main loop.
     """

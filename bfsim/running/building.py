@@ -1,4 +1,4 @@
-"""How the kernels of firmware are built: by the code of the profile's compiler where there is some, or as the profile estimates them."""
+"""How the kernels of firmware are built: from the code of the profile's compiler if there is any, or as estimated."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ NOTHING_AT_HAND = "estimated, for bfin-elf-gcc is not on the PATH"
 def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
     """Return how the kernels of `loaded` are built.
 
-    The code of the compiler is kept, or compiled now by the one on the PATH; where there is neither, all is estimated. Raises
-    ConfigError with what the compiler says if it refuses.
+    The compiler's code comes from the cache, or the one on the PATH makes it now; without either, all is estimated.
+    Raises ConfigError with the compiler's message if it refuses.
     """
     return _build(loaded.firmware, loaded.own, profile)
 

@@ -1,7 +1,8 @@
-"""Kernels that a run will call, compiled by the other processors of this machine meanwhile.
+"""Compile kernels that a run will call, on the other processors of this machine.
 
-A run compiles a kernel when it first calls it, so a cold start takes one processor. Processes that are forked from it compile the
-kernels that it comes to last, and keep them in the cache on disk, where it looks anyway. Nothing of a run depends on them.
+A run compiles a kernel when it first calls it, so a cold start uses one processor. Processes forked from it compile the
+kernels that it needs last, and put them into the cache on disk, where it looks anyway. The results of a run do not
+depend on them.
 """
 
 from __future__ import annotations
@@ -19,16 +20,16 @@ from bfsim.loading.kernels import entries_of, written_in_python
 from bfsim.machine.program import Firmware
 
 FEWEST_KERNELS = 12
-"""A run has compiled fewer by the time that a process could be of use."""
+"""With fewer kernels, a run has compiled them by the time that a process could help."""
 MOST_PROCESSES = 4
-"""More gain less than they take memory: what a run must do itself takes as long."""
+"""More of them gain less than their memory is worth: what the run must do itself takes as long."""
 
 
 @contextmanager
 def compiled_ahead(firmware: Firmware, build: Build, outside: frozenset[str]) -> Iterator[None]:
-    """In the `with` block, have other processes compile the kernels of `firmware` that the cache does not hold; they end with it.
+    """Compile the kernels of `firmware` that the cache lacks in other processes, which end with the `with` block.
 
-    `outside`: the buffers outside of L1, for other code is needed there. What is not known of a kernel is guessed.
+    `outside`: the buffers outside L1, which need other code. What is not known of a kernel is guessed.
     """
     kernels = written_in_python(entries_of(firmware))
     digests = sorted(each.function.digest for each in kernels)
@@ -38,7 +39,7 @@ def compiled_ahead(firmware: Firmware, build: Build, outside: frozenset[str]) ->
     if not processes or len(kernels) < FEWEST_KERNELS or store.load(name) is not None or _is_one_of_many():
         yield
         return
-    from bfsim.running.compilers import Compilers  # most starts find all compiled
+    from bfsim.running.compilers import Compilers  # most starts find everything compiled
 
     calls = [(each.kernel, not outside.isdisjoint(each.buffers)) for each in in_order(kernels)[::-1]]
     with store.claimed() as is_first:
@@ -53,7 +54,7 @@ def compiled_ahead(firmware: Firmware, build: Build, outside: frozenset[str]) ->
 
 
 def _is_one_of_many() -> bool:
-    """Whether this process is a worker of a pool, whose others have their own work on the processors."""
+    """Whether this process is a worker of a pool, whose others have work of their own for the processors."""
     from multiprocessing import parent_process
 
     return parent_process() is not None

@@ -1,4 +1,4 @@
-"""Processes that compile kernels and keep them in the cache on disk, forked from one that knows the kernels already."""
+"""Processes that compile kernels into the cache on disk, forked from one that knows the kernels already."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Share = Sequence[tuple[Kernel, bool]]
 
 
 class Compilers:
-    """A process for each share of kernels, where the system has one to give."""
+    """A process for each share of kernels, as far as the system provides processes."""
 
     def __init__(self, build: Build, shares: Sequence[Share]) -> None:
         """Start them."""
         fork = multiprocessing.get_context("fork").Process
         self._processes = [fork(target=_compile, args=(build, each), daemon=True) for each in shares]
         with warnings.catch_warnings(), suppress(OSError):
-            # of other threads, whose locks a process might wait for: it ends with the run all the same
+            # It warns that a process may wait for locks of other threads: if so, it still ends with the run.
             warnings.simplefilter("ignore", DeprecationWarning)
             for each in self._processes:
                 each.start()
 
     def end(self) -> bool:
-        """End all processes; return whether they had compiled all."""
+        """End all processes; return whether they had compiled everything."""
         for each in self._processes:
             if each.pid is not None:
                 each.kill()
@@ -40,7 +40,7 @@ class Compilers:
 
 
 def _compile(build: Build, share: Share) -> None:
-    """Compile for as long as the run goes on; what a kernel is refused for is told by the run, if it calls it."""
+    """Compile as long as the run goes on; if a kernel is refused, the run says so when it calls it."""
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(each, signal.SIG_DFL)
     nowhere = os.open(os.devnull, os.O_RDWR)

@@ -1,4 +1,4 @@
-"""Reading the script that a user gives to the firmware's device: JSON or TOML. What stands in it is the device's."""
+"""Read the script that a user gives to the firmware's device: JSON or TOML. The device knows what its content means."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from bfsim.files.content import read_bounded
 
 
 def _refuse(constant: str) -> Any:
-    """JSON has no word for these, though Python writes and reads them."""
+    """Refuse a constant that JSON does not have, though Python writes and reads it."""
     raise ValueError(f"{constant} is no number of JSON")
 
 
@@ -26,21 +26,21 @@ _PARSERS: Mapping[str, Callable[[str], Any]] = {
 
 
 def read_script(path: Path) -> tuple[Mapping[str, Any], str]:
-    """Return what a script says, by its keys, and the digest of its file.
+    """Return the content of a script, by its keys, and the digest of its file.
 
-    Raises ConfigError that names the file, and the line where it is no JSON or TOML.
+    Raises ConfigError with the file, and the line if it is not valid JSON or TOML.
     """
     parse = _PARSERS.get(path.suffix)
     if parse is None:
         raise ConfigError(f"{path} must end in .json or .toml")
     try:
         octets = read_bounded(path)
-        script = parse(octets.decode("utf-8-sig"))  # editors may put their mark first
+        script = parse(octets.decode("utf-8-sig"))  # editors may put a byte order mark first
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
     except RecursionError as error:
         raise ConfigError(f"{path} must not be nested so deep") from error
-    except ValueError as error:  # of either parser, and of the text's encoding
+    except ValueError as error:  # of either parser, or of the text's encoding
         raise ConfigError(f"{path} must be {path.suffix[1:].upper()}: {error}") from error
     if not isinstance(script, dict):
         raise ConfigError(

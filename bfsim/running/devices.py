@@ -1,4 +1,4 @@
-"""The devices of a firmware, told by a script of the user what to do."""
+"""The devices of a firmware, with the script of the user."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bfsim.machine.peripherals.table import devices_of, makers_of
 
 
 def told_devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Device], str]:
-    """Return the devices of the firmware, told by the script if there is one, and the digest of the script."""
+    """Return the firmware's devices, which have the script if there is one, and the digest of the script."""
     if path is None:
         return devices_of(loaded.firmware, {}), ""
     if not makers_of(loaded.firmware):

@@ -1,4 +1,4 @@
-"""What a core did in a frame, in a file of recorded work: a line of JSON, and then the columns of its tables."""
+"""What a core did in a frame, in a file of recorded work: a line of JSON, then the columns of its tables."""
 
 from __future__ import annotations
 
@@ -35,11 +35,14 @@ TABLES = PACKED | {"copies": COPY_COLUMNS}
 NO_COPIES = np.zeros((0, COPY_COLUMNS), np.int64)
 MOST_NUMBERS = 1 << 62
 COPY_STEPS = SOURCE_BYTE, DESTINATION_BYTE
-"""Columns of copies that are written as differences from row to row, as bytes of accesses and counters of events are: they go up in steps."""
+"""Columns of copies that are stored as differences between rows, since their values go up in steps.
+
+So are the bytes of accesses and the counters of events.
+"""
 
 
 def written(work: FrameWork) -> bytes:
-    """Return the content of a frame."""
+    """Return a frame as it is stored."""
     tables = _tables(work)
     columns = [(_width(each), each) for table in TABLES for each in tables[table]]
     head = {
@@ -52,12 +55,12 @@ def written(work: FrameWork) -> bytes:
 
 
 def _tables(work: FrameWork) -> dict[str, list[NDArray[np.int64]]]:
-    """Return the columns of all tables as they are written."""
+    """Return the columns of all tables as they are stored."""
     accesses, events, copies = (each.T.astype(np.int64) for each in (work.accesses, work.events, work.copies))
     steps, byte_steps = _steps(accesses[STAMP]), _steps(accesses[BYTE])
     counts = work.operations[work.operations[:, 0] == w.ACCESS, 3]
     firsts = (np.cumsum(counts) - counts)[counts > 0]
-    steps[firsts] = accesses[STAMP, firsts]  # a call begins anew
+    steps[firsts] = accesses[STAMP, firsts]  # each call begins anew
     operations = work.operations.copy()
     copies_made = operations[:, 0] == w.COPY
     operations[copies_made, 1] = _steps(operations[copies_made, 1])
@@ -74,9 +77,9 @@ def _tables(work: FrameWork) -> dict[str, list[NDArray[np.int64]]]:
 
 
 def _dictionary(columns: list[NDArray[np.int64]]) -> tuple[list[NDArray[np.int64]], NDArray[np.int64]]:
-    """Return the different rows of some columns, and which of them each row is."""
+    """Return the distinct rows of some columns, and which of them each row is."""
     number, numbers = np.zeros(len(columns[0]), np.int64), 1
-    for each in columns:  # all in one number, which numpy sorts in a tenth of the time that it takes for rows
+    for each in columns:  # as one number, which numpy sorts in a tenth of the time
         least = int(each.min(initial=0))
         size = int(each.max(initial=0)) - least + 1
         if numbers * size > MOST_NUMBERS:
@@ -93,19 +96,19 @@ def _steps(column: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _width(column: NDArray[np.int64]) -> int:
-    """Return the number of the narrowest width that holds a column."""
+    """Return the index of the narrowest width that can hold a column."""
     least, most = column.min(initial=0), column.max(initial=0)
     fits = (np.iinfo(each).min <= least and most <= np.iinfo(each).max for each in WIDTHS)
     return [*fits].index(True)
 
 
 def _aligned(octets: bytes, place: int, filling: bytes) -> bytes:
-    """Return octets with others at a place, so that they are a multiple of ALIGNED_BYTES."""
+    """Return `octets` with fillers inserted at `place`, so that the length is a multiple of ALIGNED_BYTES."""
     return octets[:place] + filling * (-len(octets) % ALIGNED_BYTES) + octets[place:]
 
 
 def read(core: str, content: bytes) -> PackedWork:
-    """Return what a content says. Raises ValueError, LookupError or TypeError where that is none."""
+    """Return the work in a stored frame. Raises ValueError, LookupError or TypeError if it is broken."""
     at = content.index(b"\n") + 1
     head = json.loads(content[:at])
     rows = {name: int(head["rows"][name]) for name in TABLES}

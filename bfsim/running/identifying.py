@@ -1,4 +1,4 @@
-"""What a run depends on: names and digests, and the frames of a recording, whose digest grows as they are read."""
+"""What a run depends on, as names and digests; the frames of a recording, and their digest as they are read."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from bfsim.trace import Identity
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownFrames:
-    """Frames that were read once: `digests` of the recording up to each, `times_ns` of its left and right picture.
+    """Frames that have been read: `digests` of the recording up to each, `times_ns` of its left and right picture.
 
-    `stored_digest`: of the file as it is stored up to the byte `stored_end`, up to which it was read.
+    `stored_digest` covers the file up to byte `stored_end`, as far as it was read.
     """
 
     digests: tuple[str, ...]
@@ -38,14 +38,14 @@ class KnownFrames:
 
 
 class DigestedFrames:
-    """The frames of a recording as they are read, and the digest of those that were."""
+    """The frames of a recording as they are read, and the digest of those read so far."""
 
     def __init__(self, reader: RecordingReader, total: int) -> None:
         self.name = name_of(Path(reader.path))
         self._reader = reader
         self.total = total
         self.digests: list[str] = []
-        """Of the recording up to each frame that was read."""
+        """Digests of the recording up to each frame that was read."""
         self._expected: KnownFrames | None = None
         self._times_ns: list[tuple[int, int]] = []
 
@@ -74,7 +74,7 @@ class DigestedFrames:
             yield frame, digest.hexdigest()
 
     def _unseen(self, known: KnownFrames) -> Iterator[tuple[StereoFrame, str]]:
-        """Yield frames that are stored as they were before, whose pictures nobody looks at again: black ones."""
+        """Yield black frames for frames that are stored as before, since nobody looks at their pictures again."""
         black = np.zeros((self._reader.height, 2 * self._reader.width), np.uint8)
         for index, (digest, (left_ns, right_ns)) in enumerate(
             zip(known.digests, known.times_ns, strict=True)
@@ -83,7 +83,7 @@ class DigestedFrames:
 
     @property
     def known(self) -> KnownFrames:
-        """What is known of the frames that were read."""
+        """What is known of the frames read so far."""
         end = self._reader.read_end
         return KnownFrames(
             digests=tuple(self.digests),
@@ -93,9 +93,9 @@ class DigestedFrames:
         )
 
     def expect(self, known: KnownFrames) -> None:
-        """Compare each frame that is read from now on with what was read before. Raises WorkError for another one.
+        """Compare each frame read from now on with what was read before. Raises WorkError if one differs.
 
-        Where the file is the same, byte by byte, as far as it was read, the pictures are not looked at, and are black.
+        If the file is the same, byte by byte, as far as it was read, the pictures are not unpacked, and are black.
         """
         self._expected = known
 
@@ -110,7 +110,7 @@ class DigestedFrames:
 
 
 def recording_digest(recording: Path | str | None, frames: int) -> str:
-    """Digest of the first `frames` frames of a recording, as in the identity of a run; empty where there are fewer."""
+    """Return the digest of a recording's first `frames` frames, as in a run's identity; "" if it has fewer."""
     with RecordingReader(recording or shipped.RECORDING) as reader:
         source = DigestedFrames(reader, frames)
         return source.digest if sum(1 for _ in source) == frames else ""
@@ -122,12 +122,12 @@ def name_of(path: Path) -> str:
 
 
 def written(path: str | Path) -> str:
-    """Return a path or a name as text that can be written, also where it is none."""
+    """Return a path or a name as text that can be written, even if it is not valid text."""
     return os.fsencode(path).decode(errors="replace")
 
 
 def identity_of(setup: RunSetup, fitted: FittedFirmware, recording: str) -> Identity:
-    """Return what a run of a recording of that name depends on; its digest is known only when its frames have been read."""
+    """Return what a run of a recording of that name depends on; its digest comes when its frames have been read."""
     board, compiler, loaded, placement = setup.board, setup.compiler, setup.loaded, setup.placement
     names = [name_of(placement.path), *(f"{name}={value}" for name, value in setup.defines.items())]
     return Identity(

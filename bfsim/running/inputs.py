@@ -1,4 +1,4 @@
-"""What a run reads beside its frames: which files, the LDF, and what a recording knows of its cameras."""
+"""What a run reads besides its frames: its files, the LDF, and what a recording knows of its cameras."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from bfsim.recording import RecordingReader
 
 
 def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
-    """Return the files that a run with the arguments `what` of `simulate` reads, and last the one in which it records its work."""
+    """Return the files of a run with the arguments `what` of `simulate`: those it reads, then where it records its work."""
     sources = (what.get(name) for name in ("firmware", "board", "profile"))
     names = (what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
     return (
@@ -30,9 +30,9 @@ def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
 def read_placement(
     ldf: Path | str | None, spec: BoardSpec, defines: Mapping[str, str], include_dirs: Sequence[Path | str]
 ) -> LinkerScript:
-    """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for chip and SDRAM of the board.
+    """Read an LDF for chip and SDRAM of the board: a file, a shipped one by its name, or the one that suits the chip.
 
-    `defines` are macros beside, or instead of, those that bfsim defines.
+    `defines` are macros that add to those of bfsim, or replace them.
     """
     path = shipped.ldf_at(Path(ldf)) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
     if path is None:
@@ -50,7 +50,7 @@ def _script(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path],
 
 @once
 def opened(recording: Path | str) -> RecordingReader:
-    """Open a recording. Of runs that are planned together all but the first get a reader that is closed, and knows what it has read."""
+    """Open a recording. Of runs planned together, all but the first get a closed reader that knows what it has read."""
     return RecordingReader(recording)
 
 

@@ -1,4 +1,4 @@
-"""Re-timing: a run is recorded while it goes on, or a recorded one is played on the hardware of another."""
+"""Re-timing: record a run, or play a recorded one on other hardware."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ SAME = {
     "script_digest": "script for the device",
     "llvm_version": "version of LLVM",
 }
-"""Fields of an identity in which a recorded run and the one that it is played for must be the same, in words."""
+"""Fields of an identity that a recorded run must share with the run that plays it, in words."""
 DIGEST_SHOWN = 12
-"""Digits of a digest that are shown."""
+"""Digits of a digest that messages show."""
 SAID_BY = {"recording": "a RECORDING before the options", "firmware": "--firmware", "compiler": "--profile"}
-"""How that of the recorded run is given again, for it is not taken from the file."""
+"""How to give the same as in the recorded run, which is not taken from its file."""
 
 
 @contextmanager
@@ -58,10 +58,10 @@ def retimed(
     has_pictures: bool,
     has_timeline: bool,
 ) -> Iterator[None]:
-    """Record the run of `machine` in the `with` block to a file, or have it play one, or neither.
+    """In the `with` block, record the run of `machine` to a file, have it play one, or neither.
 
-    `check`: looks at the frames of a run; of one that is played it is told what was found then.
-    `has_pictures`, `has_timeline`: whether anybody wants such of it.
+    `check` looks at the frames of a run; for a run that is played, it gets what was found then. `has_pictures`,
+    `has_timeline`: whether anybody wants these.
     """
     with ExitStack() as stack:
         if record_work and work:
@@ -83,7 +83,7 @@ def retimed(
 
 
 class _InterruptedError(Exception):
-    """Raised to leave no file of a part of a run, which cannot be played, in the place of a whole one."""
+    """Raised to leave no file of an incomplete run, which cannot be played, in place of a complete one."""
 
 
 @contextmanager
@@ -95,9 +95,9 @@ def recording_work(
     loaded: LoadedFirmware,
     check: StereoCheck,
 ) -> Iterator[None]:
-    """Record what the cores of `machine` do in the `with` block; the file is there at its end, unless the run is interrupted.
+    """In the `with` block, record what the cores of `machine` do; an interrupted run leaves no file.
 
-    Raises ConfigError where none can be written.
+    Raises ConfigError if it cannot be written.
     """
     from bfsim.machine.retiming.recorded_ahead import RecordedAhead  # few runs are recorded
     from bfsim.machine.retiming.recording_core import RecordingCore
@@ -150,10 +150,10 @@ def playing_work(
     loaded: LoadedFirmware,
     check: StereoCheck,
 ) -> Iterator[None]:
-    """Have the cores of `machine` play what was recorded, in place of the firmware, in the `with` block.
+    """In the `with` block, have the cores of `machine` play a recorded run in place of the firmware.
 
-    Raises WorkError for a file that is no whole recorded run, or one of another recording, firmware or compiler, or
-    that cannot be played on this machine.
+    Raises WorkError for a file that is not a complete recorded run, is one of another recording, firmware or compiler,
+    or cannot be played on this machine.
     """
     from bfsim.machine.retiming.replayed_core import played_again
     from bfsim.running.work_file import opened
@@ -215,16 +215,16 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
 
 
 def _not_playable(path: Path, obstacles: Sequence[str]) -> str:
-    """Say why a recorded run cannot be played, by the first of its obstacles."""
+    """Say why a recorded run cannot be played, with the first of its obstacles."""
     first, more = obstacles[0], len(obstacles) - 1
     others = f", and {more} more like it" if more else ""
     return f"{path} cannot be played on other hardware, for what the cores do depends on it: {first}{others}; run the firmware itself there"
 
 
 def _kernels(reader: WorkReader, loaded: LoadedFirmware) -> dict[str, Kernel]:
-    """Return the kernels of the firmware by symbol. Raises WorkError where its sources are not those that were recorded."""
+    """Return the kernels of the firmware by symbol. Raises WorkError if its sources differ from the recorded ones."""
     for name in reader.recorded.modules:
-        if name not in loaded.own.modules and loaded.own.has(name):  # it imports more while it runs
+        if name not in loaded.own.modules and loaded.own.has(name):  # imported while the firmware runs
             import_more(name, loaded.own)
     if loaded.digest != reader.recorded.firmware_digest:
         raise WorkError(

@@ -1,4 +1,4 @@
-"""Places firmware in the memory of a board, or says what the largest pictures are that it has room for."""
+"""Place firmware in the memory of a board, or say how large its pictures can be at most."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from bfsim.machine.symbols import symbols_of
 from bfsim.process.once import once
 
 _WIDTH_STEP, _HEIGHT_STEP = 4, 2
-"""Of the sizes that are looked at: halves of pictures have whole pairs of pixels, and quarters whole rows."""
+"""Steps of the sizes that are tried: half a picture has whole pairs of pixels, a quarter has whole rows."""
 
 
 def place(
@@ -31,7 +31,7 @@ def place(
 ) -> LinkMap:
     """Return where the linker puts the firmware for pictures of `size`.
 
-    Raises LinkError, which says the largest pictures of the same shape if smaller ones have room.
+    Raises LinkError, which names the largest pictures of the same shape that fit, if smaller ones do.
     """
 
     def placed(size: FrameSize) -> LinkMap:
@@ -86,7 +86,7 @@ def _placed(
 
 
 def _scaled(size: FrameSize, step: int) -> FrameSize:
-    """Return the size that is `step` steps wide, of the same shape, rounded down, at least the smallest."""
+    """Return the size that is `step` steps wide, of the same shape, rounded down, but at least one step high."""
     width = step * _WIDTH_STEP
     height = max(size.height_px * width // size.width_px // _HEIGHT_STEP, 1) * _HEIGHT_STEP
     return replace(size, width_px=width, height_px=height)

@@ -1,4 +1,4 @@
-"""What a run is made of, before its first frame: what was found by the names that were given, and how it suits a recording."""
+"""The parts of a run before its first frame: what was found by the given names, fitted to a recording."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from bfsim.running.room import place
 class RunSetup:
     """What runs, and on what, whatever the recording.
 
-    `devices` by the names of the peripherals that they are at; `script_digest`: of what tells them what to do, empty where nothing does.
+    `devices` stand under the names of their peripherals; `script_digest` is that of their script, "" without one.
     `defines`: macros that the LDF was read with.
     """
 
@@ -44,7 +44,7 @@ class RunSetup:
 
 @dataclass(frozen=True, slots=True)
 class FittedFirmware:
-    """Firmware that knows the cameras of a recording and the size of its pictures, how its kernels are built, and where it lies."""
+    """Firmware fitted to the cameras and pictures of a recording, how its kernels are built, and where it lies."""
 
     firmware: Firmware
     calibration: Calibration
@@ -54,10 +54,10 @@ class FittedFirmware:
 
 
 def fit(setup: RunSetup, reader: RecordingReader) -> FittedFirmware:
-    """Return the firmware of a run as it is for a recording. Raises a BfsimError where it cannot be built, or has no room."""
+    """Return the firmware of a run, fitted to a recording. Raises a BfsimError if it cannot be built, or does not fit."""
     plain, calibration = setup.loaded.firmware, calibration_of(reader)
     size = FrameSize(reader.width, reader.height)
-    with remembering_here():  # which kernels there are is asked several times
+    with remembering_here():  # several steps ask for the kernels
         firmware, build = plain.calibrated(calibration), build_for(setup.loaded, setup.compiler.value)
         link_map = place(plain, calibration, size, setup.placement, setup.board.value, build)
     return FittedFirmware(firmware, calibration, size, build, link_map)

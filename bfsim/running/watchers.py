@@ -1,4 +1,4 @@
-"""Who watches a run: what is to be called before it, while it goes on, and when it is done."""
+"""The watchers of a run: what is called before it, while it goes on, and when it is done."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:  # they take time to import
 
 @dataclass(frozen=True, slots=True)
 class Watchers:
-    """What is to be called, each list in its order; nothing that they do changes a cycle.
+    """Functions to call, each list in its order; nothing that they do changes a cycle.
 
-    `before` the first frame with what will run and how many frames of it; with each frame that is `seen`; with `spans` of
-    the timeline as they come; and with the records when the run is `done`, if a frame is.
+    `before` gets what will run and how many frames of it, before the first frame; `seen` each frame; `spans` the
+    timeline as it goes on; `done` the records at the end, if a frame was done.
     """
 
     before: list[Callable[[Identity, int], None]] = field(default_factory=list)
@@ -27,7 +27,7 @@ class Watchers:
 
 
 def calling(each: Sequence[Callable[..., None]]) -> Callable[..., None] | None:
-    """Return what calls them all; None if there is none, so that nobody makes what nobody wants."""
+    """Return a function that calls them all; None if there is none, so that nobody makes unwanted values."""
 
     def call(*arguments: object) -> None:
         for one in each:

@@ -1,7 +1,7 @@
-"""The file of a recorded run: what its cores did, to be played again on other hardware. Opening it runs nothing.
+"""The file of a recorded run: what its cores did, to be played on other hardware. Opening it runs nothing.
 
-It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork` (`frame_file`), compressed with LZ4;
-`end.json`, written last, says what was known only then.
+It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork` (`frame_file`), compressed with
+LZ4; `end.json`, written last, has what was known only then.
 """
 
 from __future__ import annotations
@@ -32,26 +32,27 @@ from bfsim.running.identifying import KnownFrames
 
 FORMAT = 9
 PACKED_HOW_WELL = 3
-"""Of 1 to 12: each further step packs 3 % better, in 1.3 to 2 times the time."""
+"""Level of compression, of 1 to 12: each higher one packs 3 % better, in 1.3 to 2 times the time."""
 LOCAL_HEAD, ENCRYPTED = struct.Struct("<26xHH"), 1
-"""What stands before a part of a ZIP file, up to how many bytes of name and of more are between; and a bit of its flags."""
+"""The header of a part of a ZIP file, up to the lengths of its name and extra field; and the flag of encrypted parts."""
 LARGEST_FRAME_BYTES = 1 << 30
-"""What a frame decompresses to, at most: some hundred times as much as one of the built-in firmware has in SDRAM."""
+"""The most bytes that a frame may decompress to: some hundred times those of the built-in firmware's in SDRAM."""
 
 _DAMAGE = (
     ValueError, LookupError, TypeError, ArithmeticError, RuntimeError, EOFError, MemoryError, struct.error, zlib.error, zipfile.BadZipFile,
     lz4.block.LZ4BlockError,
 )  # fmt: skip
-"""What reading says of a broken file; by the bytes that are hit, Python finds a ZIP encrypted, packed otherwise or of a later version."""
+"""Errors of reading a broken file: depending on the damage, Python may take a ZIP for encrypted or a later version."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Recorded:
-    """What was run. `identity` are fields of the run's `Identity`; `buffers` those of each owner of memory, by name and bytes.
+    """What was run.
 
-    `is_bound`: whether what is accessed depends on where everything lies. `routines_outside`: core and name of each routine
-    outside of L1. `frames`: those of the recording.
-    `modules`: of the firmware. `doubts`: what looking at the frames has found. `obstacles`: why it cannot be played, in words.
+    `identity` are fields of the run's `Identity`. `buffers` are those of each owner of memory, by name and bytes.
+    `is_bound`: whether the accesses depend on where everything lies. `routines_outside`: core and name of each routine
+    outside L1. `frames`: those of the recording. `modules`: the firmware's. `doubts`: what the check of the frames
+    found. `obstacles`: why the run cannot be played, in words.
     """
 
     identity: Mapping[str, str]
@@ -66,7 +67,7 @@ class Recorded:
 
 
 class WorkWriter(AbstractContextManager["WorkWriter"]):
-    """Writes a file as the run goes on. Without `end` it is none."""
+    """Writes a file as the run goes on. Without `end` the file is not valid."""
 
     def __init__(self, stream: IO[bytes], path: Path) -> None:
         """`path`: where the file will be, for messages."""
@@ -77,7 +78,7 @@ class WorkWriter(AbstractContextManager["WorkWriter"]):
 
     @property
     def obstacles(self) -> Sequence[str]:
-        """Why the run cannot be played again, in words; most can."""
+        """Why the run cannot be played again, in words; empty for most runs."""
         return [*self._obstacles]
 
     def begin(self, **what: Any) -> None:
@@ -94,14 +95,14 @@ class WorkWriter(AbstractContextManager["WorkWriter"]):
         self._obstacles[text] = None
 
     def end(self, frames: KnownFrames, **what: Any) -> None:
-        """Write what is known at the end: the file is whole then."""
+        """Write what is known at the end; this completes the file."""
         known = {"obstacles": self.obstacles, "frames": asdict(frames), **what}
         self._write("end.json", json.dumps(known).encode())
         with writing(self._path):
             self._zip.close()
 
     def __exit__(self, *_: object) -> None:
-        with suppress(OSError):  # what went wrong is on its way to be told
+        with suppress(OSError):  # the first error is already on its way
             self._zip.close()
 
     def _write(self, name: str, content: bytes) -> None:
@@ -110,7 +111,7 @@ class WorkWriter(AbstractContextManager["WorkWriter"]):
 
 
 class WorkReader:
-    """A file that is whole, of this version."""
+    """A complete file of this version."""
 
     def __init__(self, path: Path, file: IO[bytes], zipped: zipfile.ZipFile) -> None:
         self.path = path
@@ -141,7 +142,7 @@ class WorkReader:
             yield work
 
     def _stored(self, part: zipfile.ZipInfo) -> bytes:
-        """Return a part as it stands in the file: zipfile takes longer to do so than to unpack it."""
+        """Return a part as it stands in the file: zipfile takes longer for this than unpacking takes."""
         if part.compress_type != zipfile.ZIP_STORED or part.flag_bits & ENCRYPTED:
             raise ValueError("a part must be stored as it is")
         head = os.pread(self._file, LOCAL_HEAD.size, part.header_offset)
@@ -169,7 +170,7 @@ class WorkReader:
 
 @contextmanager
 def opened(path: Path) -> Iterator[WorkReader]:
-    """Open a file. Raises WorkError for one that is cut or broken, is none, or was written by another version."""
+    """Open a file. Raises WorkError if it is cut, broken, something else, or from another version."""
     if path.exists() and not path.is_file():
         raise WorkError(f"{path} must be an ordinary file, not a folder or a device")
     try:
@@ -188,20 +189,20 @@ def opened(path: Path) -> Iterator[WorkReader]:
 
 
 def _tuples(value: Any) -> Any:
-    """Return what was read of JSON with tuples for its lists."""
+    """Return a value read from JSON, with tuples in place of lists."""
     if isinstance(value, dict):
         return {name: _tuples(each) for name, each in value.items()}
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
 def compressed(content: bytes) -> bytes:
-    """Return a frame as it stands in the file, behind how many bytes it has: of LZ4, which is unpacked in a third of the time of others."""
+    """Return a frame as it stands in the file: its size, then LZ4, which unpacks in a third of others' time."""
     packed: bytes = lz4.block.compress(content, mode="high_compression", compression=PACKED_HOW_WELL)
     return packed
 
 
 def decompressed(content: bytes) -> bytes:
-    """Return a frame. Raises ValueError or LZ4BlockError for what is none."""
+    """Return a frame. Raises ValueError or LZ4BlockError for invalid content."""
     if not 0 < int.from_bytes(content[:4], "little") <= LARGEST_FRAME_BYTES:
         raise ValueError("a frame must say how large it is, and not be larger than any")
     unpacked: bytes = lz4.block.decompress(content)
