@@ -28,7 +28,7 @@ def add_libraries(sources: dict[str, ImportedFile], built_in: Path) -> None:
     pending = [*sources.items()]
     while pending:
         module, source = pending.pop()
-        if source.path.is_relative_to(built_in) or not source.path.is_file():  # a cell of a notebook has no file
+        if source.path.is_relative_to(built_in) or not source.path.is_file():  # a cell has no file
             continue
         package = module if source.path.name == "__init__.py" else module.rpartition(".")[0]
         imports = imports_of(source.path.read_bytes(), package)

@@ -1,4 +1,4 @@
-"""Boards as rich tables: all of them, a line each, and every number of one."""
+"""Boards as rich tables: all of them, one line each, and every number of one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rich.table import Table
 from bfsim.report.tables.table import new_table, stacked
 
 Rows = Sequence[Mapping[str, str]]
-"""Rows of one table: each has its cells under the same names of columns. An empty first name: no heads at all."""
+"""Rows of one table, cells by column names, the same in all rows. An empty first name: no heads at all."""
 
 
 def boards_report(boards: Rows) -> RenderableType:

@@ -1,4 +1,4 @@
-"""What firmware calls the colours of a picture: a table, JSON, and a picture beside the picture."""
+"""What firmware calls the colours of a picture: a table, JSON, and a picture beside the original."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from bfsim.seen import NamedColour, PictureColours
 from bfsim.seen.pictures import rgb_of
 
 LEAST_SHARE = 0.005
-"""Colours with less of the picture are not in the legend."""
+"""Colours with a smaller share of the picture are not in the legend."""
 
 SWATCH = 16
 SCHEMA = "bfsim.colours/1"
 
 
 def colours_report(found: PictureColours, patch_notes: Sequence[str]) -> RenderableType:
-    """Return the table of the colours, and below it what the firmware says of the picture and of its grey patch."""
+    """Return the table of the colours, and below it the firmware's remarks on the picture and its grey patch."""
     table = new_table("What the firmware calls the colours of the picture", "Colour", "degrees", "% of it")
     for number, each in enumerate(found.named):
         name = Text("■ ", Style(color="rgb({},{},{})".format(*each.colour))).append(each.name, "default")
@@ -51,7 +51,7 @@ def colours_json(found: PictureColours, patch_notes: Sequence[str]) -> str:
 
 
 def colours_picture(uyvy: NDArray[np.uint8], found: PictureColours) -> bytes:
-    """Return a PNG of the picture, beside it each pixel in what the firmware calls its colour, and below which ones these are."""
+    """Return a PNG: the picture, beside it each pixel in the colour that the firmware names, and a legend below."""
     palette = np.array([each.colour for each in found.named], np.uint8)
     sides = rgb_of(uyvy), Image.fromarray(palette[found.numbers])
     width, height = sides[0].size
@@ -68,7 +68,7 @@ def colours_picture(uyvy: NDArray[np.uint8], found: PictureColours) -> bytes:
 
 
 def _legend(found: PictureColours, width: int) -> Image.Image:
-    """Return a swatch, name and degrees of every colour that the picture has some of, in as many lines as they need."""
+    """Return a swatch, name and degrees of every colour in the picture, in as many lines as they need."""
     font = style.font(style.FONT)
     places: list[tuple[NamedColour, str, int, int]] = []
     x = y = style.MARGIN // 2

@@ -1,4 +1,4 @@
-"""Records as JSON has them, and its text. Pydantic makes both, which takes 50 ms to import: a report on the screen needs none."""
+"""Records as JSON. Pydantic does it, which takes 50 ms to import: a report on the screen needs none of this."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bfsim.trace import Later
 
 
 def jsonable(records: object, fallback: Callable[[Any], object] | None = None) -> Any:
-    """Return records as dicts, lists, numbers and text; `fallback` makes of others something of the kind."""
+    """Return records as dicts, lists, numbers and text; `fallback` converts anything else."""
     from pydantic_core import to_jsonable_python
 
     def plain(value: Any) -> object:
@@ -28,10 +28,10 @@ def json_text(plain: object) -> str:
 
 
 def indented(plain: object) -> str:
-    """Return dicts, lists, numbers and text as indented JSON: in a seventh of the time that `json.dumps` takes to indent."""
+    """Return dicts, lists, numbers and text as indented JSON, in a seventh of the time of `json.dumps`."""
     from pydantic_core import PydanticSerializationError, to_json
 
     try:
         return to_json(plain, indent=2).decode()
-    except PydanticSerializationError:  # bytes in the name of a file that are no UTF-8
+    except PydanticSerializationError:  # bytes in a file's name that are not UTF-8
         return to_json(json.loads(legible(json.dumps(plain, ensure_ascii=False))), indent=2).decode()

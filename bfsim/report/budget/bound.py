@@ -1,4 +1,4 @@
-"""What bounds the frame rate: what the core that waits least spends most of its time on."""
+"""What bounds the frame rate: where the core that waits least spends most of its time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Cause(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bound:
-    """On `core`, the `cause` that takes most: `cclk` over all frames. `row` is the stage, where it is one."""
+    """The `cause` that takes most of `core`: `cclk` over all frames. `row` is the stage, if the cause is one."""
 
     core: CoreBudget
     cause: Cause
@@ -30,8 +30,8 @@ class Bound:
 def bound_of(budget: Budget) -> Bound:
     """Return what bounds the frame rate of a run.
 
-    Of the cores, the one that waits least for pictures and for the other core decides; of its stages and its waits, the
-    longest one. Waits for memory and DMA belong to the stage that they are in.
+    The core that waits least for pictures and for the other core decides; its longest stage or wait is the bound. Waits
+    for memory and DMA belong to the stage in which they occur.
     """
     core = max(budget.cores, key=lambda each: busy_cclk([each.frame]))
     found = [

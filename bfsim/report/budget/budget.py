@@ -15,14 +15,14 @@ from bfsim.report.budget.times import frame_rate_hz, latency_cclk
 from bfsim.trace import BudgetRow, CoreFrame, RunRecord, StageCost, StallReason
 
 FRAME = "Frame"
-"""The row that sums all others."""
+"""The row that sums up all others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageRow:
     """One row of one core's budget. `issue_cclk`, `stall_cclk` and `idle_cclk` are totals over all frames.
 
-    `within` is the row that this one is a part of, and that holds its cycles too.
+    `within` is the row that this one is a part of; that row holds its cycles, too.
     """
 
     name: str
@@ -35,13 +35,13 @@ class StageRow:
 
     @property
     def stalled_cclk(self) -> int:
-        """Stalls for whatever reason."""
+        """Stalls for any reason."""
         return sum(self.stall_cclk.values())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoreBudget:
-    """The rows of one core, and `frame`, which those that are no part of another sum to."""
+    """The rows of one core, and `frame`, the sum of those that are not part of another."""
 
     core: str
     rows: tuple[StageRow, ...]
@@ -49,7 +49,7 @@ class CoreBudget:
 
     @property
     def all_rows(self) -> tuple[StageRow, ...]:
-        """The rows, and the frame as the last one."""
+        """The rows, with the frame as the last one."""
         return (*self.rows, self.frame)
 
     def share(self, row: StageRow) -> float:
@@ -88,7 +88,7 @@ def _core_budget(frames: Sequence[CoreFrame], rows: Sequence[BudgetRow]) -> Core
 
 
 def _row(row: BudgetRow, costs: Sequence[Sequence[StageCost]]) -> StageRow:
-    """Sum up a row whose costs are given for each frame."""
+    """Sum up a row, given its costs in each frame."""
     stall = dict.fromkeys(StallReason, 0)
     for cost in chain(*costs):
         for reason, cclk in cost.stall_cclk.items():

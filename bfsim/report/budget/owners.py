@@ -1,4 +1,4 @@
-"""Whose cycles those of a run are, frame by frame."""
+"""The owners of a run's cycles, frame by frame."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WAITING = [IDLE, COLUMN_OF[StallReason.SEMAPHORE]]
 class OwnerFrames:
     """An owner of cycles in a stage of a core, named as in `OwnerCost`, with a number for each frame of the run.
 
-    `waiting_cclk` are those of the elapsed cycles in which the core only waited for the other core or for the cameras.
+    `waiting_cclk` are the elapsed cycles in which the core only waited for the other core or for the cameras.
     """
 
     core: str
@@ -41,7 +41,7 @@ class _CoreOwners:
         self._parts: list[tuple[NDArray[Any], ...]] = []  # owner, frame, column and amount
 
     def add(self, place: int, costs: OwnerCosts) -> list[Owner]:
-        """Add a frame; return the owners that come in it for the first time."""
+        """Add a frame; return its new owners."""
         known = len(self._numbers.owners)
         owners = self._numbers.of(costs)
         _, columns, amounts = costs.numbers()
@@ -49,7 +49,7 @@ class _CoreOwners:
         return list(islice(self._numbers.owners, known, None))
 
     def in_frames(self, frames: int) -> dict[Owner, tuple[list[int], ...]]:
-        """Return calls, elapsed and waiting cycles of each owner in each of so many frames."""
+        """Return calls, elapsed and waiting cycles of each owner in each of `frames` frames."""
         owners, places, columns, amounts = map(np.concatenate, zip(*self._parts, strict=True))
         tables = []
         for kind in (columns == CALLS, columns != CALLS, np.isin(columns, WAITING)):
@@ -60,7 +60,7 @@ class _CoreOwners:
 
 
 def owner_frames(run: RunRecord) -> Iterator[OwnerFrames]:
-    """Yield all owners of a run in the order in which they come, core by core in each frame."""
+    """Yield all owners of a run in order of appearance, core by core in each frame."""
     cores = {core.core: _CoreOwners() for frame in run.frames for core in frame.cores}
     found = [
         (core.core, owner)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from bfsim.trace import RunRecord
 
 FRAMES_FOR_P95 = 20
-"""A p95 is worth telling of so many frames: of fewer, the nearest rank of 95 % is the last one, the maximum."""
+"""The least number of frames for a p95: with fewer, the nearest rank of 95 % is the last, so the p95 is the maximum."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,5 +42,5 @@ def _nearest_rank(ranked: Sequence[int], percent: int) -> int:
 
 
 def has_p95(run: RunRecord) -> bool:
-    """Whether a run has frames enough for a p95."""
+    """Whether a run has enough frames for a p95."""
     return len(run.frames) >= FRAMES_FOR_P95

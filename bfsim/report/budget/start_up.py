@@ -1,4 +1,4 @@
-"""The start-up of a run told apart: how much longer the first frame idled, because no picture was there yet."""
+"""The start-up of a run, apart from the rest: how much longer the first frame idled, since no picture was there yet."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from bfsim.trace import CoreFrame, FrameRecord, OwnerCost, RunRecord, StageCost
 
 
 def start_up_cclk(run: RunRecord) -> int:
-    """Return by how many cycles the first frame idled longer than the median of the others, on the core that did so most.
+    """Return by how many cycles the first frame idled longer than the median of the others, on the core with most.
 
-    0 for a run of one frame: there is nothing to tell it by.
+    0 for a run of one frame, which has nothing to compare with.
     """
     apart = zip(run.frames[0].cores, without_start_up(run).frames[0].cores, strict=True)
     return max(after.begin_cclk - before.begin_cclk for before, after in apart)
 
 
 def of_one_frame(run: RunRecord) -> str:
-    """Return in brackets that a run has one frame, and its rate the wait for the picture in it; nothing where there is none."""
+    """Return a remark in brackets if a run has only one frame, whose rate includes the wait for its picture; else ""."""
     if len(run.frames) == 1 and any(cost.idle_cclk for core in run.frames[0].cores for cost in core.stages):
         return " (of one frame, with the wait for its picture)"
     return ""
 
 
 def without_start_up(run: RunRecord) -> RunRecord:
-    """Return the run with a first frame that begins later and idles as the median of the others, stage by stage, if it idled longer."""
+    """Return the run with a first frame that begins later and idles, stage by stage, no longer than the others' median."""
     first, *others = run.frames
     if not others:
         return run

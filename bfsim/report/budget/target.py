@@ -1,4 +1,4 @@
-"""A frame rate that firmware must keep, and how much of its time is left over."""
+"""A frame rate that firmware must keep, and how much of its time is left."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TARGET = re.compile(r"(\d{1,9}(?:\.\d{1,9})?) ?(Hz|ms)", re.ASCII | re.IGNORECA
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """The longest time that a frame may take, in ms."""
+    """A limit on the time of a frame, in ms."""
 
     frame_ms: float
 
@@ -28,7 +28,7 @@ class Target:
 
 
 def target_of(text: str) -> Target:
-    """Return the target that a frame rate, such as 15Hz, or a frame time, such as 66.7ms, stands for.
+    """Return the target for a frame rate, such as 15Hz, or a frame time, such as 66.7ms.
 
     Raises ConfigError for anything else.
     """
@@ -42,23 +42,23 @@ def target_of(text: str) -> Target:
 
 
 def used_cclk(frame: CoreFrame) -> int:
-    """Return the cycles of a frame on one core that count against a target: all but those without anything to do.
+    """Return the cycles of a frame on one core that count against a target: all but those with nothing to do.
 
-    Waits for the other core count: a frame is not done before.
+    Waits for the other core count: the frame is not done before they end.
     """
     return sum(cost.elapsed_cclk - cost.idle_cclk for cost in frame.stages)
 
 
 def most_used_cclk(frame: FrameRecord) -> int:
-    """Return what the core used that used most of a frame."""
+    """Return the cycles of the core that used most of a frame."""
     return max(used_cclk(core) for core in frame.cores)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoreSlack:
-    """What one core used of a frame in ms: median and maximum, `worst_frame` being the frame of the latter.
+    """What one core used of a frame in ms: median and maximum, which is that of `worst_frame`.
 
-    `kept` are the frames within the target: all where there is none.
+    `kept` counts the frames within the target; without one, all.
     """
 
     core: str
@@ -87,13 +87,16 @@ def _slack(run: RunRecord, number: int, target: Target | None) -> CoreSlack:
 
 
 def kept_frames(run: RunRecord, target: Target) -> int:
-    """Return how many frames of a run kept to a target on all of its cores."""
+    """Return how many frames of a run kept a target on all cores."""
     hz = run.identity.cclk_hz
     return sum(milliseconds(most_used_cclk(frame), hz) <= target.frame_ms for frame in run.frames)
 
 
 def target_words(run: RunRecord, target: Target) -> str:
-    """Say of a run of at least one frame how it keeps a target, and of its worst frame what is left or must be saved, and where."""
+    """Say how a run keeps a target, and what its worst frame has left or must save, and where.
+
+    The run has at least one frame.
+    """
     hz, frames = run.identity.cclk_hz, len(run.frames)
     worst = max(run.frames, key=most_used_cclk)
     core = _own_core(worst)
@@ -106,12 +109,12 @@ def target_words(run: RunRecord, target: Target) -> str:
 
 
 def _own_core(frame: FrameRecord) -> CoreFrame:
-    """Return the core that used most of a frame for itself: the other one waited for it."""
+    """Return the core that used most of a frame for its own work: the other one waited for it."""
     return max(frame.cores, key=lambda core: busy_cclk(core.stages))
 
 
 def _dearest(run: RunRecord, core: CoreFrame) -> list[tuple[str, float]]:
-    """Return what took a core longest in a frame, in ms: stages without their waits for the other core, and these."""
+    """Return what took a core longest in a frame, in ms: stages without waits for the other core, and those waits."""
     rows = budget_rows(run)
     parts = {WAIT: other_core_cclk(*core.stages)}
     for row in rows:

@@ -14,10 +14,11 @@ def milliseconds(cclk: float, cclk_hz: float) -> float:
 
 
 def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
-    """Frames per second from frame end to frame end, at most as many as pictures can come; of a single frame, one over its duration.
+    """Return frames per second from frame end to frame end, but no more than pictures can come.
 
-    Firmware that waits for every picture is as fast as these come, from picture to picture: in a few frames, a first one that took
-    long would make it faster than its cameras.
+    For a single frame, it is one over the frame's duration. Firmware that waits for every picture is as fast as the
+    pictures come, so it is timed from picture to picture: among a few frames, a slow first one would make it seem
+    faster than its cameras.
     """
     ends = [frame.end_cclk for frame in frames]
     if len(frames) == 1:
@@ -29,7 +30,7 @@ def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
 
 
 def waits_for_pictures(frames: Sequence[FrameRecord]) -> bool:
-    """Say whether all cores wait for each picture but the first one, which has to come."""
+    """Whether all cores wait for every picture after the first one, for which they must wait anyway."""
     return len(frames) > 1 and all(_idles(core) for frame in frames[1:] for core in frame.cores)
 
 
@@ -38,5 +39,5 @@ def _idles(frame: CoreFrame) -> bool:
 
 
 def latency_cclk(frame: FrameRecord) -> int:
-    """Cycles from the last line coming in to the result going out."""
+    """Return the cycles from the arrival of the last line until the result leaves."""
     return frame.result_cclk - frame.last_line_cclk

@@ -1,4 +1,4 @@
-"""What is no work of a core itself: the waits for pictures and for the other core. All else keeps it busy, stalls included."""
+"""Waits for pictures and for the other core, which are no work of a core. All else keeps it busy, stalls included."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bfsim.trace import StallReason
 
 
 class Cycles(Protocol):
-    """Cycles of any kind of owner: issue + stall + idle are all of them."""
+    """Cycles of any kind of owner: issue + stall + idle add up to all."""
 
     @property
     def issue_cclk(self) -> int:
@@ -25,12 +25,12 @@ class Cycles(Protocol):
 
 
 def other_core_cclk(*costs: Cycles) -> int:
-    """Return how long the other core was waited for."""
+    """Return the time of waits for the other core."""
     return sum(each.stall_cclk.get(StallReason.SEMAPHORE, 0) for each in costs)
 
 
 def waiting_cclk(*costs: Cycles) -> int:
-    """Return how long pictures and the other core were waited for."""
+    """Return the time of waits for pictures and for the other core."""
     return sum(each.idle_cclk for each in costs) + other_core_cclk(*costs)
 
 

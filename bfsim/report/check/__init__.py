@@ -1,1 +1,1 @@
-"""Holding runs against the limits in a baseline file: what is measured, what is allowed, what came out, and why."""
+"""Comparing runs with the limits in a baseline file: what is measured, what is allowed, verdicts and reasons."""

@@ -14,7 +14,7 @@ from bfsim.report.diff.as_json import plain_difference
 from bfsim.report.jsonable import json_text
 
 SCHEMA = "bfsim.check/1"
-"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+"""Name and version of the layout; the version rises when the meaning of a key changes or a key goes away."""
 
 
 def figures_json(outcome: Outcome) -> dict[str, float]:
@@ -23,7 +23,7 @@ def figures_json(outcome: Outcome) -> dict[str, float]:
 
 
 def figures_by_name(figures: Mapping[Name, Figure], hz: float) -> dict[str, float]:
-    """Return median and maximum of every figure but results in a unit that its name ends in, by name."""
+    """Return median and maximum of every figure but results, by names that end in their units."""
     found = {}
     for name, figure in figures.items():
         if name[0] in COUNTS:
@@ -37,7 +37,7 @@ def figures_by_name(figures: Mapping[Name, Figure], hz: float) -> dict[str, floa
 
 
 def check_json(outcomes: Sequence[Outcome]) -> str:
-    """Return every verdict and figure as JSON. Times are in cycles, in the figures in ms."""
+    """Return every verdict and figure as JSON. Times are in cycles, those of figures in ms."""
     runs = [
         {
             "name": outcome.case.name,
@@ -77,7 +77,7 @@ def _difference(outcome: Outcome) -> Any:
 
 
 def benchmark_json(outcomes: Sequence[Outcome]) -> str:
-    """Return what github-action-benchmark reads as `customSmallerIsBetter`: times and memory of each run."""
+    """Return JSON for github-action-benchmark's `customSmallerIsBetter`: times and memory of each run."""
     found = [
         {"name": f"{outcome.case.name}: {name}", "unit": unit, "value": value}
         for outcome in outcomes

@@ -1,6 +1,6 @@
 """The baseline file: TOML, one `[[run]]` for each configuration that is checked.
 
-`require` is written by a person. `limits`, `costs` and `measured_on` are written by `--update`, whole.
+A person writes `require`. `--update` writes `limits`, `costs` and `measured_on`, and replaces them whole.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from bfsim.trace import Identity
 
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 Whole = Annotated[int, Field(gt=-(1 << 63), lt=1 << 63)]
-"""Of cycles and times: what has more than 64 bits has no place among floats."""
+"""Cycles and times: more than 64 bits would not fit among floats."""
 
 COMPARABLE = ("recording", "frames", "board", "compiler", "code", "file_compiler", "script")
-"""Of what limits were measured on, what a run must have in common with them."""
+"""Parts of what limits were measured on that must be the same for a run to be compared with them."""
 
 
 class Table(BaseModel):
@@ -29,7 +29,7 @@ class Table(BaseModel):
 
 
 class Configuration(Table):
-    """What to run, as the options of `bfsim run` say it; what is not there is the default. Paths are relative to the file."""
+    """What to run, in terms of `bfsim run`'s options, with their defaults. Paths are relative to the file."""
 
     recording: str = ""
     firmware: str = ""
@@ -47,7 +47,7 @@ class Configuration(Table):
     @field_validator("set", "define", mode="before")
     @classmethod
     def _by_path(cls, given: object) -> object:
-        """Return tables and numbers as text by paths; what can be neither stays as it is, for the error."""
+        """Return tables and numbers as text by paths; leave anything else as it is, for the error."""
         if not isinstance(given, Mapping):
             return given
         found = ((path, value, text_of(value)) for path, value in leaves(given))
@@ -57,9 +57,9 @@ class Configuration(Table):
 class MeasuredOn(Table):
     """What the limits were measured on: digests (sha256), sizes and versions.
 
-    `code` is whose object code kernels ran as, in words: the code itself is another one with each edit of the firmware. It is empty where
-    the compiler is an estimate, and `file_compiler`, what compiled kernels in C, where there are none; either is empty in files that were
-    written before it was kept, and the size of the pictures, 0, in older ones.
+    `code` says in words whose object code the kernels ran as, since the code itself changes with each edit of the
+    firmware. It is empty if the compiler is an estimate. `file_compiler` is what compiled kernels in C, empty without
+    any. Both are empty in files from before they were kept, and the size of the pictures is 0 in older ones.
     """
 
     recording: str
@@ -79,9 +79,9 @@ class MeasuredOn(Table):
     compiler_numbers: list[str] = []
 
     def differs_in(self, key: str, other: MeasuredOn) -> bool:
-        """Whether a key of COMPARABLE is another one's.
+        """Whether two runs differ in a key of COMPARABLE.
 
-        A board or compiler with equal numbers is the same, whatever its file says; code is another where both have some.
+        A board or compiler with equal numbers is the same, whatever its file says; code differs only if both have some.
         """
         if getattr(self, key) == getattr(other, key):
             return False
@@ -95,7 +95,7 @@ class MeasuredOn(Table):
 
 
 class KeptLine(Table):
-    """A source line of a kernel; its fields are those of `diff.side.Line`, a stall is called REASON or REASON, BUFFER."""
+    """A source line of a kernel; its fields are those of `diff.side.Line`, stalls are named REASON or REASON, BUFFER."""
 
     text: str
     times: Whole
@@ -115,7 +115,7 @@ class KeptOwner(Table):
 
 
 class Costs(Table):
-    """What the run cost when its limits were measured: with it a failure is explained. Its fields are those of `diff.side.Side`."""
+    """What the run cost when its limits were measured, to explain a failure. Its fields are those of `diff.side.Side`."""
 
     frames: Annotated[int, Field(ge=1, le=MOST_FRAMES)]
     frame_ms: Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -141,12 +141,12 @@ class Case(Configuration):
 
     @property
     def has_costs(self) -> bool:
-        """Whether it is kept what the run cost when its limits were measured."""
+        """Whether the file has what the run cost when its limits were measured."""
         return self.costs is not None and self.measured_on is not None
 
     @property
     def configuration(self) -> Configuration:
-        """What is run."""
+        """What to run."""
         return Configuration(**{key: getattr(self, key) for key in Configuration.model_fields})
 
 
@@ -157,7 +157,7 @@ class Baseline(Table):
 
 
 def measured_on(identity: Identity, frames: int) -> MeasuredOn:
-    """Return what a run of so many frames, missed ones included, is measured on."""
+    """Return what a run was measured on; `frames` includes missed ones."""
     return MeasuredOn(
         recording=identity.recording_digest,
         frames=frames,

@@ -1,4 +1,4 @@
-"""Reading a baseline file, with errors that name the run and the key."""
+"""Read a baseline file, with errors that name the run and the key."""
 
 from __future__ import annotations
 
@@ -20,28 +20,31 @@ from bfsim.report.check.requirement import Requirement
 from bfsim.report.check.requirement_reading import parse_requirement
 
 OLD_KEYS = {"core", "measured_by", "tolerance_percent"}
-"""At the top of files that were written before there were several runs in one."""
+"""Keys at the top of files from before a file could hold several runs."""
 
 SWEEP_KEYS = {"base", "axes", "point"}
-"""At the top of what `bfsim sweep` reads, which is TOML, too."""
+"""Keys at the top of files for `bfsim sweep`, which are TOML, too."""
 
 TABLES: dict[int | str, type[Table]] = {
     "measured_on": MeasuredOn, "costs": Costs, "of": KeptOwner, "lines": KeptLine,
 }  # fmt: skip
-"""What is in a run, by the keys that lead there."""
+"""The parts of a run, by the keys that lead to them."""
 WRITTEN = (["limits"], ["measured_on"], ["costs"])
 """Keys of a run that `--update` writes."""
 
 
 def read_baseline(path: Path) -> Baseline:
-    """Read a baseline file. Raises ConfigError that names the file, the key and what must be there."""
+    """Read a baseline file. Raises ConfigError that names the file, the key and what belongs there."""
     if not path.exists():
         raise ConfigError(f"{path} must be a baseline file, but there is none: make it with --update")
     return validated(parsed(path), path)
 
 
 def measured_case(path: Path, name: str) -> Case:
-    """Return the run of that name in a baseline file, or its only one. Raises ConfigError if there is none, or it has no limits yet."""
+    """Return a run of a baseline file, by its name or as the only one.
+
+    Raises ConfigError if there is none, or if it has no limits yet.
+    """
     cases = read_baseline(path).run
     named = [case for case in cases if case.name == name or not name]
     if len(named) != 1:
@@ -58,14 +61,14 @@ def measured_case(path: Path, name: str) -> Case:
 
 
 def update_command(path: Path, name: str = "") -> str:
-    """Return the command that makes what is measured the limits of a run, or of all, as a shell takes it."""
+    """Return the shell command that makes new limits for a run, or for all, from what is measured."""
     return shlex.join(
         ["bfsim", "check", "--baseline", str(path), *(["--case", name] if name else []), "--update"]
     )
 
 
 def parsed(path: Path) -> TOMLDocument:
-    """Return a file as TOML. Raises ConfigError."""
+    """Return a file as TOML. Raises ConfigError if it is not TOML."""
     try:
         return tomlkit.parse(read_bounded(path).decode("utf-8-sig"))
     except (TOMLKitError, UnicodeDecodeError) as error:
@@ -75,7 +78,7 @@ def parsed(path: Path) -> TOMLDocument:
 
 
 def validated(document: TOMLDocument, path: Path) -> Baseline:
-    """Return the baseline in a document from `path`, with every sentence in it read once."""
+    """Return the baseline in a document from `path`; this checks every sentence in it."""
     plain = document.unwrap()
     runs = plain.get("run")
     cases = [each for each in runs if isinstance(each, dict)] if isinstance(runs, list) else []
@@ -113,7 +116,7 @@ def requirements_of(case: Case, path: Path) -> tuple[list[Requirement], list[Req
 
 
 def _told(error: ValidationError, plain: Mapping[str, Any], path: Path) -> ConfigError:
-    """Say the first problem with its key, and by name in which run."""
+    """Return the first problem as an error, with its key and the name of the run."""
     first = error.errors()[0]
     place, where = list(first["loc"]), ""
     runs = plain.get("run")

@@ -1,4 +1,4 @@
-"""Why a run breaks its limits: its difference to when they were measured, or, where they never were, what takes most."""
+"""Why a run breaks its limits: how it differs from the measured run or, if there is none, what takes most."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from bfsim.report.diff.side import Side
 from bfsim.report.wording.units import milliseconds_of
 
 CAUSES = 8
-"""So many causes are shown of a failure."""
+"""The number of causes that a failure shows."""
 DEAREST = 3
-"""So many kernels of a stage, and lines of each, are shown where there is nothing to compare with."""
+"""The number of kernels of a stage, and of lines of each, that are shown if there is nothing to compare with."""
 FRAMES_NAMED = 5
-"""So many frames are named whose results differ."""
+"""The number of frames with other results that are named."""
 
 
 def difference_of_outcome(outcome: Outcome) -> Difference | None:
-    """Return the difference to the run whose limits they are; None where none were measured."""
+    """Return the difference from the run that the limits come from; None if none was measured."""
     if not outcome.case.has_costs:
         return None
     return difference_between(kept_side(outcome.case), whole_side(outcome.result))
 
 
 def explanation(outcome: Outcome) -> Iterator[str]:
-    """Yield why limits are broken, in lines: stages, kernels, source lines and causes, results, and what was seen."""
+    """Yield why limits are broken, line by line: stages, kernels, source lines, causes, results, what was seen."""
     difference = difference_of_outcome(outcome)
     if difference is None:
         yield from dearest(whole_side(outcome.result), stages_of(outcome))
@@ -43,14 +43,14 @@ def explanation(outcome: Outcome) -> Iterator[str]:
         yield f"Cycles of both cores in {frames_compared(difference)}, before and now:"
     for depth, each in rows:
         before, after, more = cells(each)
-        label = labelled(each).removesuffix(":")  # that of a `for` has one
+        label = labelled(each).removesuffix(":")  # the source line of a `for` ends in one
         yield f"{'  ' * (depth + 1)}{label}: {f'{before} → {after}, ' if before else ''}{more}"
     yield from counts_that_differ(outcome)
     yield from seen_lines(difference)
 
 
 def counts_that_differ(outcome: Outcome) -> Iterator[str]:
-    """Yield in which frames results are others, those of the same frames together."""
+    """Yield the frames in which results differ; results that differ in the same frames share a line."""
     names: dict[tuple[int, ...], list[str]] = {}
     for verdict in outcome.broken:
         if verdict.frames:
@@ -69,7 +69,7 @@ def stages_of(outcome: Outcome) -> Collection[str]:
 
 
 def dearest(side: Side, stages: Collection[str]) -> Iterator[str]:
-    """Yield which kernels and lines of these stages take most, or of the two dearest ones if none is named."""
+    """Yield the kernels and lines of these stages that take most; if no stage is named, of the two dearest ones."""
     by_stage: dict[str, int] = {}
     for owner, cclk in side.owners.items():
         by_stage[owner.stage] = by_stage.get(owner.stage, 0) + cclk

@@ -1,4 +1,4 @@
-"""Which runs of a baseline file a command is about."""
+"""The choice of runs from a baseline file for a command."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ def chosen(
     *,
     update: bool,
 ) -> list[Case]:
-    """Return the runs that are meant by a name or by what was `given` to run; all of them by neither.
+    """Return the runs that a name or the `given` configuration stands for; without either, all.
 
-    With `update` one that is not there yet is added, as `name` or by its `own_name`. Raises ConfigError where none is meant.
+    With `update`, a run that does not exist is added, as `name` or under its `own_name`. Raises ConfigError if no run
+    matches.
     """
     if name is None and given is None and baseline.run:
         return list(baseline.run)
@@ -74,7 +75,7 @@ def _nothing_meant(baseline: Baseline, path: Path, given: Configuration | None, 
 
 
 def _different(case: Case, given: Configuration, path: Path) -> list[str]:
-    """Return in which keys a run differs from what is given; a file by another way to it is the same."""
+    """Return the keys in which a run differs from what is given; two paths to one file are the same."""
     return [
         key
         for key in Configuration.model_fields
@@ -83,7 +84,7 @@ def _different(case: Case, given: Configuration, path: Path) -> list[str]:
 
 
 def _placed(value: object, path: Path) -> object:
-    """Return a value with each name as a path from the root, as those in the file at `path` are relative to it."""
+    """Return a value with absolute paths in place of names, which are relative to the file at `path`."""
     if isinstance(value, list):
         return [_placed(each, path) for each in value]
     return os.path.abspath(path.parent / value) if isinstance(value, str) and value else value  # noqa: PTH100 - of no link

@@ -1,7 +1,7 @@
-"""What of a run can be limited: figures by name, each with its values, frame by frame where it has one for each.
+"""The figures of a run that can be limited, by name, each with its values, one per frame if it has them.
 
-Waits for pictures and for the other core are left out of stages and frames: they are no work, and grow when something
-becomes faster. Time outside of stages counts in the frame alone.
+Stages and frames are counted without waits for pictures and for the other core: these are no work, and grow when
+something becomes faster. Time outside of stages counts only in the frame.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from bfsim.report.results.seen_json import name_of_object
 from bfsim.trace import REST, RunRecord
 
 Name = tuple[str, ...]
-"""Such as ("frame_rate",), ("Thinning", "A") or ("memory", "L2"); the parts of a dotted key of TOML."""
+"""Such as ("frame_rate",), ("Thinning", "A") or ("memory", "L2"): the parts of a dotted key of TOML."""
 
 FRAME_RATE, MISSED, LATENCY, FRAME = ("frame_rate",), ("missed",), ("latency",), ("frame",)
 OF_THE_RUN = FRAME_RATE, MISSED, LATENCY, FRAME
-"""What every run has, whatever its firmware."""
+"""Figures that every run has, whatever its firmware."""
 MEMORY, RESULTS, OBJECTS, DISTANCES = "memory", "results", "objects", "distance_mm"
 SEEN = {OBJECTS, DISTANCES}
-"""What the firmware sees: how many of a kind, and how far the nearest of them is."""
+"""What the firmware sees: how many objects of a kind, and how far away the nearest is."""
 COUNTS = {RESULTS, *SEEN}
-"""What there is a whole number of for each frame: what the firmware publishes, and what it sees."""
+"""Figures with a whole number for each frame: what the firmware publishes, and what it sees."""
 
 
 class Unit(Enum):
-    """What a figure is counted in."""
+    """The unit of a figure."""
 
     HZ = "Hz"
     CCLK = "cycles"
@@ -44,7 +44,7 @@ class Unit(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Figure:
-    """One thing that was measured: a value a frame, or one of the whole run. `whole` is what there is, of a memory."""
+    """One thing that was measured: a value per frame, or one for the whole run. `whole`: the size of a memory."""
 
     values: tuple[float, ...]
     unit: Unit
@@ -64,7 +64,7 @@ def statistic(figure: Figure, name: str) -> float:
 
 
 def unit_of(name: Name) -> Unit:
-    """Return what the figure of that name is counted in."""
+    """Return the unit of the figure of that name."""
     if name == FRAME_RATE:
         return Unit.HZ
     if name == MISSED or name[0] in COUNTS:
@@ -80,7 +80,7 @@ def is_of_a_stage(name: Name) -> bool:
 def figures_of(result: Result) -> dict[Name, Figure]:
     """Return every figure of a run of at least one frame.
 
-    A stage is there for each core, and without a core as the longer of them in each frame.
+    A stage has a figure for each core, and one without a core: in each frame, the longer of them.
     """
     run = result.run
     figures: dict[Name, Figure] = {
@@ -103,7 +103,7 @@ def figures_of(result: Result) -> dict[Name, Figure]:
 
 
 def _seen(result: Result) -> Iterator[tuple[Name, list[int]]]:
-    """Yield how many objects of each kind were seen in each frame, and how far the nearest of them was, 0 for none."""
+    """Yield how many objects of each kind each frame shows, and how far away the nearest is, 0 for none."""
     indexes = [frame.index for frame in result.run.frames if frame.index in result.seen]
     far: list[dict[str, list[int]]] = []
     for index in indexes:
@@ -118,7 +118,7 @@ def _seen(result: Result) -> Iterator[tuple[Name, list[int]]]:
 
 
 def _distance_mm(seen: Mapping[str, Any]) -> int:
-    """Return how far an object is from the left camera; 0 where only its direction is known."""
+    """Return how far an object is from the left camera; 0 if only its direction is known."""
     return 0 if seen["is_direction"] else round(hypot(*seen["place_mm"]))
 
 

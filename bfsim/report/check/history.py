@@ -1,4 +1,4 @@
-"""`--history`: a line of JSON for each run that was checked, and the trend of the frame time in them."""
+"""`--history`: a line of JSON for each run that was checked, and the trend of their frame times."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from bfsim.report.check.verdicts import Outcome
 from bfsim.report.tables.table import new_table
 
 TREND = "frame.median ms"
-"""The figure that is drawn."""
+"""The figure that the trend shows."""
 BARS = "▁▂▃▄▅▆▇█"
 DRAWN = 30
-"""The trend shows so many of the last lines of a run."""
+"""The number of a run's last lines that the trend shows."""
 
 
 def append_history(path: Path, outcomes: Sequence[Outcome], commit: str) -> None:
-    """Append a line for each run, all of them or none, also where two processes do so. Raises ConfigError where that cannot be."""
+    """Append a line for each run, all or none, even if two processes do so. Raises ConfigError if that fails."""
     with alone_in(path.parent):
         before = read_bounded(path) if path.exists() else b""
         end = b"\n" if before and not before.endswith(b"\n") else b""  # an editor may have left it out
@@ -52,7 +52,7 @@ def _lines(outcomes: Sequence[Outcome], commit: str) -> str:
 
 
 def read_history(path: Path) -> list[dict[str, Any]]:
-    """Return the lines of a history, none of one that is not there yet. Raises ConfigError for a line that is none."""
+    """Return the lines of a history, none if it does not exist yet. Raises ConfigError for an invalid line."""
     if not path.exists():
         return []
     try:
@@ -65,7 +65,7 @@ def read_history(path: Path) -> list[dict[str, Any]]:
 
 
 def trend_table(history: Sequence[dict[str, Any]], names: Sequence[str]) -> Table:
-    """Return the frame times of the last lines of each run as bars from the least to the most, and their ends."""
+    """Return the frame times of each run's last lines, as bars from the least to the most, with these two."""
     table = new_table("Work of a frame, median, ms", "Run", "First", "Least", "Most", "Now", "Trend")
     table.columns[-1].justify = "left"
     for name in names:

@@ -1,4 +1,4 @@
-"""Holding the figures of a run against what is required: verdicts."""
+"""Compare the figures of a run with what is required: verdicts."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from bfsim.report.results.result import Result
 from bfsim.trace import RunRecord
 
 FRAME_SHARE = 10
-"""A stage may also grow by this part of what the tolerance is of a frame: shorter ones vary with the traffic of others."""
+"""A stage may also grow by this part of a frame's tolerance: short stages vary with the traffic of others."""
 HZ_RESOLUTION = 1e-6
-"""To which a frame rate is written."""
+"""The resolution in which a baseline has a frame rate, in Hz."""
 
 
 def judge(case: Case, result: Result, path: Path) -> Outcome:
-    """Hold a run of at least one frame against what `path` has for it. Raises ConfigError for a figure that it does not have."""
+    """Compare a run of at least one frame with its limits in `path`. Raises ConfigError for a figure that it lacks."""
     required, limits = requirements_of(case, path)
     run, figures = result.run, figures_of(result)
     if result.seen:
@@ -59,7 +59,10 @@ def judge(case: Case, result: Result, path: Path) -> Outcome:
 
 
 def require_stages(case: Case, path: Path, stages: Sequence[str], cores: Sequence[str]) -> None:
-    """Raise ConfigError for what `path` has on a stage or core that firmware with these does not have: nothing needs to run for that."""
+    """Raise ConfigError if `path` has something on a stage or core that this firmware does not have.
+
+    Nothing needs to run for that.
+    """
     known = [*OF_THE_RUN, *((stage,) for stage in stages), *product(stages, cores)]
     for each in chain(*requirements_of(case, path)):
         if is_of_a_stage(each.name) and each.name not in known:
@@ -67,7 +70,7 @@ def require_stages(case: Case, path: Path, stages: Sequence[str], cores: Sequenc
 
 
 def _nothing_of(name: Name) -> Requirement:
-    """Return that nothing is seen of a kind that there was nothing of when the limits were measured."""
+    """Return the limit of no objects of a kind, for kinds of which none were seen when the limits were measured."""
     return parse_requirement(f"{dotted((*name, 'max'))} == 0", "")
 
 

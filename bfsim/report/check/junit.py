@@ -12,7 +12,7 @@ from bfsim.report.check.verdicts import Outcome
 
 
 def junit_xml(outcomes: Sequence[Outcome], path: Path) -> str:
-    """Return a JUnit XML with a test case for each run of the file."""
+    """Return JUnit XML with a test case for each run of the file."""
     failed = sum(not each.passed for each in outcomes)
     suite = ET.Element("testsuite", name="bfsim check", tests=str(len(outcomes)), failures=str(failed))
     for outcome in outcomes:
@@ -27,5 +27,5 @@ def junit_xml(outcomes: Sequence[Outcome], path: Path) -> str:
 
 
 def _xml(text: str) -> str:
-    """Return text without what XML 1.0 has no way to write."""
+    """Return text without the characters that XML 1.0 cannot hold."""
     return "".join(each if each in "\n\t" or each.isprintable() else "?" for each in text)

@@ -1,4 +1,4 @@
-"""What a run cost, as the baseline keeps it to tell later what grew: owners of cycles and their lines, the small ones together."""
+"""What a run cost, as the baseline keeps it to explain later growth: owners and their lines, small ones added up."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from bfsim.report.diff.side import FRAMES, SEPARATOR, Line, Owner, Side, Source,
 from bfsim.report.results.result import Result
 
 KEPT_SHARE = 0.001
-"""An owner of cycles or a line is kept if it has this share of all work."""
+"""An owner of cycles or a line is kept if it has at least this share of all work."""
 FRAMES_KEPT = 20
-"""Of so many frames the cycles of each are kept."""
+"""The most frames for which the cycles of each are kept."""
 BETWEEN = ", "
-"""Between the reason of a stall and the buffer."""
+"""Separates the reason of a stall from the buffer."""
 
 
 def whole_side(result: Result) -> Side:
@@ -28,7 +28,7 @@ def whole_side(result: Result) -> Side:
 
 
 def kept_costs(side: Side) -> Costs:
-    """Return what the baseline keeps of a run."""
+    """Return what the baseline keeps of a run's costs."""
     least = int(KEPT_SHARE * sum(side.owners.values()))
     owners = Counter[Owner]()
     for owner, cclk in side.owners.items():
@@ -75,7 +75,7 @@ def _kept_line(line: Line) -> KeptLine:
 
 
 def kept_side(case: Case) -> Side:
-    """Return a run that has been measured as it was then."""
+    """Return a measured run as it was then."""
     costs, on = case.costs, case.measured_on
     assert costs is not None
     assert on is not None
@@ -134,7 +134,7 @@ def _split(key: str) -> tuple[str, str]:
 
 
 def _counts(case: Case) -> Iterator[tuple[Name, list[int]]]:
-    """Yield the results that were measured: frame by frame, or in total."""
+    """Yield the measured results: frame by frame, or in total."""
     for text in case.limits:
         each = parse_requirement(text, "")
         if each.name[0] in {RESULTS, OBJECTS} and each.statistic in {"", "total"}:
@@ -142,7 +142,7 @@ def _counts(case: Case) -> Iterator[tuple[Name, list[int]]]:
 
 
 def _seen(objects: Mapping[str, Sequence[int]], costs: Costs) -> dict[int, Counter[str]]:
-    """Return what was seen in each frame, where the baseline has it frame by frame and says which frames these are."""
+    """Return what was seen in each frame, if the baseline has it frame by frame and says which frames these are."""
     frames = list(map(int, costs.frame_cclk))
     if any(len(values) != len(frames) for values in objects.values()):
         return {}

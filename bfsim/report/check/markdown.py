@@ -18,7 +18,7 @@ from bfsim.report.wording.units import others_row
 
 
 def markdown(outcomes: Sequence[Outcome], path: Path) -> str:
-    """Return the outcome for a pull request."""
+    """Return the outcomes as Markdown."""
     return "\n".join(line for outcome in outcomes for line in _markdown(outcome, path)) + "\n"
 
 

@@ -1,9 +1,9 @@
-"""The sentences that limits are written in: `"Look for lines".max <= 80 ms`.
+"""The sentences for limits: `"Look for lines".max <= 80 ms`.
 
     NAME [.min | .median | .max | .total]  <= | >= | ==  NUMBER [UNIT]
 
-NAME is a dotted key as in TOML. Without a statistic the sentence is about every frame. After `==` there may be a number for
-each frame, with repeated ones as `0*5`. Only what firmware publishes may be negative.
+NAME is a dotted key as in TOML. Without a statistic the sentence is about every frame. `==` may be followed by a number
+for each frame, with repeated ones as `0*5`. Only what firmware publishes may be negative.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic, un
 UNITS: dict[Unit, dict[str, Fraction | None]] = {
     Unit.HZ: {"Hz": Fraction(1)},
     Unit.CCLK: {
-        "cycles": None,  # the others are seconds, and become cycles by the board's clock
+        "cycles": None,  # the others are times, and become cycles by the board's clock
         "s": Fraction(1),
         "ms": Fraction(1, 1000),
         "us": Fraction(1, 1_000_000),
@@ -28,15 +28,15 @@ UNITS: dict[Unit, dict[str, Fraction | None]] = {
     Unit.BYTES: {"B": Fraction(1), "KB": Fraction(1024), "MB": Fraction(1024**2), "%": None},
     Unit.COUNT: {"": Fraction(1)},
 }
-"""The units of each kind of figure, and how much of the kind's own unit they are."""
+"""The units of each kind of figure, as multiples of the kind's own unit."""
 
 MS_DIGITS = 6
-"""Digits by which a limit in ms says each cycle of a clock up to 1 GHz."""
+"""The digits that tell all cycles of a clock up to 1 GHz apart in a limit in ms."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Requirement:
-    """What a figure must be. `statistic` is empty for every frame; more than one of `numbers` are one for each frame."""
+    """What a figure must be. `statistic` is empty for every frame; several `numbers` are one for each frame."""
 
     name: Name
     statistic: str
@@ -47,7 +47,7 @@ class Requirement:
 
     @property
     def dotted(self) -> str:
-        """What it is about, as it is written."""
+        """The name of its figure, and the statistic, as written."""
         return dotted((*self.name, self.statistic) if self.statistic else self.name)
 
     def limit(self, figure: Figure, cclk_hz: float) -> float:
@@ -62,7 +62,7 @@ class Requirement:
         return float(number * scale)
 
     def measured(self, figure: Figure) -> float:
-        """Return the number of the figure that is compared: without a statistic that of the worst frame."""
+        """Return the number of the figure that is compared; without a statistic, that of the worst frame."""
         name = self.statistic or ("min" if self.comparison == ">=" else "max")
         return statistic(figure, name)
 
@@ -82,7 +82,7 @@ def limit_text(name: Name, value: float, cclk_hz: float, stands_for: str = "") -
 
 
 def counts_text(name: Name, values: Sequence[float]) -> str:
-    """Return the sentence that each frame must have what it has."""
+    """Return the sentence that requires of each frame what it has now."""
     runs = ((value, len(list(same))) for value, same in groupby(map(int, values)))
     numbers = (f"{value}*{times}" if times > 1 else str(value) for value, times in runs)
     return f"{dotted(name)} == {' '.join(numbers)}"

@@ -1,4 +1,4 @@
-"""Reading the sentences that limits are written in (`requirement`), with errors that point at what is wrong."""
+"""Read the sentences of limits (`requirement`), with errors that point at the mistake."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ _PART = re.compile(r'\s*(?:"([^"\n]*)"|([\w-]+))\s*')
 _COMPARISON = re.compile(r"\s*(<=|>=|==)\s*")
 _NUMBER = re.compile(r"(-?\d[\d_]*(?:\.\d+)?)\s*")
 _NOT_WRITTEN_OUT = re.compile(r"[.,]|[eE][+-]?\d")
-"""Behind a number: an exponent, or what is no unit."""
+"""What may follow a number by mistake: an exponent, or a second point or comma."""
 _COUNT = r"-?\d[\d_]*(?:\*[1-9]\d{0,6})?"
 _COUNTS = re.compile(rf"{_COUNT}(?:\s+{_COUNT})*\s*")
 _TIMES = re.compile(r"\*(\d+)")
 LONGEST_NUMBER = 30
-"""Digits; more is no figure of a run."""
+"""Digits; no figure of a run has more."""
 _TOO_LONG = re.compile(rf".*[\d_]{{{LONGEST_NUMBER + 1}}}")
 MOST_FRAMES = 1_000_000
-"""A number for each frame is kept in memory; so many are eleven hours at 25 a second."""
+"""The most frames with a number each, as these are kept in memory: eleven hours at 25 a second."""
 
 
 def parse_requirement(text: str, where: str) -> Requirement:
-    """Read a sentence. Raises ConfigError that names `where` it stands, with a caret under what is wrong."""
+    """Read a sentence. Raises ConfigError that says `where` it is, with a caret under the mistake."""
     sentence = _Sentence(text, where)
     parts, at = sentence.parts()
     stands_for = parts[-1][1] if len(parts) > _least(parts[0][1]) and parts[-1][1] in STATISTICS else ""
@@ -70,13 +70,13 @@ def parse_requirement(text: str, where: str) -> Requirement:
 
 @dataclass(frozen=True, slots=True)
 class _Sentence:
-    """A sentence, read part by part from a place in it on."""
+    """A sentence, read part by part from a position onwards."""
 
     text: str
     where: str
 
     def parts(self) -> tuple[list[tuple[int, str]], int]:
-        """Return the parts of the name with their places, and where it ends."""
+        """Return the parts of the name with their positions, and where the name ends."""
         parts, at = list[tuple[int, str]](), 0
         while True:
             found = _PART.match(self.text, at)
@@ -89,7 +89,7 @@ class _Sentence:
             at += 1
 
     def require_name(self, name: Name, parts: Sequence[tuple[int, str]]) -> None:
-        """Fail where a name has more parts, or fewer, than what it begins with."""
+        """Fail if a name has too many or too few parts for what it begins with."""
         most = 2 if (name[:1]) not in {FRAME_RATE, MISSED, LATENCY, FRAME} else 1
         if len(name) > most:
             what = f"{', '.join(STATISTICS[:-1])} or {STATISTICS[-1]}"
@@ -98,7 +98,7 @@ class _Sentence:
             self.fail(f"{name[0]} must be followed by a name, such as {name[0]}.L2", len(name[0]))
 
     def comparison(self, at: int) -> tuple[str, int]:
-        """Return how is compared, and where that ends."""
+        """Return the comparison, and where it ends."""
         found = _COMPARISON.match(self.text, at)
         if not found:
             self.fail("after the name must come <=, >= or ==", at)
@@ -121,7 +121,7 @@ class _Sentence:
         return Fraction(found[1].replace("_", "")), found.end()
 
     def unit(self, at: int, name: Name) -> str:
-        """Return the unit behind a number."""
+        """Return the unit after a number."""
         kind, named = unit_of(name), self.text[at:].strip()
         if named not in UNITS[kind]:
             known = " or ".join(each or "none" for each in UNITS[kind])
@@ -131,19 +131,19 @@ class _Sentence:
         return named
 
     def fail(self, problem: str, at: int) -> NoReturn:
-        """Raise ConfigError with a caret at a place, unless the sentence is too long to be shown."""
+        """Raise ConfigError with a caret at a position, unless the sentence is too long to be shown."""
         if len(self.text) > len(cut(self.text)):
             raise ConfigError(f"{self.where}: {problem} ({cut(self.text)})")
         raise ConfigError(f"{self.where}: {problem}\n    {cut(self.text)}\n    {' ' * at}^")
 
 
 def _least(first: str) -> int:
-    """Return how many parts a name has at least that begins so; an object may be called max."""
+    """Return the least number of parts of a name that begins so; an object may be called max."""
     return 2 if first in {MEMORY, *COUNTS} else 1
 
 
 def _meant(name: Name) -> str:
-    """Return a hint where what is taken for a stage is nearly the name of something else."""
+    """Return a hint if a supposed stage is nearly the name of something else."""
     near = difflib.get_close_matches(dotted(name), [dotted(each) for each in OF_THE_RUN])
     return f"; what is no stage is called {near[0]}" if near else ""
 

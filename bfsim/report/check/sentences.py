@@ -1,4 +1,4 @@
-"""The outcome of a check in sentences, and its amounts for people."""
+"""The outcome of a check in sentences, with amounts in words."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def verdict_line(outcome: Outcome) -> str:
 
 
 def broken_lines(outcome: Outcome) -> Iterator[str]:
-    """Yield a line for each figure whose limits are broken."""
+    """Yield a line for each figure with broken limits."""
     for each in worst_of_each(outcome.broken):
         limit, measured = limit_and_measured(each, outcome.run.identity.cclk_hz)
         once = of_one_frame(outcome.run) if each.unit is Unit.HZ else ""
@@ -32,7 +32,7 @@ def broken_lines(outcome: Outcome) -> Iterator[str]:
 
 
 def changes(outcome: Outcome) -> Iterator[str]:
-    """Yield what else is not as it was when the limits were measured: the firmware, the LDF, bfsim."""
+    """Yield what else has changed since the limits were measured: the firmware, the LDF, bfsim."""
     then, now = outcome.case.measured_on, outcome.run.identity
     if then is None:
         yield (
@@ -55,13 +55,13 @@ def changes(outcome: Outcome) -> Iterator[str]:
 
 
 def limit_and_measured(verdict: Verdict, cclk_hz: float) -> tuple[str, str]:
-    """Return what a figure must be, and what it was, for people."""
+    """Return what a figure must be, and what it was, in words."""
     allowed, measured = (amount(each, verdict.unit, cclk_hz) for each in (verdict.allowed, verdict.measured))
     return f"{verdict.requirement.comparison} {allowed}", measured
 
 
 def amount(value: float, unit: Unit, cclk_hz: float) -> str:
-    """Return a number of a figure for people."""
+    """Return a number of a figure with its unit, in words."""
     match unit:
         case Unit.HZ:
             return f"{value:.2f} Hz"
@@ -74,5 +74,5 @@ def amount(value: float, unit: Unit, cclk_hz: float) -> str:
 
 
 def percent(verdict: Verdict) -> str:
-    """Return by how many percent of its limit a figure is off; nothing where the limit is 0."""
+    """Return by how many percent of its limit a figure is off; "" if the limit is 0."""
     return f"{verdict.by_percent:+.2f}" if verdict.limit else ""

@@ -1,4 +1,4 @@
-"""The outcome of a check on the screen: broken limits, why, and what became better."""
+"""The outcome of a check on the screen: broken limits, why, and what has improved."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from bfsim.report.wording.units import others_row
 
 
 def check_report(outcome: Outcome, path: Path, *, just_measured: bool = False) -> RenderableType:
-    """Return what the check of a run found: the broken limits and why first, then what became better, then warnings.
+    """Return the outcome of a check: broken limits and reasons first, then what has improved, then warnings.
 
-    Nothing is another than it was where the limits were `just_measured`.
+    If the limits were `just_measured`, nothing can have changed since.
     """
     parts: list[RenderableType] = [Text(verdict_line(outcome))]
     if outcome.broken:

@@ -1,4 +1,4 @@
-"""Plain values as TOML that people read: a line for each sentence, and for each line of a kernel."""
+"""Plain values as TOML for people: one line for each sentence, and for each line of a kernel."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import tomlkit
 from tomlkit.items import AoT, Array, InlineTable, Table
 
 TABLES = "of"
-"""The key of lists that are written as a table for each of their records; others have a line for each."""
+"""The key of lists that have a table for each of their records; other lists have a line for each."""
 
 
 def toml_item(value: Any) -> Any:
-    """Return a value of a baseline as it is written."""
+    """Return a value of a baseline in the form in which it is written."""
     match value:
         case dict():
             return _table(value)
@@ -45,7 +45,7 @@ def _lines(values: Sequence[Any]) -> Array:
 
 
 def _inline(value: Any) -> Any:
-    """Return what stands in one line, text in quotes that leave its own alone."""
+    """Return a value for a single line; text is in quotes that need no escapes."""
     match value:
         case dict():
             table: InlineTable = tomlkit.inline_table()
@@ -63,7 +63,7 @@ def _inline(value: Any) -> Any:
 
 
 def _scalar(value: Any) -> Any:
-    """Return a number with its thousands apart."""
+    """Return a number with its thousands separated."""
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     return tomlkit.integer(f"{value:_}") if type(value) is int else value

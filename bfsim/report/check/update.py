@@ -1,4 +1,4 @@
-"""`--update`: the limits of a run become what was measured; one that was only missed within its tolerance stays."""
+"""`--update`: measured values become the limits of a run; a limit that was missed within its tolerance stays."""
 
 from __future__ import annotations
 
@@ -29,13 +29,19 @@ NEW_FILE = """\
 
 """
 DEFAULT_TOLERANCE_PERCENT = 1
-"""Of new runs: each change of one stage moves others a little, by what they wait for memory."""
+"""For new runs: each change of one stage moves others a little, because they wait for memory differently."""
 MOST_COUNTS = 22
-"""Results are kept frame by frame where their sentence has no more words, 20 of them counts such as 1*200; else their total, least and most."""
+"""Results are kept frame by frame if their sentence has at most so many words, 20 of them counts such as 1*200.
+
+Otherwise their total, least and most are kept.
+"""
 
 
 def loosened(case: Case, result: Result, path: Path, *, in_short: bool = False) -> list[str]:
-    """Return in words which limits of a run `--update` would loosen, or take away; `in_short`, one of those on each figure, what was found first."""
+    """Return in words which limits of a run `--update` would loosen or remove.
+
+    With `in_short`, only one of the limits on each figure, results first.
+    """
     _, gone = _limits_of(case, result, path)
     broken = [each for each in _held(case, result, path).verdicts if each.broken and not each.is_persons]
     if in_short:
@@ -47,7 +53,7 @@ def loosened(case: Case, result: Result, path: Path, *, in_short: bool = False) 
 
 
 def updated(case: Case, result: Result, reason: str, path: Path) -> Case:
-    """Return a run of the file with the limits that were measured. A `reason` is kept with what it loosened."""
+    """Return a run of the file with the measured limits. A `reason` is kept with the limits that were loosened."""
     outcome = _held(case, result, path)
     kept = {
         (each.requirement.name, each.requirement.statistic): each.requirement.text
@@ -65,7 +71,9 @@ def updated(case: Case, result: Result, reason: str, path: Path) -> Case:
 
 
 def write_cases(path: Path, cases: Mapping[str, Case]) -> None:
-    """Write runs, by their names, into the file at `path`. Everything else in it stays as it is, also what others write meanwhile.
+    """Write runs, by their names, into the file at `path`.
+
+    Everything else in it stays as it is, including what others write meanwhile.
 
     Raises ConfigError, and leaves the file alone, if it is no baseline.
     """
@@ -92,13 +100,13 @@ def _write_cases(path: Path, cases: Mapping[str, Case]) -> None:
 
 
 def _held(case: Case, result: Result, path: Path) -> Outcome:
-    """Hold a run against those of its limits that say something about it."""
+    """Compare a run with those of its limits that apply to it."""
     there, _ = _limits_of(case, result, path)
     return judge(case.model_copy(update={"limits": [each.text for each in there]}), result, path)
 
 
 def _limits_of(case: Case, result: Result, path: Path) -> tuple[list[Requirement], list[Requirement]]:
-    """Return the limits that are about the same pictures and hardware: of what the run has, and of what it has no more."""
+    """Return the limits for the same pictures and hardware: those on figures that the run has, and those on others."""
     then, now, figures = case.measured_on, _on(result.run), figures_of(result)
     if then is None or any(then.differs_in(key, now) for key in COMPARABLE):
         return [], []
@@ -115,7 +123,7 @@ def _on(run: RunRecord) -> MeasuredOn:
 
 
 def _limits(outcome: Outcome) -> Iterator[tuple[tuple[Name, str], str]]:
-    """Yield a sentence for each thing that is limited: stages by core, and of times the median and the maximum."""
+    """Yield a sentence for each limit: stages by core, and for times the median and the maximum."""
     cclk_hz = outcome.run.identity.cclk_hz
     for name, figure in outcome.figures.items():
         is_of_all_cores = any(
@@ -138,12 +146,12 @@ def _limits(outcome: Outcome) -> Iterator[tuple[tuple[Name, str], str]]:
 
 
 def _number(verdict: Verdict, run: RunRecord) -> str:
-    """Return what was measured as the sentence would have it."""
+    """Return what was measured as a sentence would have it."""
     return limit_text(verdict.requirement.name, verdict.measured, run.identity.cclk_hz).rpartition("= ")[2]
 
 
 def _fill(table: Table, case: Case, before: Case | None) -> None:
-    """Set in a TOML table what a run has; what is its default is left out, and what is as it was `before` stays as it is written."""
+    """Write a run into a TOML table, without defaults; values that are as `before` stay as they are written."""
     plain, old = case.model_dump(exclude_defaults=True), before.model_dump() if before else {}
     for key in ("name", *Case.model_fields):
         if key not in plain:

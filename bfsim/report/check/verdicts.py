@@ -1,4 +1,4 @@
-"""What came out of a check: a verdict on each sentence, and all of them."""
+"""The outcome of a check: a verdict on each sentence, and all of them together."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from bfsim.trace import RunRecord
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """One sentence and what was measured, in the figure's unit.
+    """A sentence and what was measured, in the figure's unit.
 
-    `limit` is what was written, `allowed` with its tolerance; after `==`, where both sides break it, `allowed` is the limit.
-    `frames` are those whose results differ, by their index; where there are some, limit and measured are of `frame`, which is
-    most off. They are totals where no frame differs, or where there are more or fewer frames than limits.
+    `limit` is what was written, `allowed` includes its tolerance; after `==`, which can be broken both ways, `allowed`
+    is the limit. `frames` are those whose results differ, by index; if there are any, limit and measured are those of
+    `frame`, which is furthest off. They are totals if no frame differs, or if there are more or fewer frames than
+    limits.
     """
 
     requirement: Requirement
@@ -40,13 +41,13 @@ class Verdict:
 
     @property
     def by_percent(self) -> float:
-        """How much was measured over the limit, in percent of its size."""
+        """By how much the measured value exceeds the limit, in percent of its size."""
         return 100 * (self.measured - self.limit) / abs(self.limit) if self.limit else 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """What came out for one run of the baseline file."""
+    """The outcome for one run of the baseline file."""
 
     case: Case
     result: Result
@@ -65,7 +66,7 @@ class Outcome:
 
     @property
     def broken(self) -> tuple[Verdict, ...]:
-        """The broken limits, what is about the whole run first."""
+        """The broken limits, those of the whole run first."""
         return tuple(each for each in self.verdicts if each.broken)
 
     @property
@@ -75,7 +76,7 @@ class Outcome:
 
 
 def worst_of_each(verdicts: Sequence[Verdict]) -> Iterator[Verdict]:
-    """Yield of the limits on one figure the one that is off most: the others say the same."""
+    """For each figure, yield the limit that is furthest off: the others say the same."""
     names = dict.fromkeys(each.requirement.name for each in verdicts)
     for name in names:
         same = [each for each in verdicts if each.requirement.name == name]
@@ -83,5 +84,5 @@ def worst_of_each(verdicts: Sequence[Verdict]) -> Iterator[Verdict]:
 
 
 def left_out(verdicts: Sequence[Verdict]) -> int:
-    """Return how many of the limits `worst_of_each` leaves out."""
+    """Return how many limits `worst_of_each` leaves out."""
     return len(verdicts) - len({each.requirement.name for each in verdicts})

@@ -1,6 +1,6 @@
-"""What a row of each table of a run says: its cells by the names of their columns. One of the traffic is a `TrafficRecord` as it is.
+"""The rows of each table of a run: their cells by the names of their columns. A row of traffic is a `TrafficRecord`.
 
-Cycles are CCLK cycles; a row has one unit per column, and it is in the column's name.
+Cycles are CCLK cycles; each column has one unit, which is in its name.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class KernelCells(NamedTuple):
 
 
 class OwnerCells(NamedTuple):
-    """What an owner cost a core in a stage of a frame: a kernel without its callees, or what no kernel does (no `symbol`)."""
+    """What an owner cost a core in a stage of a frame: a kernel without its callees, or something else (no `symbol`)."""
 
     frame: int
     core: str
@@ -78,7 +78,7 @@ class OwnerCells(NamedTuple):
 
 
 class AccessCells(NamedTuple):
-    """What a line of a kernel accessed in a buffer, and how long it waited for it."""
+    """What a line of a kernel accessed in a buffer, and how long it waited for the buffer."""
 
     core: str
     stage: str
@@ -118,7 +118,7 @@ class LineCells(NamedTuple):
 
 
 class BufferCells(NamedTuple):
-    """A buffer that was used: accesses by kernels, bytes and SDRAM pages of all masters on its bus, and what was waited for it."""
+    """A buffer that was used: accesses by kernels, bytes and SDRAM pages of all masters on its bus, and waits for it."""
 
     buffer: str
     memory: str

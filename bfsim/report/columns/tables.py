@@ -1,4 +1,4 @@
-"""The records of a run as tables of plain columns, for pandas, Polars, Arrow or whoever takes lists."""
+"""The records of a run as tables of plain columns, for pandas, Polars, Arrow or anything that takes lists."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ Row = tuple[object, ...]
 """The cells of a row, in the order of its columns."""
 
 Columns = Mapping[str, list[object]]
-"""The columns of a table by their names, all of one length."""
+"""The columns of a table by their names, all of the same length."""
 
 
 def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
-    """Return the tables of a run by their names; `spans` are what `simulate(on_spans=...)` told of it."""
+    """Return the tables of a run by name; `spans` are those that `simulate(on_spans=...)` passed on."""
     return {
         "frames": _columns(FrameCells, _frames(run)),
         "results": _columns(ResultCells, _results(run)),
@@ -54,7 +54,7 @@ def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
 
 
 def _columns(kind: type[NamedTuple], rows: Iterable[Row]) -> Columns:
-    """Turn rows into columns; a table without rows has its columns, too."""
+    """Turn rows into columns; a table without rows has columns, too."""
     columns: list[list[object]] = [[] for _ in kind._fields]
     for row in rows:
         for column, cell in zip(columns, row, strict=True):
@@ -63,7 +63,7 @@ def _columns(kind: type[NamedTuple], rows: Iterable[Row]) -> Columns:
 
 
 def _row(kind: type[NamedTuple], record: object, /, **others: object) -> Row:
-    """Return a row of what a record has under the names of the columns, and of `others`; stalls by reason are added up."""
+    """Return a row from the fields of a record that are columns, and from `others`; stalls are summed over reasons."""
     cells = {name: others[name] if name in others else getattr(record, name) for name in kind._fields}
     if isinstance(stalls := cells.get("stall_cclk"), Mapping):
         cells["stall_cclk"] = sum(stalls.values())

@@ -1,1 +1,1 @@
-"""What differs between two runs, and what makes the difference: from stages down to the causes in a source line."""
+"""What differs between two runs, and what causes the difference: from stages down to the causes in a source line."""

@@ -1,4 +1,4 @@
-"""Which line of a kernel's new text is which line of its old one."""
+"""Which lines of a kernel's old and new text correspond."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from difflib import SequenceMatcher
 
 NAMES = re.compile(r"\w+|[^\w\s]+")
 ANY = 0.01
-"""What a pair of lines with nothing in common counts beside one of equal lines."""
+"""The weight of a pair of lines with nothing in common, where a pair of equal lines weighs 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinePair:
-    """Places in the old and the new text, counted from 0; None where the text has no such line."""
+    """Positions in the old and the new text, counted from 0; None if the text has no such line."""
 
     old: int | None
     new: int | None
 
 
 def with_moved(pairs: Iterable[LinePair], old: Sequence[str], new: Sequence[str]) -> Iterator[LinePair]:
-    """Yield pairs of `aligned`, where a line that is gone from one place and stands in another one is the same."""
+    """Yield pairs of `aligned`, but pair lines that vanished in one place and stand unchanged in another."""
     pairs = list(pairs)
     gone: defaultdict[str, deque[int]] = defaultdict(deque)
     for each in pairs:
@@ -41,7 +41,7 @@ def with_moved(pairs: Iterable[LinePair], old: Sequence[str], new: Sequence[str]
 
 
 def aligned(old: Sequence[str], new: Sequence[str]) -> Iterator[LinePair]:
-    """Pair the lines of two texts, in their order: equal ones, and of those that were rewritten the most alike.
+    """Pair the lines of two texts, in order: equal ones, and among rewritten ones the most similar.
 
     Indentation is no difference.
     """
@@ -64,7 +64,7 @@ def aligned(old: Sequence[str], new: Sequence[str]) -> Iterator[LinePair]:
 
 
 def _alike(old: Sequence[str], new: Sequence[str]) -> list[tuple[int, int]]:
-    """Return as many pairs as there can be, in order, that are most alike in all."""
+    """Return as many pairs as possible, in order, that are most similar in all."""
     best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
     words = [set(NAMES.findall(each)) for each in old], [set(NAMES.findall(each)) for each in new]
     scores = [[ANY + len(one & other) / (len(one | other) or 1) for other in words[1]] for one in words[0]]

@@ -1,4 +1,4 @@
-"""Comparing two runs."""
+"""Compare two runs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def difference_of(before: Result, after: Result) -> Difference:
 
 
 def difference_between(before: Side, after: Side) -> Difference:
-    """Compare two sides; where one has more frames, as many cycles of the first as it would have in those of the second."""
+    """Compare two sides; if the numbers of frames differ, the cycles of the first are scaled to those of the second."""
     measured = len(before.frames)
     if measured != len(after.frames):
         before = before.scaled(Fraction(len(after.frames), measured))
@@ -68,7 +68,7 @@ def _configuration(before: Side, after: Side) -> Iterator[Change]:
 
 
 def _moved(before: Mapping[str, str], after: Mapping[str, str]) -> Iterator[Change]:
-    """Yield the buffers that lie elsewhere."""
+    """Yield the buffers that moved to another memory."""
     for buffer, memory in before.items():
         if after.get(buffer, memory) != memory:
             yield Change(what=f"buffer {buffer}", before=memory, after=after[buffer])
@@ -100,7 +100,7 @@ def _total(values: Sequence[int | None]) -> str:
 
 
 def _seen(before: Side, after: Side) -> Iterator[SeenChange]:
-    """Yield what only one of the runs saw, where both tell."""
+    """Yield what only one of the runs saw, if both have a view."""
     told = sorted(set(before.seen) & set(after.seen))
     for gone, one, other in ((True, before, after), (False, after, before)):
         found: dict[str, list[int]] = {}

@@ -1,4 +1,4 @@
-"""The tree of contributions: stage, then kernel, then source line, then cause; and last the waits that follow from them."""
+"""The tree of contributions: stage, then kernel, source line and cause; at the end the waits that follow from these."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ NO_LINE = "not of a line"
 
 
 def contributions_of(before: Side, after: Side) -> tuple[Contribution, ...]:
-    """Return what each stage contributes to the difference of two runs, the largest first, and at the end the waits.
+    """Return what each stage contributes to the difference of two runs, the largest first, then the waits.
 
-    They sum to the difference, as the parts of each do to their whole.
+    They sum to the difference, and the parts of each sum to their whole.
     """
     parts: defaultdict[str, list[Contribution]] = defaultdict(list)
     before, after = with_stages_alike(before, after)
@@ -65,7 +65,7 @@ def _of_owner(old: Owner | None, new: Owner | None, before: Side, after: Side) -
 
 
 def _lines(old: Source | None, new: Source | None, before: Side, after: Side) -> Iterator[Contribution]:
-    """Yield what the lines of a kernel contribute; lines are the same where their text is, or almost."""
+    """Yield what the lines of a kernel contribute; lines with the same text, or almost, are the same line."""
     olds, news = old.lines if old else (), new.lines if new else ()
     texts = [each.text for each in olds], [each.text for each in news]
     for pair in with_moved(aligned(*texts), *texts):

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class ContributionKind(StrEnum):
-    """What a contribution is of."""
+    """What a contribution comes from."""
 
     STAGE = "stage"
     KERNEL = "kernel"
@@ -21,9 +21,9 @@ class ContributionKind(StrEnum):
 class Contribution:
     """Part of a difference, in CCLK cycles of both cores over all compared frames. The `parts`, if any, sum to `cclk`.
 
-    `place` is FILE:LINE of the new run, or of the old one for what is gone. `before_cclk` and `after_cclk` are None for a cause,
-    which is a difference alone. Waits for the other core or for the cameras are of kind FOLLOWS, with the stages that they are
-    in as parts: they grow and shrink with what the rest of the firmware takes, which is without them.
+    `place` is FILE:LINE of the new run, or of the old one for what is gone. `before_cclk` and `after_cclk` are None for
+    a cause, which is only a difference. Waits for the other core or for the cameras are of kind FOLLOWS, with their
+    stages as parts: they grow and shrink with the time of the rest of the firmware, which does not include them.
     """
 
     kind: ContributionKind
@@ -36,12 +36,12 @@ class Contribution:
 
 
 NOTHING = "-"
-"""What a change is from, or to, where one side has nothing of it."""
+"""The value before or after, for what one side does not have."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """Something about the runs that is not the same: what it is, and what it was and is, in words or NOTHING."""
+    """Something that differs between the runs: what it is, and its old and new value, in words or NOTHING."""
 
     what: str
     before: str
@@ -50,7 +50,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameChange:
-    """A frame and the cycles of the core that it took longest, before and after."""
+    """A frame and the cycles of its slowest core, before and after."""
 
     index: int
     before_cclk: int
@@ -59,9 +59,9 @@ class FrameChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenChange:
-    """Something that the firmware told only one of the runs about, in so many `frames`, of which `first` was the first.
+    """Something that only one of the runs saw, in so many `frames`, the first of which is `first`.
 
-    `gone`: seen before and not after.
+    `gone`: seen before but not after.
     """
 
     name: str
@@ -72,10 +72,10 @@ class SeenChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """Two runs beside each other. `frames` are those that both have; cycles are of these alone.
+    """Two runs compared. `frames` are those that both have; cycles are those of these frames.
 
-    A baseline has cycles of all of its frames together: beside one, all frames are compared, with lines, and those of another
-    number of frames, `measured_frames`, in proportion.
+    A baseline only has the cycles of all its frames together. Compared with one, all frames count, with lines, and the
+    cycles of a different number of frames, `measured_frames`, are scaled.
 
     The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and last the waits (FOLLOWS). They
     have source lines only where both runs have the same frames (`has_lines`), since lines are counted over a whole run.
@@ -100,5 +100,5 @@ class Difference:
 
     @property
     def cclk(self) -> int:
-        """Cycles more than before."""
+        """The increase in cycles."""
         return self.after_cclk - self.before_cclk

@@ -1,4 +1,4 @@
-"""What routines of the compiler's library cost, as part of the lines that call them, in a side of a comparison."""
+"""The cost of routines of the compiler's library, as part of the lines that call them, on one side of a comparison."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ Sources = Mapping[Owner, Source]
 
 
 def with_callers(owners: Owners, sources: Sources) -> tuple[Owners, Sources]:
-    """Return owners and their lines, where those that are routines of the library are part of the lines that call them.
+    """Return owners and their lines, with routines of the library merged into the lines that call them.
 
-    A line has as much of a routine, with what that calls in turn, as it has of the routine's calls. The sums stay what they are.
+    A line gets the same share of a routine, including what the routine calls, as it has of the routine's calls. The
+    sums stay the same.
     """
     owners, sources = dict(owners), dict(sources)
     operations = {owner: [line.operations for line in source.lines] for owner, source in sources.items()}
@@ -30,7 +31,7 @@ def with_callers(owners: Owners, sources: Sources) -> tuple[Owners, Sources]:
 
 
 def _costs(routine: Source, calls: Sequence[Call[Owner]]) -> Iterator[tuple[int, Counter[Stall]]]:
-    """Yield the issue cycles and the stalls of a routine that each call has."""
+    """Yield each call's share of a routine's issue cycles and stalls."""
     stalls = Counter[Stall]()
     for line in routine.lines:
         stalls.update(line.stalls)
@@ -40,7 +41,7 @@ def _costs(routine: Source, calls: Sequence[Call[Owner]]) -> Iterator[tuple[int,
 
 
 def _with_cost(source: Source, call: Call[Owner], name: str, cost: tuple[int, Counter[Stall]]) -> Source:
-    """Return the lines of a caller, that of the call with what it has of the routine `name`."""
+    """Return the lines of a caller, with the cost of the routine `name` added to the line of the call."""
     lines, (more_cclk, stalls) = [*source.lines], cost
     line = lines[call.place]
     times, cclk = line.operations[name]

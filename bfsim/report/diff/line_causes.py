@@ -1,4 +1,4 @@
-"""Why a source line costs more or less than before: it ran more often, has other operations, or waits for something."""
+"""Why a source line costs more or less than before: it runs more often, has other operations, or waits."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from bfsim.report.wording.operations import words
 from bfsim.report.wording.units import counted
 
 NAMED = 3
-"""As many operations are named of a line that is on one side alone."""
+"""The number of operations that are named for a line that only one side has."""
 
 MANY = 1000
-"""From so many cycles on there are only whole ones."""
+"""From this average on, cycles have no decimals."""
 
 Memories = Mapping[str, str]
-"""In which memory buffers lie."""
+"""The memory in which each buffer lies."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """What an operation contributes: how many more of it there are, and their cycles."""
+    """What an operation contributes: by how much its count and its cycles have grown."""
 
     name: str
     more: float
@@ -33,11 +33,11 @@ class _Part:
 def line_causes(
     before: Line | None, after: Line | None, was: Memories, now: Memories
 ) -> tuple[Contribution, ...]:
-    """Return the causes of a line's difference, which they sum to, the largest first; none where nothing differs.
+    """Return the causes of a line's difference, the largest first; they sum to it. None if nothing differs.
 
-    A line that ran n times at c cycles and now runs n' times at c': (n' - n) · c is for running more often, and n' · (c' - c)
-    for its operations, one by one; unless the operations alone explain it with smaller numbers, as where a loop has become
-    another kind of loop.
+    For a line that ran n times at c cycles and now runs n' times at c', (n' - n) · c is for running more often, and n'
+    · (c' - c) is for its operations, one by one; but if the operations alone explain it with smaller numbers, as when a
+    loop has become another kind of loop, they do.
     """
     old, new = (each if each and each.cclk else None for each in (before, after))
     if old and new:
@@ -48,7 +48,7 @@ def line_causes(
 
 
 def _alone(old: Line | None, new: Line | None) -> Iterator[Contribution]:
-    """Yield all operations of a line that is on one side alone as one cause."""
+    """Yield all operations of a line that only one side has, as one cause."""
     line = new or old
     if line is not None and line.issue_cclk:
         yield _cause(
@@ -57,7 +57,7 @@ def _alone(old: Line | None, new: Line | None) -> Iterator[Contribution]:
 
 
 def line_text(line: Line) -> str:
-    """Say how often a line ran and how many cycles its operations take, and name those that take most."""
+    """Say how often a line ran and how many cycles its operations take, and name the dearest."""
     costs = Counter(
         {name: cclk for name, (_, cclk) in _in_words(line.operations).items() if name != words("")}
     )
@@ -67,7 +67,7 @@ def line_text(line: Line) -> str:
 
 
 def _operations(old: Line, new: Line) -> Iterator[Contribution]:
-    """Yield what comes of running more often, and of each operation."""
+    """Yield the effect of running more often, and that of each operation."""
     was, now = _in_words(old.operations), _in_words(new.operations)
     plain = _parts(was, now, 0, 1)
     often, scaled = 0, plain
@@ -88,7 +88,7 @@ def _size(parts: Iterable[_Part]) -> int:
 
 
 def _in_words(operations: Operations) -> Operations:
-    """Return operations by what they are called; some kinds have one name."""
+    """Return operations by their names in words, which several kinds may share."""
     found: dict[str, tuple[int, int]] = {}
     for name, (count, cclk) in operations.items():
         had_count, had_cclk = found.get(words(name), (0, 0))
@@ -97,7 +97,7 @@ def _in_words(operations: Operations) -> Operations:
 
 
 def _parts(was: Operations, now: Operations, more: int, times: int) -> list[_Part]:
-    """Return what each operation contributes beside that the line ran `more` than `times` times."""
+    """Return what each operation contributes apart from the effect of running `more` than `times` times."""
     parts = []
     for name in dict.fromkeys([*was, *now]):
         (old_count, old_cclk), (count, cclk) = was.get(name, (0, 0)), now.get(name, (0, 0))
@@ -107,7 +107,7 @@ def _parts(was: Operations, now: Operations, more: int, times: int) -> list[_Par
 
 
 def _told(part: _Part, was: Operations, now: Operations, times: int) -> str:
-    """Say of which operations there are more or less, for each time that the line ran where that is a whole number."""
+    """Say which operations have become more or fewer; per execution of the line, if that is a whole number."""
     name, (count, cclk), (old_count, old_cclk) = (
         part.name,
         now.get(part.name, (0, 0)),

@@ -15,7 +15,7 @@ from bfsim.report.wording.units import others_row
 
 INDENT = "&emsp;"
 TEXT, NUMBER = "---", "---:"
-"""Columns of words, and of numbers."""
+"""Alignment of columns of words, and of numbers."""
 
 
 def diff_markdown(difference: Difference, top: int) -> str:
@@ -47,7 +47,7 @@ def contribution_rows(difference: Difference, top: int) -> Iterator[str]:
 
 
 def _changes(title: str, changes: Sequence[Change], most: int | None = None) -> Iterator[str]:
-    """Yield what changed as a table, if there is anything: the first ones, and how many others."""
+    """Yield the changes as a table, if there are any: the first ones, and how many others."""
     if changes:
         rows = [(each.what, listed(each.before), listed(each.after)) for each in changes[:most]]
         others = len(changes) - len(rows)

@@ -1,4 +1,4 @@
-"""Which owner of cycles, and which stage, of one run is which of another run, also where it was renamed."""
+"""Which owners of cycles, and which stages, of two runs correspond, even if they were renamed."""
 
 from __future__ import annotations
 
@@ -13,14 +13,17 @@ from bfsim.report.diff.side import Owner, Side, Source
 SMALL = "what is too small to be kept"
 """All owners of a stage, or lines of a kernel, that a baseline does not have."""
 ALIKE = 0.5
-"""Kernels of two names are one if more of their lines are the same, and stages if more of their kernels are."""
+"""Kernels of two names are one if a larger share of their lines is the same, and stages if that of their kernels is."""
 
 Pair = tuple[Owner | None, Owner | None]
 Renamed = TypeVar("Renamed", bound=Hashable)
 
 
 def with_stages_alike(before: Side, after: Side) -> tuple[Side, Side]:
-    """Return two sides that have stages of the same names, `before → after` where one was renamed, and no owners that one did not keep."""
+    """Return two sides with stages of the same names, and without owners that one side did not keep.
+
+    A renamed stage is called `before → after`.
+    """
     names = _renamed_stages(_kept_alike(before, after), _kept_alike(after, before))
     both = {old: f"{old} → {new}" for old, new in names.items()}
     before = before.with_stages(both)
@@ -29,7 +32,7 @@ def with_stages_alike(before: Side, after: Side) -> tuple[Side, Side]:
 
 
 def _renamed_stages(before: Side, after: Side) -> dict[str, str]:
-    """Return the stages that were renamed, those most alike first: more than half of their kernels have the same names."""
+    """Return the stages that were renamed: those with more than half of their kernels' names in common, the most first."""
     olds, news = _kernels_by_stage(before), _kernels_by_stage(after)
     gone, come = [each for each in olds if each not in news], [each for each in news if each not in olds]
     return _most_alike(
@@ -40,7 +43,7 @@ def _renamed_stages(before: Side, after: Side) -> dict[str, str]:
 
 
 def _kernels_by_stage(side: Side) -> Mapping[str, set[str]]:
-    """Return the names of the kernels of each stage; it may have none."""
+    """Return the names of each stage's kernels; there may be none."""
     found: dict[str, set[str]] = {}
     for owner in side.owners:
         found.setdefault(owner.stage, set()).update([owner.name] if owner.symbol else [])
@@ -48,7 +51,7 @@ def _kernels_by_stage(side: Side) -> Mapping[str, set[str]]:
 
 
 def _kept_alike(side: Side, other: Side) -> Side:
-    """Return a side without owners that the other one did not keep because they are small."""
+    """Return a side without owners that the other side did not keep because they are small."""
     if not other.least_cclk:
         return side
     owners = Counter[Owner]()
@@ -60,7 +63,7 @@ def _kept_alike(side: Side, other: Side) -> Side:
 
 
 def pairs_of(before: Side, after: Side) -> Iterator[Pair]:
-    """Pair the owners of two runs: those that are the same, and those that went and came under another symbol or name."""
+    """Pair the owners of two runs: those that are the same, and those that now have another symbol or name."""
     known = before.owners.keys() & after.owners.keys()
     gone = [each for each in before.owners if each not in known]
     come = [each for each in after.owners if each not in known]
@@ -73,7 +76,7 @@ def pairs_of(before: Side, after: Side) -> Iterator[Pair]:
 
 
 def _same_name(gone: Sequence[Owner], come: Sequence[Owner]) -> dict[Owner, Owner]:
-    """Return what is one alone of its name in each run: the symbol of a kernel has the name of its file, which may be another one."""
+    """Return owners with unique names in each run: a kernel's symbol contains its file's name, which may change."""
     olds, news = _by_name(gone), _by_name(come)
     return {
         each[0]: news[name][0]
@@ -88,7 +91,7 @@ def _same_text(
     olds: Mapping[Owner, Source],
     news: Mapping[Owner, Source],
 ) -> dict[Owner, Owner]:
-    """Return the kernels of a stage that were renamed, those most alike first: more than half of their lines are the same."""
+    """Return the renamed kernels of a stage: those with more than half of their lines in common, the most first."""
     return _most_alike(
         (_likeness(olds[old], news[new]), old, new)
         for old, new in product(gone, come)
@@ -97,7 +100,7 @@ def _same_text(
 
 
 def _most_alike(pairs: Iterable[tuple[float, Renamed, Renamed]]) -> dict[Renamed, Renamed]:
-    """Return which is which, of pairs with how alike they are: each once, the most alike first; those in doubt by their order."""
+    """Return which names correspond, from pairs with their likeness: each once, the most alike first, then in order."""
     same: dict[Renamed, Renamed] = {}
     for likeness, old, new in sorted(pairs, key=lambda each: -each[0]):
         if likeness > ALIKE and old not in same and new not in same.values():

@@ -1,4 +1,4 @@
-"""A run, or a result that was read back, as a side of a comparison."""
+"""One side of a comparison, from a run or from a result that was read back."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CostedLine = tuple[str, str, int]
 
 
 def result_side(result: Result, chosen: Collection[int]) -> Side:
-    """Return a run in those of its frames that are chosen by their index; lines are counted over a whole run alone."""
+    """Return a run as a side, with the frames whose indices are chosen; lines are counted over a whole run only."""
     run = result.run
     frames = [each for each in run.frames if each.index in chosen]
     places = [place for place, each in enumerate(run.frames) if each.index in chosen]
@@ -50,7 +50,7 @@ def result_side(result: Result, chosen: Collection[int]) -> Side:
 
 
 def identity_words(identity: Identity) -> dict[str, str]:
-    """Return what a result depends on, by what people call it."""
+    """Return what a result depends on, by names for people."""
     values = {field.name: getattr(identity, field.name) for field in fields(Identity)}
     return {
         name.replace("_digest", ": content").replace("_", " "): SEPARATOR.join(value)
@@ -74,7 +74,7 @@ def _sources(run: RunRecord) -> Mapping[Owner, Source]:
 
 
 def _stalls(run: RunRecord) -> Mapping[CostedLine, Counter[Stall]]:
-    """Return what lines waited for that is in a buffer."""
+    """Return the waits of lines for buffers."""
     found: defaultdict[CostedLine, Counter[Stall]] = defaultdict(Counter)
     for each in run.accesses:
         for reason, cclk in each.stall_cclk.items():
@@ -94,7 +94,7 @@ def _source(
 
 
 def _line(line: LineProfile, of_buffers: Counter[Stall]) -> Line:
-    """Return a line with what it waited for. A wait for a buffer is that alone, of all for its reason."""
+    """Return a line with its waits. A wait for a buffer is listed under the buffer, and not under its reason alone."""
     stalls = Counter(of_buffers)
     for reason, cclk in line.cost.stall_cclk.items():
         stalls[Stall(reason.value, "")] += cclk
@@ -110,7 +110,7 @@ def _line(line: LineProfile, of_buffers: Counter[Stall]) -> Line:
 
 
 def _operations(line: LineProfile) -> Iterator[tuple[str, tuple[int, int]]]:
-    """Yield the operations of a line; those that are not told apart are one."""
+    """Yield the operations of a line; those without a kind of their own count as one."""
     for name, count in line.operations.items():
         yield name, (count, line.operations_cclk[name])
     left_cclk = line.cost.issue_cclk - line.operations_cclk.total()

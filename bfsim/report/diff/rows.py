@@ -1,4 +1,4 @@
-"""Which contributions of a difference have a row: the largest, what they are parts of, and all others as what they sum to."""
+"""The contributions that have a row: the largest, those that contain them, and the sum of all others."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from bfsim.report.wording.units import others_row
 
 
 def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
-    """Return the `top` largest contributions that have no parts, and what they are parts of, with their depths.
+    """Return the `top` largest contributions without parts, and those that contain them, with their depths.
 
-    Before all others comes the one that is told in words, for it is the largest part of the largest. Of stages, kernels and lines those
-    that are not shown are one row, so that what is shown sums to what it is part of. Waits that follow from the rest are the last row.
+    The first is the contribution that the sentences name: the largest part of the largest. Stages, kernels and lines
+    that are not shown share a row, so that parts sum to their whole. Waits that follow from the rest are the last row.
     """
     rows = list(walk(each for each in difference.stages if each.kind is not ContributionKind.FOLLOWS))
     leaves = [each for _, each in rows if not each.parts and each.cclk]
@@ -29,7 +29,7 @@ def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
 def _chosen(
     parts: Sequence[Contribution], wanted: AbstractSet[int], depth: int
 ) -> Iterator[tuple[int, Contribution]]:
-    """Yield the contributions that are wanted, by their ids, or have parts that are; then the others, together."""
+    """Yield the contributions whose ids are wanted, or that contain such ones; then the others, as one."""
     found, others = _apart(parts, lambda each: not wanted.isdisjoint(_ids(each)))
     for each in found:
         yield depth, each
@@ -41,7 +41,7 @@ def _chosen(
 def _apart(
     parts: Iterable[Contribution], is_so: Callable[[Contribution], bool]
 ) -> tuple[list[Contribution], list[Contribution]]:
-    """Return the contributions that are so, and those that are not."""
+    """Return the contributions for which `is_so` holds, and the others."""
     found: tuple[list[Contribution], list[Contribution]] = [], []
     for each in parts:
         found[not is_so(each)].append(each)

@@ -1,4 +1,4 @@
-"""What of two runs is compared, and what only one of them saw, in sentences."""
+"""Which parts of two runs are compared, and what only one of them saw, in sentences."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from bfsim.report.diff.difference import Difference
 
 
 def scope(difference: Difference) -> Iterator[str]:
-    """Yield what is to be known of frames that are not the same."""
+    """Yield what to know if the frames of the two runs are not the same."""
     if difference.measured_frames != len(difference.frames):
         yield (
             f"The first side is of {difference.measured_frames} frames, the second of {len(difference.frames)}: cycles of "
@@ -22,7 +22,7 @@ def scope(difference: Difference) -> Iterator[str]:
 
 
 def frames_compared(difference: Difference) -> str:
-    """Return how many frames are compared."""
+    """Return the number of frames that are compared, in words."""
     count = len(difference.frames)
     return f"{count} frame{'s' if count > 1 else ''}"
 

@@ -1,4 +1,4 @@
-"""The difference of two runs in a sentence or two: what it is, and what makes most of it."""
+"""The difference of two runs in a sentence or two: how large it is, and what causes most of it."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from bfsim.report.diff.pairs import SMALL
 from bfsim.report.wording.units import counted, mhz
 
 MS_RESOLUTION = 1e-6
-"""To which a baseline has the time of a frame."""
+"""The resolution in which a baseline has the time of a frame, in ms."""
 
 
 def verdict(difference: Difference) -> str:
-    """Say by how much a frame takes longer or shorter."""
+    """Say by how much longer or shorter a frame takes."""
     before, after = difference.before_ms, difference.after_ms
     is_other = any(each.cclk for _, each in walk(difference.stages)) or difference.changed_frames
     if not is_other and abs(after - before) <= MS_RESOLUTION:
         return f"No difference: {after:.2f} ms a frame, every cycle of every frame as before."
-    change = round(100 * (after / before - 1), 2) + 0.0  # none is no -0.00
+    change = round(100 * (after / before - 1), 2) + 0.0  # avoids -0.00
     word = "slower" if change > 0 else "faster" if change < 0 else "as fast as before"
     return (
         f"{before:.2f} → {after:.2f} ms a frame ({change:+.2f} %, {word}): {1000 / before:.2f} → "
@@ -28,7 +28,7 @@ def verdict(difference: Difference) -> str:
 
 
 def why(difference: Difference) -> Iterator[str]:
-    """Yield what there is to say of the reason: how time and work are counted, then what changed most."""
+    """Yield the reasons: first what affects the counts of time and work, then what changed most."""
     yield from filter(None, (clock(difference), code(difference), work(difference), reason(difference)))
 
 
@@ -43,7 +43,7 @@ def clock(difference: Difference) -> str:
 
 
 def code(difference: Difference) -> str:
-    """Say that kernels ran as code of another origin, for one and the same compiler; nothing where they did not."""
+    """Say that kernels ran as code of another origin, though for the same compiler; "" if they did not."""
     changes = {each.what: each for each in difference.configuration}
     change = changes.get("code")
     is_asked_for = any(each.startswith("compiler") for each in changes)
@@ -56,7 +56,7 @@ def code(difference: Difference) -> str:
 
 
 def work(difference: Difference) -> str:
-    """Say what the cores do beside waiting for each other and for the cameras; nothing where that is as before."""
+    """Say how the cores' work, without waits for each other and for the cameras, has changed; "" if it has not."""
     waits = next((each for each in difference.stages if each.kind is ContributionKind.FOLLOWS), None)
     if waits is None:
         return ""
@@ -77,7 +77,7 @@ def work(difference: Difference) -> str:
 
 
 def reason(difference: Difference) -> str:
-    """Say where the largest contribution is, from the stage down to the cause; nothing where there is no difference."""
+    """Say where the largest contribution is, from the stage down to the cause; "" if there is no difference."""
     parts = [*largest(difference.stages)]
     places = [each for each in parts if each.kind is not ContributionKind.CAUSE]
     if not places:
@@ -96,7 +96,7 @@ def _named(contribution: Contribution) -> str:
 
 
 def largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
-    """Yield the largest contribution that follows from no other and has a name, and in it the largest again."""
+    """Yield the largest contribution with a name that follows from no other, then the largest in it, and so on."""
     own = [
         each
         for each in parts

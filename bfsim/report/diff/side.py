@@ -1,4 +1,4 @@
-"""One side of a comparison: what is compared of a run, whether it was just made, read back, or kept in a baseline."""
+"""One side of a comparison: the compared parts of a run that was just made, read back, or kept in a baseline."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from fractions import Fraction
 from typing import NamedTuple, TypeVar
 
 SEPARATOR = "; "
-"""Between files, or numbers, of a configuration."""
+"""Separates files, or numbers, of a configuration."""
 FRAMES = "frames"
-"""What a configuration calls the number of frames that ran. The digest of a recording is of these alone."""
+"""The name of the number of frames in a configuration. The digest of a recording covers only these."""
 
 
 class Owner(NamedTuple):
-    """Whose cycles they are, in a stage: a kernel, by its name and its symbol, or something without a symbol, such as a ring."""
+    """An owner of cycles in a stage: a kernel, by its name and symbol, or something without a symbol, such as a ring."""
 
     stage: str
     name: str
@@ -23,7 +23,7 @@ class Owner(NamedTuple):
 
 
 class Stall(NamedTuple):
-    """What a line waits for: the reason, and the buffer that it waits for, if it is for one."""
+    """What a line waits for: the reason, and the buffer, if there is one."""
 
     reason: str
     buffer: str
@@ -64,7 +64,7 @@ class Line:
         return self.issue_cclk + sum(self.stalls.values())
 
     def scaled(self, share: Fraction) -> Line:
-        """Return the same with a share of every number."""
+        """Return the line with a share of every number."""
         operations = {
             name: (round(count * share), round(cclk * share))
             for name, (count, cclk) in self.operations.items()
@@ -85,18 +85,19 @@ class Source:
     lines: tuple[Line, ...]
 
     def scaled(self, share: Fraction) -> Source:
-        """Return the same with a share of every number."""
+        """Return the source with a share of every number."""
         return replace(self, lines=tuple(each.scaled(share) for each in self.lines))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Side:
-    """What is compared of a run, in cycles of both cores over all of its `frames`, which are named by their index.
+    """The compared parts of a run, in cycles of both cores over all of its `frames`, which are given by their index.
 
-    `owners` are without the time in which a core only waited for the other one or for the cameras: that is in `waits`, by
-    stage. `sources` are of the owners that are kernels, none where lines cannot be compared. `memories` say where buffers lie.
-    `frame_cclk` are of the core that takes longer, by the frame's index. `results` are the published numbers, frame by frame or
-    in total; `seen` are the names of what was seen, by the frame's index. What takes less than `least_cclk` was not kept.
+    `owners` do not include the time in which a core only waited for the other one or for the cameras: that is in
+    `waits`, by stage. `sources` are those of kernels; there are none if lines cannot be compared. `memories` say where
+    buffers lie. `frame_cclk` are the cycles of the slower core, by the frame's index. `results` are the published
+    numbers, frame by frame or in total; `seen` are the names of what was seen, by the frame's index. Owners below
+    `least_cclk` were not kept.
     """
 
     configuration: Mapping[str, str]
@@ -113,11 +114,11 @@ class Side:
     least_cclk: int = 0
 
     def with_owners(self, owners: Mapping[Owner, int]) -> Side:
-        """Return the same with other owners."""
+        """Return the side with other owners."""
         return replace(self, owners=owners)
 
     def with_stages(self, names: Mapping[str, str]) -> Side:
-        """Return the same with other names of some stages, by those that they have."""
+        """Return the side with new names for some stages, by their present ones."""
 
         def renamed(owner: Owner) -> Owner:
             return owner._replace(stage=names.get(owner.stage, owner.stage))
@@ -130,11 +131,11 @@ class Side:
         )
 
     def without_lines(self) -> Side:
-        """Return the same without sources."""
+        """Return the side without sources."""
         return replace(self, sources={})
 
     def scaled(self, share: Fraction) -> Side:
-        """Return the same with a share of every number that is of all frames."""
+        """Return the side with a share of every number that counts all frames."""
         return replace(
             self,
             owners=_times(self.owners, share),

@@ -17,11 +17,11 @@ from bfsim.report.tables.table import new_table, stacked
 from bfsim.report.wording.units import others_row
 
 RESULTS_LISTED = 10
-"""Published numbers that changed which are listed."""
+"""The number of changed results that are listed."""
 
 
 def diff_report(difference: Difference, top: int) -> RenderableType:
-    """Return the difference: what it is, what was compared, the `top` contributions, frames, results and what was seen."""
+    """Return the difference: its size, what was compared, the `top` contributions, frames, results and what was seen."""
     return stacked(
         Text("\n".join([verdict(difference), *why(difference), *scope(difference)])),
         *_change_table("What differs in the configuration", "What", [*in_short(difference.configuration)]),
@@ -66,7 +66,7 @@ def contribution_table(difference: Difference, top: int) -> Iterator[Table]:
         table.add_row("  " * depth + labelled(each), *cells(each), style=bold)
     table.add_section()
     table.add_row(*all_row(difference), style="bold")
-    # where room is short the source text gives way, never a number
+    # in a narrow terminal the source text is cut, never a number
     table.expand, table.columns[0].ratio = True, 1
     yield table
 

@@ -1,4 +1,4 @@
-"""Frames that were seen, each with the heat of its pictures: frame by frame, and no more than a frame or two in memory."""
+"""Frames that were seen, each with the heat of its pictures, with only a frame or two in memory."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from bfsim.spans import Span
 from bfsim.trace import REST, BudgetRow, Identity
 
 CORES = {camera: f"core {core}" for core, camera in CAMERAS.items()}
-"""Who looks at the pictures of each camera."""
+"""The core that looks at the pictures of each camera."""
 
 
 def stages_of(rows: Sequence[BudgetRow], name: str | None = None) -> tuple[str, ...]:
-    """Return the stages that row `name` of a budget holds, its own first; without a name all, and what is in no stage.
+    """Return the stages of row `name` of a budget, its own first; without a name, all of them, and time in no stage.
 
-    Raises KeyError where there is no such row.
+    Raises KeyError if there is no such row.
     """
     if name is None:
         return (*(each.stage for each in rows), REST)
@@ -30,7 +30,8 @@ def stages_of(rows: Sequence[BudgetRow], name: str | None = None) -> tuple[str, 
 class HeatedFrames:
     """Takes frames that were seen and the timeline, and passes each frame on with the heat of `stages` in it.
 
-    A frame waits for the timeline to reach its end on every core that looked at it; is it not wanted then, it is dropped.
+    A frame is held back until the timeline has reached its end on every core that looked at it; if it is not wanted by
+    then, it is dropped.
     """
 
     def __init__(
@@ -47,7 +48,7 @@ class HeatedFrames:
         self._cclk_hz = 1.0
 
     def begin(self, identity: Identity, _frames: int) -> None:
-        """Take note of what will run."""
+        """Prepare for what will run."""
         self._cclk_hz = identity.cclk_hz
 
     def add(self, frame: SeenFrame) -> None:
@@ -56,7 +57,7 @@ class HeatedFrames:
         self._go_on()
 
     def add_spans(self, spans: Iterable[Span]) -> None:
-        """Take what happened next."""
+        """Take the next spans."""
         self._heats.add(spans)
         self._go_on()
 

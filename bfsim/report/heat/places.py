@@ -1,4 +1,4 @@
-"""The cycles of a frame by place, and what they are in a picture: a fold over the timeline."""
+"""The cycles of a frame by place, summed up from the timeline, and their heat in a picture."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from bfsim.spans import Place, Span, SpanKind
 from bfsim.spans.columns import SpanColumns, Whats, columns_of
 
 Cycles = Mapping[tuple[str, Place | None], int]
-"""The cycles of a core in a frame by stage and place; None is no place."""
+"""The cycles of a core in a frame by stage and place; None stands for no place."""
 
 _FILLING = (SpanKind.CALL, SpanKind.WORK, SpanKind.STALL, SpanKind.IDLE)
 
 
 class Heats:
-    """The cycles by place of each frame that a core has finished. What is of no frame is left out."""
+    """The cycles by place of each frame that a core has finished. Cycles outside of frames are left out."""
 
     def __init__(self) -> None:
         self._open: dict[str, Counter[tuple[str, Place | None]]] = defaultdict(Counter)
@@ -26,7 +26,7 @@ class Heats:
         self._whats = Whats()
 
     def add(self, spans: Iterable[Span]) -> None:
-        """Take what happened next."""
+        """Take the next spans."""
         columns = columns_of(spans, self._whats)
         columns = columns.rows(columns.are(*_FILLING, SpanKind.FRAME))
         (frames,) = columns.are(SpanKind.FRAME).nonzero()
@@ -39,7 +39,7 @@ class Heats:
                 self._done[int(columns.value[row]), where] = self._open.pop(where, Counter())
 
     def _put(self, columns: SpanColumns, begin: int, end: int) -> None:
-        """Add up the rows from one to another, in the order in which their places come."""
+        """Add up the rows from `begin` to `end`, in the order in which their places come."""
         stage, count = columns.whats.in_stages()[columns.what[begin:end]], len(columns.places)
         both = stage * count + columns.place[begin:end]
         found, firsts, groups = np.unique(both, return_index=True, return_inverse=True)
@@ -64,9 +64,9 @@ class Heats:
 
 
 def heat_of(cycles: Cycles, stages: Sequence[str], width_px: int, height_px: int, cclk_hz: float) -> SeenHeat:
-    """Return the heat of some stages in a picture: the time of a place goes evenly to its pixels.
+    """Return the heat of some stages in a picture: the time of a place is spread evenly over its pixels.
 
-    What is beyond the picture is elsewhere.
+    Places beyond the picture count as elsewhere.
     """
     us_of_cclk = 1e6 / cclk_hz
     shares = {stage: np.zeros((height_px, width_px)) for stage in stages}
@@ -84,7 +84,7 @@ def heat_of(cycles: Cycles, stages: Sequence[str], width_px: int, height_px: int
 
 
 def _pixels_of(place: Place, width_px: int, height_px: int) -> tuple[slice | list[int], slice | list[int]]:
-    """Return rows and columns of a place as numpy takes them, without those beyond the picture."""
+    """Return the rows and columns of a place as numpy indices, without those beyond the picture."""
     if isinstance(place.rows, range):
         return _slice_of(place.rows), _columns_within(place.columns, width_px)
     assert isinstance(place.columns, tuple)
@@ -101,7 +101,7 @@ def _slice_of(rows: range) -> slice:
 
 
 def _columns_within(columns: range | tuple[int, ...] | None, width_px: int) -> slice | list[int]:
-    """Return the columns of a place as numpy takes them, without those beyond the picture."""
+    """Return the columns of a place as numpy indices, without those beyond the picture."""
     if columns is None:
         return slice(0, width_px)
     if isinstance(columns, range):

@@ -1,4 +1,4 @@
-"""What takes long and nobody waits for: a thread of its own does it, one thing after the other, while a run goes on."""
+"""A thread for slow work that nobody waits for: it does one thing after the other while a run goes on."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Self
 
 MOST = 3
-"""Things that wait for their turn: what they are made of is kept in memory."""
+"""The most things that wait their turn, since their inputs stay in memory."""
 
 
 class Behind:
-    """A context manager; what fails there fails for whoever asks for more, or at `finish`."""
+    """A context manager; an error in the thread is raised at the next request, or at `finish`."""
 
     def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1)
@@ -25,7 +25,7 @@ class Behind:
         self._thread.shutdown(cancel_futures=True)
 
     def do(self, what: Callable[[], None]) -> None:
-        """Have `what` done behind all that was asked for before; wait where that is too much."""
+        """Have `what` done after all earlier requests; wait if there are too many."""
         self._asked.append(self._thread.submit(what))
         while self._asked[0].done() or len(self._asked) > MOST:
             self._asked.popleft().result()

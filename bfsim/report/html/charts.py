@@ -1,4 +1,4 @@
-"""The charts of a page as Vega-Lite: frames one after the other, and the cycle stack of each stage."""
+"""The charts of a page in Vega-Lite: frame after frame, and the cycle stack of each stage."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CHOSEN = "chosen"
 """The parameter of a chart that holds the index of the chosen frame."""
 
 MOST_BARS = 300
-"""So many bars can be told apart: of more frames, a bar stands for the worst of some that follow each other."""
+"""The most bars that can be told apart: with more frames, a bar stands for the worst of several consecutive ones."""
 
 BARS = "bars"
 """The name of the data of a Gantt chart."""
@@ -29,7 +29,7 @@ _BAR_HEIGHT = 26  # px
 _TRACK_HEIGHT = 20  # px
 _FRAMES_HEIGHT = 150  # px
 _FONT = "system-ui, sans-serif"  # of the page: Vega measures words before it writes them
-_INK, _GRID = "var(--ink)", "var(--line)"  # the page has one for light and one for dark
+_INK, _GRID = "var(--ink)", "var(--line)"  # the page has a light and a dark value for each
 
 
 def frames_a_bar(run: RunRecord) -> int:
@@ -38,7 +38,7 @@ def frames_a_bar(run: RunRecord) -> int:
 
 
 def time_series(run: RunRecord, number: int, target: Target | None) -> Spec:
-    """Return what the core at `number` used of each frame, stage by stage, beside a target."""
+    """Return a chart of what the core at `number` used of each frame, stage by stage, beside a target."""
     colours = row_colours(run)
     most_cclk = max(map(most_used_cclk, run.frames))
     top_ms = 1.05 * max(milliseconds(most_cclk, run.identity.cclk_hz), target.frame_ms if target else 0)
@@ -59,7 +59,7 @@ def time_series(run: RunRecord, number: int, target: Target | None) -> Spec:
 
 
 def _used_ms(run: RunRecord, number: int) -> Iterator[dict[str, object]]:
-    """Yield the ms of each stage without idling; of frames that share a bar those of the worst."""
+    """Yield the ms of each stage without idling; of frames that share a bar, those of the worst."""
     rows, step = budget_rows(run), frames_a_bar(run)
     for start in range(0, len(run.frames), step):
         frame = max(run.frames[start : start + step], key=lambda each: used_cclk(each.cores[number]))
@@ -81,7 +81,7 @@ def _rule(target: Target) -> alt.Chart:
 
 
 def cycle_stack(run: RunRecord, budget: Budget, core: CoreBudget) -> Spec:
-    """Return of what the mean frame of a core consists: for each stage work, stalls by reason, and idling, in ms."""
+    """Return a chart of a core's mean frame: for each stage work, stalls by reason, and idling, in ms."""
     parts = [dict(_parts(row)) for row in core.rows if row.within is None]
     names = [row.name for row in core.rows if row.within is None]
     used = [name for name in part_colours() if any(part.get(name) for part in parts)]
@@ -108,7 +108,7 @@ def cycle_stack(run: RunRecord, budget: Budget, core: CoreBudget) -> Spec:
 
 
 def gantt(run: RunRecord, tracks: list[str]) -> Spec:
-    """Return what each core and device did in a frame; its bars, `BARS`, are filled in when a frame is chosen."""
+    """Return a chart of each core and device in a frame; its bars, `BARS`, are filled in when a frame is chosen."""
     stages = stage_colours(row.stage for row in budget_rows(run))
     colours = {**stages, **part_colours(), **MEANINGS}
     bars = (
@@ -130,14 +130,14 @@ def gantt(run: RunRecord, tracks: list[str]) -> Spec:
 
 
 def row_colours(run: RunRecord) -> dict[str, str]:
-    """Return the colours of the rows of the budget that are no part of another: the same as in a Gantt chart."""
+    """Return the colours of the budget's rows that are not part of another: the same as in a Gantt chart."""
     rows = budget_rows(run)
     colours = stage_colours(row.stage for row in rows)
     return {row.stage: colours[row.stage] for row in rows if row.within is None}
 
 
 def part_colours() -> dict[str, str]:
-    """Return the colours of what cycles can be, in the order in which they are stacked."""
+    """Return the colours of the kinds of cycles, in the order in which they are stacked."""
     return {"work": ISSUE, **{reason.value: colour for reason, colour in STALLS.items()}, "idle": IDLE}
 
 
@@ -153,7 +153,7 @@ def _scale(colours: dict[str, str], names: list[str] | None = None) -> alt.Scale
 
 
 def _spec(chart: alt.Chart | alt.LayerChart, height: int) -> Spec:
-    """Return a chart as wide as the page leaves room for, in the page's colours."""
+    """Return a chart in the width that the page leaves for it, in the page's colours."""
     made: Spec = (
         chart.properties(
             width="container",

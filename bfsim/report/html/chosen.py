@@ -1,4 +1,4 @@
-"""Which frames of a long run are drawn for its page, chosen as they end: of thousands, the page tells a hundred in full."""
+"""The frames of a long run that are drawn for its page, chosen as they end: a page shows at most a hundred."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from bfsim.spans.columns import Whats, columns_of
 from bfsim.trace import Identity
 
 _ENDING = 4
-"""Frames that a core may have ended, and another one not yet."""
+"""The most frames that one core may have ended and another not yet."""
 
 
 class Chosen:
-    """The frames evenly spaced over a run, and the worst so far: some of these are drawn for nothing."""
+    """Frames that are evenly spaced over a run, and the worst so far; some of these are drawn in vain."""
 
     def __init__(self) -> None:
         self.frames = 1
-        self._places: dict[int, int] = {}  # in the run, by index in the recording
-        self._used_cclk: dict[int, int] = {}  # of the worst, and of those that are ending, by index
+        self._places: dict[int, int] = {}  # position in the run, by index in the recording
+        self._used_cclk: dict[int, int] = {}  # for the worst frames and those about to end, by index
         self._idle_cclk: Counter[str] = Counter()
         self._whats = Whats()
 
     def begin(self, _identity: Identity, frames: int) -> None:
-        """Take note of how many frames there will be, unless some are missed."""
+        """Prepare for the expected number of frames; some may be missed."""
         self.frames = frames
 
     def add(self, spans: Iterable[Span]) -> None:
-        """Take what happened next."""
+        """Take the next spans."""
         columns = columns_of(spans, self._whats)
         for each in columns.rows(columns.are(SpanKind.IDLE, SpanKind.FRAME)).spans():
             if each.kind is SpanKind.IDLE:
@@ -39,7 +39,10 @@ class Chosen:
                 self._end(each.value, each.elapsed_cclk - self._idle_cclk.pop(each.where, 0))
 
     def has(self, index: int) -> bool:
-        """Whether a frame that all cores have ended may be told in full: asked of the next one first, the worst may be others."""
+        """Whether to draw a frame that all cores have ended.
+
+        Ask before the next one ends, as that can change which are the worst.
+        """
         return is_spaced(self._places[index], self.frames) or index in self._worst()
 
     def _end(self, index: int, used_cclk: int) -> None:

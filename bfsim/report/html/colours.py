@@ -1,4 +1,4 @@
-"""Colours of a page that mean something, seen well on white and on black. All of them are ours."""
+"""Meaningful colours of a page, clear on both white and black. We chose all of them."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ STALLS = {
     StallReason.SEMAPHORE: "#4fa885",
     StallReason.INTERLOCK: "#8fbce6",
 }
-"""SDRAM is red, L1 and L2 violet, what caches and code wait for pink, DMA yellow, the other core green."""
+"""SDRAM is red, L1 and L2 violet, waits for caches and code pink, DMA yellow, the other core green."""
 
 MEANINGS = {"work": ISSUE, "stall": "#d0503a", "idle": IDLE, "busy": "#c9a227"}
-"""What a bar of a core, or of a device, means."""
+"""The meanings of a bar of a core, or of a device."""
 
 
 def stage_colours(names: Iterable[str]) -> dict[str, str]:
-    """Return a colour for each stage: the same one again only after all have been used."""
+    """Return a colour for each stage; colours repeat only after all have been used."""
     stages = [name for name in names if name != REST]
     return {
         **{name: STAGES[number % len(STAGES)] for number, name in enumerate(stages)},

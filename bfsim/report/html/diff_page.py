@@ -1,4 +1,4 @@
-"""The page of a difference: from the stage to the cause, and the frames that changed most with their pictures."""
+"""The page of a difference: from the stage to the cause, and the most changed frames with their pictures."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from bfsim.report.html.rendering import rendered
 from bfsim.report.html.undrawn import UndrawnFrames
 
 FRAMES = 5
-"""So many of the frames that changed most are shown."""
+"""The number of the most changed frames that are shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class PagedSide:
-    """What was compared: its name, and its frames if it was run for that. What was read from a file has none."""
+    """One side of the comparison: its name, and its frames if it was run for the page. A side from a file has none."""
 
     name: str
     frames: UndrawnFrames | None
 
     def picture_uri(self, index: int) -> str:
-        """Return what was seen in a frame as an address that holds the picture; nothing where there is none."""
+        """Return the picture of what was seen in a frame as a data URI; "" if there is none."""
         return self.frames.picture_uri(index) if self.frames else ""
 
 
 @dataclass(frozen=True, slots=True)
 class DiffPage:
-    """All that a page shows of two runs beside each other."""
+    """Everything that a page shows of the comparison of two runs."""
 
     difference: Difference
     before: PagedSide

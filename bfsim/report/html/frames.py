@@ -1,4 +1,4 @@
-"""Which frames of a run a page tells in full, and what it tells of each."""
+"""Which frames of a run a page shows in full, and what it shows of each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.report.budget.times import latency_cclk, milliseconds
 from bfsim.trace import FrameRecord, RunRecord
 
 MOST = 100
-"""So many frames are told in full: of more, the worst, first and last, and others evenly spaced."""
+"""The most frames that are shown in full: the worst, the first and the last, and others evenly spaced."""
 WORST = 5
 
 
@@ -26,7 +26,7 @@ class FrameCell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameRow:
-    """A row of the budget in one frame, a cell a core."""
+    """A row of the budget in one frame, one cell per core."""
 
     name: str
     is_part: bool
@@ -45,17 +45,17 @@ class FrameFacts:
 
     @property
     def most_ms(self) -> float:
-        """What the core used that used most."""
+        """What the core with the highest use took."""
         return max(self.used_ms.values())
 
 
 def worst_of(run: RunRecord, count: int = WORST) -> tuple[FrameRecord, ...]:
-    """Return the frames that used most time of a core, the worst first."""
+    """Return the frames that took most time on a core, the worst first."""
     return tuple(sorted(run.frames, key=lambda frame: -most_used_cclk(frame))[:count])
 
 
 def told_of(run: RunRecord, frames: int, most: int = MOST) -> tuple[FrameRecord, ...]:
-    """Return the frames that are told in full, in their order, of a run that was to have so many `frames`."""
+    """Return the frames to show in full, in order, for a run that was to have `frames` frames."""
     worst = {each.index for each in worst_of(run)}
     return tuple(
         frame
@@ -65,7 +65,7 @@ def told_of(run: RunRecord, frames: int, most: int = MOST) -> tuple[FrameRecord,
 
 
 def is_spaced(place: int, frames: int, most: int = MOST) -> bool:
-    """Whether a frame is told in full wherever it is not among the worst: the first and the last one, and others evenly spaced."""
+    """Whether a frame is shown in full even if it is not among the worst: the first, the last, and evenly spaced ones."""
     if frames <= most or place in (0, frames - 1):
         return True
     room = most - WORST - 2
@@ -75,7 +75,7 @@ def is_spaced(place: int, frames: int, most: int = MOST) -> bool:
 def facts_of(
     run: RunRecord, budget: Budget, frames: tuple[FrameRecord, ...], target: Target | None
 ) -> Iterator[FrameFacts]:
-    """Yield what there is to tell of each of the `frames` of a run."""
+    """Yield the facts of each of the `frames` of a run."""
     hz = run.identity.cclk_hz
     for frame in frames:
         used_ms = {core.core: milliseconds(used_cclk(core), hz) for core in frame.cores}

@@ -18,7 +18,7 @@ _LEFT_OUT = (SpanKind.FRAME, SpanKind.LEVEL)
 
 @dataclass(slots=True)
 class _Window:
-    """The time of a frame on all cores that told its end, in cycles."""
+    """The time of a frame on all cores that have reported its end, in cycles."""
 
     begin_cclk: int
     end_cclk: int
@@ -28,8 +28,8 @@ class _Window:
 class Gantts:
     """The Gantt chart of each frame, by its index. A context manager.
 
-    In memory are the spans of some two frames; `is_wanted` says of which a chart is drawn. Raises ConfigError where there is
-    no room for its file.
+    Only the spans of some two frames are in memory; `is_wanted` says for which frames a chart is drawn. Raises
+    ConfigError if there is no room for its file.
     """
 
     def __init__(self, is_wanted: Callable[[int], bool] = lambda _index: True) -> None:
@@ -51,7 +51,7 @@ class Gantts:
         self._spool.__exit__()
 
     def begin(self, identity: Identity, _frames: int) -> None:
-        """Take over how long a cycle is."""
+        """Note how long a cycle is."""
         self._cclk_hz = identity.cclk_hz
 
     def add(self, spans: Sequence[Span]) -> None:
@@ -63,17 +63,17 @@ class Gantts:
             else:
                 self._cores.add(span.where)
         self._spans.append(columns.rows(~columns.are(*_LEFT_OUT)).anywhere())
-        # the end of a frame is told by each core; a frame that is behind another one's is complete for sure
+        # each core reports the end of a frame; a frame is surely complete when a later one is
         while len(self._windows) > 1 and self._windows[min(self._windows)].cores >= self._cores:
             self._draw(min(self._windows))
 
     def finish(self) -> None:
-        """Draw what has not been drawn yet."""
+        """Draw what is still to be drawn."""
         for index in sorted(self._windows):
             self._draw(index)
 
     def chart(self, index: int) -> dict[str, Any] | None:
-        """Return the chart of a frame as `chart_of` has it; None if nothing was told of it."""
+        """Return the chart of a frame in the form of `chart_of`; None if there is none."""
         found: dict[str, Any] | None = json.loads(self._spool[index]) if index in self._spool else None
         return found
 

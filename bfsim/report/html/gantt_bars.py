@@ -9,21 +9,21 @@ from bfsim.report.html.gantt_cells import WAITS, Cells, Key, cells_of
 from bfsim.spans.columns import SpanColumns
 
 SLICES = 400
-"""Of a frame: about as many as a screen can show. Half of them, or fewer, where that makes more than MOST_BARS."""
+"""Slices of a frame, about as many as a screen can show. They are halved until there are at most MOST_BARS bars."""
 MOST_BARS = 1500
-"""So many fit into a page of a hundred frames: some 20 KB."""
+"""The most bars of a frame, some 20 KB, for a page of a hundred frames."""
 
 _QUARTERS = 4
 Bar = tuple[int, int, int, int, int]
-"""Track, key, first slice, last slice, and quarters of their time that were busy."""
+"""Track, key, first slice, last slice, and how many quarters of their time were busy."""
 
 
 def chart_of(
     spans: SpanColumns, begin_cclk: int, end_cclk: int, cclk_hz: float, slices: int = SLICES
 ) -> dict[str, Any]:
-    """Return the bars of what went on between two cycles, and the names of their tracks and keys.
+    """Return the bars of what happened between two cycles, and the names of their tracks and keys.
 
-    `slice_ms` is how long a slice is: the time has `slices` of them, or so many fewer that there are not too many bars.
+    `slice_ms` is the length of a slice: there are `slices` of them, or fewer if there would be too many bars.
     """
     length = max(slices, end_cclk - begin_cclk)
     cells, parts = cells_of(spans, begin_cclk, end_cclk, slices, length), length
@@ -42,7 +42,7 @@ def chart_of(
 
 
 def _bars(cells: Cells, places: Mapping[str, int], slice_parts: int) -> tuple[list[Key], list[Bar]]:
-    """Return the bars of all tracks, whose `places` are told, and what they mean: neighbours that are alike become one."""
+    """Return the bars of all tracks, at their `places`, and their keys; like neighbours become one bar."""
     keys, bars = dict[Key, int](), list[Bar]()
     for track, number, key, parts in cells.most(places):
         least = 0 if track.endswith(WAITS) else 1
@@ -58,5 +58,5 @@ def _bars(cells: Cells, places: Mapping[str, int], slice_parts: int) -> tuple[li
 
 
 def track_order(track: str) -> tuple[bool, str]:
-    """Cores come first."""
+    """Return a key that sorts cores first."""
     return not track.startswith("core "), track

@@ -1,4 +1,4 @@
-"""How long what went on in each slice of a frame, on each track: arrays, for a frame has tens of thousands of spans."""
+"""How long each thing went on in each slice of a frame, on each track: in arrays, for a frame has some 10,000 spans."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from bfsim.spans import TRACKS, SpanKind
 from bfsim.spans.columns import REASONS, Ints, SpanColumns, What
 
 WORK, STALL, IDLE, BUSY = "work", "stall", "idle", "busy"
-"""What a bar can mean, beside the name of a stage."""
+"""Possible meanings of a bar, besides the name of a stage."""
 
 _MEANING = {
     SpanKind.CALL: WORK, SpanKind.WORK: WORK, SpanKind.STALL: STALL, SpanKind.IDLE: IDLE, SpanKind.INTERRUPT: BUSY,
     SpanKind.TRANSFER: BUSY, SpanKind.LINE: BUSY, SpanKind.MESSAGE: BUSY, SpanKind.LOCK: BUSY,
 }  # fmt: skip
 WAITS = " waits"
-"""What the track of a core's waits is called behind its name. It has those that take an eighth of a slice or more."""
+"""Ends the name of the track of a core's waits. It shows those that take an eighth of a slice or more."""
 
 Key = tuple[str, str]
-"""What a bar means, and its name: of a kernel, a reason, a stage, what is moved."""
+"""The meaning of a bar, and the name of the kernel, reason, stage or transfer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """What was going on in slices: which of the `names`, a track and a key, in which slice, and for how many parts of it.
+    """What went on in slices: one of `names`, a track and a key each; in which slice; for how many parts of it.
 
-    Each comes once. `firsts`: the order in which they came.
+    Each combination occurs once. `firsts`: the order in which they came.
     """
 
     names: tuple[tuple[str, Key], ...]
@@ -39,17 +39,17 @@ class Cells:
 
     @property
     def tracks(self) -> set[str]:
-        """Those on which something was going on."""
+        """The tracks on which something went on."""
         return {self.names[kind][0] for kind in np.unique(self.kinds).tolist()}
 
     def halved(self) -> Cells:
-        """Return half as many slices, each as long as two."""
+        """Return half as many slices, each twice as long."""
         return _summed(self.names, self.kinds, self.slices // 2, self.parts, self.firsts)
 
     def most(self, tracks: Mapping[str, int]) -> Iterator[tuple[str, int, Key, int]]:
-        """Yield for each slice of each track, in the order of `tracks`, what took most of it, and how many parts of it had anything.
+        """Yield for each slice of each track, in the order of `tracks`, what took most of it, and its busy parts.
 
-        What took most: first of what it can mean, then of the names of that.
+        What took most is decided first by meaning, then by name.
         """
         meanings = {
             meaning: place for place, meaning in enumerate(dict.fromkeys(key[0] for _, key in self.names))
@@ -68,9 +68,9 @@ class Cells:
 
 
 def cells_of(spans: SpanColumns, begin_cclk: int, end_cclk: int, slices: int, length: int) -> Cells:
-    """Return how long what was going on in each slice of each track between two cycles.
+    """Return how long each thing went on in each slice of each track between two cycles.
 
-    In parts of a cycle, of which a cycle has `slices` and a slice `length`, nothing is rounded.
+    Lengths are in parts of a cycle, so that nothing is rounded: a cycle has `slices` parts, a slice `length`.
     """
     names, kinds, begins, ends, cclk = _shares(spans)
     elapsed = ends - begins
@@ -83,9 +83,9 @@ def cells_of(spans: SpanColumns, begin_cclk: int, end_cclk: int, slices: int, le
 
 
 def _shares(spans: SpanColumns) -> tuple[tuple[tuple[str, Key], ...], Ints, Ints, Ints, Ints]:
-    """Return the names of what spans are, and what each has of whom: which name, from when to when, and how many cycles.
+    """Return the names that spans stand for, and for each span: the number of its name, its begin, its end, its cycles.
 
-    A span lies on its own track, and on that of its core's waits.
+    A span with stalls also lies on the track of its core's waits.
     """
     names, whats = dict[tuple[str, Key], int](), spans.whats.all
     kinds = _numbered(
@@ -108,7 +108,7 @@ def _shares(spans: SpanColumns) -> tuple[tuple[tuple[str, Key], ...], Ints, Ints
 
 
 def _numbered(numbers: Ints, other: Callable[[int], int]) -> Ints:
-    """Return other numbers in the place of these."""
+    """Return the numbers that replace these."""
     found, where = np.unique(numbers, return_inverse=True)
     return np.array([other(each) for each in found.tolist()], np.int64)[where]
 
@@ -121,12 +121,12 @@ def _name(what: What) -> tuple[str, Key]:
 
 
 def _wait(what: What, reason: int) -> tuple[str, Key]:
-    """Return track and key of what stalls in a span."""
+    """Return track and key of a span's stall."""
     return f"{what.where}{WAITS}", (REASONS[reason].value, what.name)
 
 
 def _part(overlaps: Ints, cclk: Ints, elapsed: Ints) -> Ints:
-    """Return so many parts of what overlaps, rounded down."""
+    """Return the share of each overlap that has cycles, in parts, rounded down."""
     is_large = int(overlaps.max(initial=0)) * int(cclk.max(initial=0)) >= 1 << 63
     exact = overlaps.astype(object) if is_large else overlaps
     return np.asarray(exact * cclk // elapsed, np.int64)
@@ -135,14 +135,14 @@ def _part(overlaps: Ints, cclk: Ints, elapsed: Ints) -> Ints:
 def _summed(
     names: tuple[tuple[str, Key], ...], kinds: Ints, slices: Ints, parts: Ints, firsts: Ints
 ) -> Cells:
-    """Return what comes several times as one."""
+    """Return cells with duplicates added up."""
     cells, (parts, firsts) = _sums((kinds, slices), parts, firsts)
     _, where = np.unique(cells, return_index=True)
     return Cells(names, kinds[where], slices[where], parts, firsts)
 
 
 def _sums(by: tuple[Ints, Ints], parts: Ints, firsts: Ints) -> tuple[Ints, tuple[Ints, Ints]]:
-    """Return which group each number is in, by two numbers, in their order; and of each group the sum of the parts and the first."""
+    """Return the group of each row, by the two numbers in `by`; each group's sum of parts and its least of `firsts`."""
     one, other = by
     found, groups = np.unique(one * (int(other.max(initial=0)) + 1) + other, return_inverse=True)
     sums, first = np.zeros(len(found), np.int64), np.full(len(found), np.iinfo(np.int64).max)

@@ -1,4 +1,4 @@
-"""The page: what each of its parts shows, filled into the templates beside this file."""
+"""The page: the content of each of its parts, for the templates beside this file."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ from bfsim.trace import RunRecord
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Page:
-    """All that a page shows of a run of at least one frame.
+    """Everything that a page shows of a run of at least one frame.
 
-    `frames`: how many it was to have, which chose those that are drawn. `accuracy` is what to say of how far to trust the numbers, and `unmodelled` what was left out, both in Markdown;
-    `memory_map` is where everything lay.
+    `frames`: the number it was to have, which decided which ones are drawn. `accuracy` says how far to trust the
+    numbers, and `unmodelled` what was left out, both in Markdown; `memory_map` is where everything lay.
     """
 
     run: RunRecord
@@ -112,7 +112,7 @@ class Page:
 
 
 def _library() -> str:
-    """Return Vega, Vega-Lite and Vega-Embed as one script. It takes seconds to put together and is kept in the cache."""
+    """Return Vega, Vega-Lite and Vega-Embed as one script. Making it takes seconds, so it is kept in the cache."""
     import vl_convert
 
     said = "window.vegaEmbed = vegaEmbed; window.vega = vega;"

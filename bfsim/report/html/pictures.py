@@ -15,18 +15,19 @@ from bfsim.report.overlay.overlay import overlay_of
 from bfsim.seen import SeenFrame
 
 PAGE_BYTES = 4_000_000
-"""Of all pictures of a page together: with 100 frames in it, what is around them leaves so much of 8 MB."""
+"""For all pictures of a page together: with 100 frames, everything around them leaves so much of 8 MB."""
 HEAT_SHARE = 0.35
-"""Of these for the heat maps: they have smooth colours and few words."""
+"""The heat maps' share of it: they have smooth colours and few words."""
 
 _PANEL_WIDTH = 640
-"""Of a camera's picture: a page shows it no larger, and words are read more easily than in one that is made smaller."""
+"""The width of a camera's picture: a page shows it no larger, and shrinking a larger one makes words harder to read."""
 
 
 class Pictures:
-    """The overlay of each frame of a run and its heat map, as small as a page of `frames` of them needs it. A context manager.
+    """The overlay and the heat map of each frame, small enough for a page of `frames` frames. A context manager.
 
-    They are drawn behind the run, and all there after `finish`. Raises ConfigError where there is no room for its file.
+    They are drawn while the run goes on, and all there after `finish`. Raises ConfigError if there is no room for its
+    file.
     """
 
     def __init__(self) -> None:
@@ -44,7 +45,7 @@ class Pictures:
         self._heats.__exit__()
 
     def make_room(self, frames: int) -> None:
-        """Have pictures of so many frames on the page from now on."""
+        """From now on, make pictures for a page of so many frames."""
         self._small, self._small_heat = overlay_shrinker(frames), Shrinker(_room_bytes(HEAT_SHARE, frames))
 
     def add(self, frame: SeenFrame) -> None:
@@ -52,12 +53,12 @@ class Pictures:
         self._behind.do(partial(self._draw, frame))
 
     def add_with_heat(self, frame: SeenFrame) -> None:
-        """Draw what was seen in a frame whose cameras have their heat, and the heat."""
+        """Draw what was seen in a frame, and the heat, which its cameras have."""
         self.add(replace(frame, cameras=tuple(replace(each, heat=None) for each in frame.cameras)))
         self._behind.do(partial(self._draw_heat, frame))
 
     def finish(self) -> None:
-        """Wait until all is drawn."""
+        """Wait until everything is drawn."""
         self._behind.finish()
 
     def _draw(self, frame: SeenFrame) -> None:
@@ -67,24 +68,24 @@ class Pictures:
         self._heats.put(frame.index, self._small_heat.webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH)))
 
     def has_overlay(self, index: int) -> bool:
-        """Whether a frame was seen."""
+        """Whether a frame has an overlay."""
         return index in self._overlays
 
     def overlay_uri(self, index: int) -> str:
-        """Return what was seen in a frame as an address that holds the picture."""
+        """Return the overlay of a frame as a data URI."""
         return picture_uri(self._overlays[index])
 
     def has_heat(self, index: int) -> bool:
-        """Whether there is a heat map of a frame: there is none of one that was cut short."""
+        """Whether a frame has a heat map: one that was cut short has none."""
         return index in self._heats
 
     def heat_uri(self, index: int) -> str:
-        """Return the heat map of a frame as an address that holds the picture."""
+        """Return the heat map of a frame as a data URI."""
         return picture_uri(self._heats[index])
 
 
 def overlay_shrinker(frames: int) -> Shrinker:
-    """Return what makes overlays small enough for a page of so many frames."""
+    """Return a shrinker of overlays for a page of so many frames."""
     return Shrinker(_room_bytes(1 - HEAT_SHARE, frames))
 
 
@@ -94,10 +95,10 @@ def overlay_webp(frame: SeenFrame, shrinker: Shrinker) -> bytes:
 
 
 def picture_uri(content: bytes) -> str:
-    """Return a picture as an address that holds it."""
+    """Return a picture as a data URI."""
     return f"data:image/webp;base64,{b64encode(content).decode()}"
 
 
 def _room_bytes(share: float, frames: int) -> int:
-    """Return how large a picture may be; as an address it is a third larger."""
+    """Return how large a picture may be; as a URI it takes a third more."""
     return int(share * PAGE_BYTES * 3 // 4 // frames)

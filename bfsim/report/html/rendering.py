@@ -34,13 +34,13 @@ def rendered(template: str, content: Mapping[str, Any]) -> Iterator[str]:
 
 
 def html_of(markdown: str) -> Markup:
-    """Return Markdown as HTML without links: a page that stands by itself has nowhere to go."""
+    """Return Markdown as HTML without links, since the page stands by itself."""
     html: str = MarkdownIt("commonmark", {"html": False}).disable("link").render(markdown)
     return Markup(html)  # noqa: S704 - without HTML of its own
 
 
 def with_code(sentence: str) -> Markup:
-    """Return a sentence with its commands, which stand between backticks in a terminal, as code."""
+    """Return a sentence as HTML, with text between backticks, as in a terminal, as code."""
     return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(sentence))))  # noqa: S704 - escaped
 
 
@@ -55,6 +55,6 @@ def script_of(library: str) -> Markup:
 
 
 def _file(environment: Environment, name: str) -> Markup:
-    """Return a file that stands beside the templates as it is."""
+    """Return a file that lies beside the templates, unchanged."""
     assert environment.loader
     return Markup(environment.loader.get_source(environment, name)[0])  # noqa: S704 - ours

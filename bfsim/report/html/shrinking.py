@@ -1,4 +1,4 @@
-"""Pictures made as small as a page needs them."""
+"""Make pictures as small as a page needs them."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from io import BytesIO
 from PIL import Image
 
 _PIXELS_A_BYTE = 25
-"""A picture has at most so many: then most are small enough at the first quality, and words can be read."""
+"""The most pixels per byte: then most pictures are small enough at the first quality, and words can be read."""
 _QUALITIES = (75, 60, 45, 30)
-"""Of WebP: from the best to one for pictures full of detail."""
-_LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
+"""Of WebP: from the best down to one for pictures full of detail."""
+_LEAST_WIDTH = 480  # px: no picture of a frame is narrower
 
 
 class Shrinker:
-    """Makes pictures of one kind small enough, each as good as it then can be.
+    """Makes pictures of one kind small enough, each in the best quality for its size.
 
-    What the last one needed is tried first: pictures of a run are much alike, and to try takes long.
+    The previous picture's choice is tried first: pictures of a run are much alike, and trying takes long.
     """
 
     def __init__(self, nbytes: int) -> None:
         self._nbytes = nbytes
-        self._last = 0  # of what can be tried, the best first
+        self._last = 0  # index into the possible tries, the best first
 
     def webp_of(self, image: Image.Image) -> bytes:
-        """Return an image as WebP of at most so many bytes, or as small as it becomes."""
+        """Return an image as WebP of at most the given size, or as small as possible."""
         tries = list(_tries(image, self._nbytes))
         at = min(self._last, len(tries) - 1)
         content = _webp(image, *tries[at])
@@ -40,7 +40,7 @@ class Shrinker:
 
 
 def _tries(image: Image.Image, nbytes: int) -> Iterator[tuple[int, int]]:
-    """Yield widths and qualities that may be small enough, the best first."""
+    """Yield widths and qualities to try, the best first."""
     width = min(image.width, round((nbytes * _PIXELS_A_BYTE * image.width / image.height) ** 0.5))
     while True:
         yield from ((width, quality) for quality in _QUALITIES)

@@ -1,4 +1,4 @@
-"""The source of the dearest kernels, with what each line cost: its work, and what it waited for."""
+"""The source of the dearest kernels, with the cost of each line: its work, and its waits."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.trace import KernelRecord, RunRecord
 
 MOST = 12
-"""Kernels whose source is shown."""
+"""The number of kernels whose source is shown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourceLine:
-    """A line of a kernel over the whole run; `share` is its part of the kernel's cycles and `issue_share` that of its work, 0..1."""
+    """A line of a kernel over the whole run; `share` is its part of the kernel's cycles, `issue_share` of its work."""
 
     line: int
     text: str
@@ -28,7 +28,10 @@ class SourceLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KernelSource:
-    """A kernel in one stage on all cores, without its callees but with routines of the compiler's library; `share` is its part of the cycles of all kernels, 0..1."""
+    """A kernel in one stage on all cores, without its callees, but with routines of the compiler's library.
+
+    `share` is its part of the cycles of all kernels, 0..1.
+    """
 
     kernel: str
     stage: str

@@ -1,4 +1,4 @@
-"""What was seen in each frame of a run, to be drawn when it is known which frames a page shows."""
+"""What was seen in each frame of a run, kept until it is known which frames a page shows."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from bfsim.seen import SeenFrame
 
 
 class UndrawnFrames:
-    """The frames of a run, outside of memory; a page of so many pictures asks for those that it shows. A context manager.
+    """The frames of a run, outside of memory, for a page that shows some of them. A context manager.
 
-    To keep a frame takes a tenth of the time of drawing it. Raises ConfigError where there is no room for its file.
+    Keeping a frame takes a tenth of the time of drawing it. Raises ConfigError if there is no room for its file.
     """
 
     def __init__(self, pictures: int) -> None:
@@ -32,7 +32,7 @@ class UndrawnFrames:
         self._spool.put(frame.index, zlib.compress(pickle.dumps(frame), level=1))
 
     def picture_uri(self, index: int) -> str:
-        """Return what was seen in a frame as an address that holds the picture; nothing if it was not seen."""
+        """Return the picture of what was seen in a frame as a data URI; "" if the frame was not seen."""
         if index not in self._spool:
             return ""
         frame: SeenFrame = pickle.loads(zlib.decompress(self._spool[index]))  # noqa: S301  # a file without a name: nobody else's

@@ -17,7 +17,7 @@ SCHEMA = "bfsim.assembly/1"
 
 
 def assembly_report(assembly: Assembly) -> RenderableType:
-    """Return the listing, a table of its loops, and how both are to be read."""
+    """Return the listing, a table of its loops, and how to read them."""
     bundles = sum(len(each.text) > 1 for each in assembly.instructions)
     place = f"{PurePath(assembly.file).name}:{assembly.first_line}"
     title = Text(

@@ -14,12 +14,12 @@ from bfsim.trace.explanation import ExplainedLine, ExplainedOperation, Explanati
 
 LOOP_SETUP = "loop_setup"
 SCHEMA = "bfsim.explain/1"
-DEAR_SHARE = 0.1  # lines that cost so much of the kernel are bold
+DEAR_SHARE = 0.1  # lines with at least this share of the kernel are bold
 SHORT = {"branch_taken": "taken", "branch_not_taken": "not taken"}
 
 
 def explain_report(explanation: Explanation) -> RenderableType:
-    """Return the kernel's lines with their operations and cycles; after a run with counts and totals, too."""
+    """Return the kernel's lines with their operations and cycles; after a run, also with counts and totals."""
     place = f"{PurePath(explanation.file).name}:{explanation.first_line}"
     title = f"{explanation.kernel} ({place}), {explanation.profile}, {explanation.code_bytes} bytes of code"
     numbers = ("Cycles",) if explanation.calls is None else ("Cycles", "Executed", "Total", "%")
@@ -41,7 +41,7 @@ def explain_report(explanation: Explanation) -> RenderableType:
 
 
 def _calls(explanation: Explanation) -> Table:
-    """What became of each call of another kernel."""
+    """Return a table of the calls of other kernels, and what became of each."""
     table = new_table("Calls of kernels", "In", "Of", "Code grows by", "")
     for number in (1, 3):
         table.columns[number].justify = "left"

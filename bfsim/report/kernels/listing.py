@@ -14,14 +14,14 @@ from bfsim.report.wording.units import shortened
 from bfsim.trace.assembly import Assembly, AssemblyInstruction, SourceText
 
 DEAR_SHARE = 0.05
-"""Instructions that cost so much of the kernel are bold."""
+"""Instructions with at least this share of the kernel's cost are bold."""
 ADDRESS, CYCLES, WAIT, COUNT, SHARE = 8, 7, 5, 11, 6
 """Widths of columns."""
 
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """The instructions, each group below the source line that it was made of; what is too long is cut."""
+    """The instructions, each group below the source line that it comes from; long lines are cut."""
 
     assembly: Assembly
 
@@ -74,7 +74,7 @@ class Listing:
             yield Text.assemble(beneath, "  ", (self._marks(each, beneath=True), "green"), f"|| {operation}")
 
     def _marks(self, each: AssemblyInstruction, *, beneath: bool = False) -> str:
-        """The loops that an instruction is in, outer ones first: where they begin and end, and a line in between."""
+        """Return the marks of the loops around an instruction, outer ones first: begin, end, and a line in between."""
         marks = ""
         for depth in range(1, each.depth + 1):
             loops = [one for one in self.assembly.loops if one.depth == depth]

@@ -1,4 +1,4 @@
-"""The loops of a kernel as a table: what a turn of each costs, and what bounds it."""
+"""The loops of a kernel as a table: what an iteration of each costs, and what bounds it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bfsim.trace.assembly import Assembly, AssemblyLoop
 
 
 def loops_table(assembly: Assembly) -> Table:
-    """A row for each loop: cycles of a turn and what they are, and what bounds it."""
+    """Return a row for each loop: the cycles of an iteration, their kinds, and what bounds it."""
     counted = assembly.calls is not None
     runs = ("Turns", "%") if counted else ()
     table = new_table(

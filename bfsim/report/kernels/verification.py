@@ -1,4 +1,4 @@
-"""Estimates beside the real compiler's code, for people and for programs."""
+"""Estimates beside the real compiler's code, as tables and JSON."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MILLION = 1e6
 
 
 def verification_report(found: Verification, top: int) -> RenderableType:
-    """Return two sentences and the table of kernels, `top` of them."""
+    """Return two sentences and the table of `top` kernels."""
     table = new_table(f"Cycles of a frame, {found.profile}", "Kernel", "%", "estimated", "measured", "error")
     for each in found.kernels[:top]:
         table.add_row(
@@ -36,7 +36,7 @@ def verification_report(found: Verification, top: int) -> RenderableType:
 
 
 def verdict(found: Verification) -> str:
-    """Return by how much the estimate is off, and whether the bits are the same, in words."""
+    """Say by how much the estimate is off, and whether the bits are the same."""
     bits = (
         "Every call leaves the same bits."
         if not found.different

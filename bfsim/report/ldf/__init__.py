@@ -1,1 +1,1 @@
-"""What an LDF makes of a memory: the map as records, tables and drawings, and what in it costs time."""
+"""The memory that an LDF makes: its map as records, tables and drawings, and what costs time in it."""

@@ -1,4 +1,4 @@
-"""Findings about the banks of the SDRAM: who streams through which at the same time."""
+"""Findings about the banks of the SDRAM: which masters stream through a bank at the same time."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ STREAMED = (ContentKind.CAMERA, ContentKind.LINES)
 class Stream:
     """A buffer that a `master` fills or empties line by line, in the `banks` of the SDRAM.
 
-    Streams of different masters run at the same time. One core's memory DMA is one master: it has an inward and an
-    outward stream, but which of its buffers these take together is known to its main loop only.
+    Streams of different masters run at the same time. A core's memory DMA is one master: it has an inward and an
+    outward stream, but only the main loop knows which of its buffers these use together.
     """
 
     buffer: str
@@ -41,13 +41,13 @@ def _master(symbol: MapSymbol) -> str:
 
 
 def streams_by_bank(streams: Sequence[Stream]) -> Mapping[int, Sequence[Stream]]:
-    """Return which streams run in which bank, by the number of the bank."""
+    """Return the streams that run in each bank, by the number of the bank."""
     banks = sorted({bank for each in streams for bank in each.banks})
     return {bank: [each for each in streams if bank in each.banks] for bank in banks}
 
 
 def shared_banks(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Find banks in which several masters stream: they do so at the same time, whatever the firmware does."""
+    """Find banks in which several masters stream, which happens at the same time, whatever the firmware does."""
     by_bank = streams_by_bank(streams_of(memory_map.symbols))
     for bank, streams in by_bank.items():
         if len({each.master for each in streams}) > 1:
@@ -61,7 +61,7 @@ def shared_banks(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def own_banks(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Find banks with two buffers of one master: it depends on the main loop whether both stream at a time."""
+    """Find banks with two buffers of one master: the main loop decides whether both stream at the same time."""
     for bank, streams in streams_by_bank(streams_of(memory_map.symbols)).items():
         if len(streams) > 1 and len({each.master for each in streams}) == 1:
             yield Finding(

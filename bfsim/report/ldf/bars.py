@@ -1,4 +1,4 @@
-"""The memory map as a picture made of text: a bar to scale for each segment, and what its letters stand for."""
+"""The memory map as text: a bar to scale for each segment, and a key to its letters."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FREE, RESERVED, MANY = "·", "░", "*"
 
 
 def bars(memory_map: MemoryMap) -> Group:
-    """Return the bars of all segments in which there is a symbol."""
+    """Return the bars of all segments that hold a symbol."""
     colours = colours_of(memory_map)
     title = Text(f"Picture, each segment to its own scale: {FREE} free, {RESERVED} reserved", style="bold")
     shown = [each for each in memory_map.segments if each.symbols]
@@ -44,7 +44,7 @@ def _segment(segment: MapSegment, colours: dict[str, str]) -> Iterator[Text]:
 
 
 def cells_of(segment: MapSegment, cells: int) -> Iterator[MapPiece]:
-    """Yield for each of `cells` equal parts of a segment the piece that fills most of it; a symbol wins over a reserve or free space."""
+    """Yield the piece that fills most of each of `cells` equal parts; symbols win over reserves and free space."""
     for number in range(cells):
         start = segment.start + segment.nbytes * number // cells
         end = segment.start + segment.nbytes * (number + 1) // cells

@@ -1,4 +1,4 @@
-"""What the LDF of VisualDSP++ turns into cache."""
+"""Memory that the LDF of VisualDSP++ turns into cache."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ CACHE_SWITCHES = {
     "___l1_data_cache_b": "L1_DATA_B",
     "___l1_code_cache": "L1_CODE_CACHE",
 }
-"""Symbols by which an LDF of VisualDSP++ turns the upper half of an L1 memory into cache, if they are not 0."""
+"""Symbols by which an LDF of VisualDSP++ turns the upper half of an L1 memory into cache, unless they are 0."""
 
 CACHE_BYTES = 16 * KIB
-"""What a cache takes from the end of its memory: ADSP-BF561, and ADSP-BF533 alike."""
+"""The size of a cache at the end of its memory: the same on ADSP-BF561 and ADSP-BF533."""
 
 
 def caches_of(script: LinkerScript, regions: Sequence[Region]) -> Iterator[CacheRange]:
-    """Yield what the LDF's switches turn into cache, core by core."""
+    """Yield the memory that the LDF's switches turn into cache, core by core."""
     for block in script.blocks:
         for name, memory in CACHE_SWITCHES.items():
             if not block.assignments.get(name):

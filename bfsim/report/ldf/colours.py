@@ -1,4 +1,4 @@
-"""A hue for each kind of buffer, and in it a shade for each name: the same buffer looks the same in every memory and on both cores."""
+"""A hue for each kind of buffer, and a shade of it for each name: a buffer looks the same in every memory and core."""
 
 from __future__ import annotations
 
@@ -16,21 +16,23 @@ HUES: Mapping[ContentKind, float] = {
     ContentKind.ROW: 0.10,
     ContentKind.TABLE: 0.83,
 }
-"""Of a turn: green, blue, orange, magenta."""
+"""As fractions of a full turn: green, blue, orange, magenta."""
 
 HUE_RANGE = 0.10
-"""So far apart are the hues of a kind: less than half of what lies between two kinds."""
+"""The range of hues of a kind: less than half of the distance between two kinds."""
 
 LIGHTNESS, SATURATION = (0.60, 0.86), (0.40, 0.85)
 """Light enough for black letters."""
 
 STEPS = 0.618034, 0.754878, 0.569840
-"""Steps of such parts of a range spread evenly over it, however many there are, and neighbours far apart: the golden section,
-and its like for two [Roberts 2018, the R2 sequence]."""
+"""Steps of these fractions spread any number of values evenly over a range, with neighbours far apart.
+
+They are the golden section and its analogue for two dimensions [Roberts 2018, the R2 sequence].
+"""
 
 
 def colours_of(memory_map: MemoryMap) -> dict[str, str]:
-    """Return a colour, #rrggbb, for the name of every piece that is not free or reserved."""
+    """Return a colour, #rrggbb, for the name of every piece that is neither free nor reserved."""
     colours: dict[str, str] = {}
     known: Counter[ContentKind] = Counter()
     for segment in memory_map.segments:
@@ -44,12 +46,12 @@ def colours_of(memory_map: MemoryMap) -> dict[str, str]:
 
 
 def kind_colour(kind: ContentKind) -> str:
-    """Return the colour that stands for a kind: that of its first buffer, or the one of all code."""
+    """Return the colour that stands for a kind: that of its first buffer, or the single colour of code."""
     return CODE_COLOUR if kind is ContentKind.CODE else _shade(kind, 0)
 
 
 def _shade(kind: ContentKind, number: int) -> str:
-    """Return the colour of the buffer `number` of its kind."""
+    """Return the colour of buffer `number` of its kind."""
     light, full, turn = ((0.5 + number * step) % 1 for step in STEPS)
     lightness, saturation = (
         low + part * (high - low) for part, (low, high) in ((light, LIGHTNESS), (full, SATURATION))

@@ -1,7 +1,7 @@
-"""The memory map as rectangles and words on a sheet: what `picture` writes as PNG or SVG.
+"""The memory map as rectangles and words on a sheet, which `picture` writes as PNG or SVG.
 
-Each segment is a panel: a bar to its own scale, names where they fit, and below it a legend of all that lies in it.
-Panels of core A stand on the left, those of core B on the right, shared memories below both.
+Each segment is a panel: a bar to its own scale, names where they fit, and below it a legend of its content. Panels of
+core A stand on the left, those of core B on the right, shared memories below both.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ BAR_HEIGHT, TITLE_HEIGHT, LINE_HEIGHT, PANEL_GAP = 44, 24, 20, 22
 LETTER_WIDTH = 0.6  # of the font's size: the widest sans-serif digits
 SWATCH = 12
 MOST_LEGEND_COLUMNS = 3
-SEAM_WIDTH = 4  # of a piece that is wide enough for one
+SEAM_WIDTH = 4  # between pieces that are wide enough for a seam
 
 KINDS = {
     ContentKind.CODE: "code",
@@ -32,7 +32,7 @@ KINDS = {
     ContentKind.ROW: "rows",
     ContentKind.TABLE: "tables",
 }
-"""What the hues stand for."""
+"""The meanings of the hues."""
 
 FREE_COLOUR, RESERVED_COLOUR = "#eef1f5", "#c3cad6"
 
@@ -61,7 +61,7 @@ class _Pen:
     colours: dict[str, str]
 
     def heading(self, memory_map: MemoryMap) -> None:
-        """Draw what the map is of, and what its hues and its greys mean."""
+        """Draw the title of the map, and the meanings of its hues and greys."""
         y = MARGIN + TITLE_FONT / 2
         what = f" with {memory_map.firmware} at {memory_map.width_px}x{memory_map.height_px}"
         title = f"{memory_map.ldf} on {memory_map.board}{what if memory_map.firmware else ''}"
@@ -78,7 +78,7 @@ class _Pen:
         self.sheet.height = y + LINE_HEIGHT + PANEL_GAP / 2
 
     def columns(self, columns: Sequence[Sequence[MapSegment]]) -> None:
-        """Draw each list of segments below each other, the lists side by side."""
+        """Draw the segments of each list below each other, and the lists side by side."""
         top = bottom = self.sheet.height
         for number, segments in enumerate(columns):
             y = top
@@ -114,7 +114,7 @@ class _Pen:
         scale = PANEL_WIDTH / segment.nbytes
         for piece in segment.pieces:
             left, width = x + (piece.start - segment.start) * scale, piece.nbytes * scale
-            # a seam tells neighbours of one kind apart
+            # a seam separates neighbours of one kind
             seam = PAPER if piece.is_named and width > SEAM_WIDTH else ""
             self._box(left, y, width, BAR_HEIGHT, self._fill(piece), seam)
             if piece.is_named and _width(segment.label(piece), SMALL_FONT) < width - 6:
@@ -146,7 +146,7 @@ class _Pen:
 
 
 def _columns(labels: Sequence[str]) -> int:
-    """Return how many columns a legend may have without one label over the next."""
+    """Return how many columns a legend may have without overlapping labels."""
     widest = SWATCH + 6 + max((_width(each, SMALL_FONT) for each in labels), default=0) + 6
     return max(1, min(MOST_LEGEND_COLUMNS, int(PANEL_WIDTH // widest)))
 

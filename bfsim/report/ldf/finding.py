@@ -1,4 +1,4 @@
-"""A finding in a memory map, and how findings name what they are about."""
+"""A finding in a memory map, and how findings list names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Finding:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the names without doubles, the first few of many."""
+    """Return the names without duplicates; of many, the first few."""
     unique = list(dict.fromkeys(names))
     more = len(unique) - NAMES_LISTED
     if more > 0:

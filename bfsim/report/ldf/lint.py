@@ -1,6 +1,6 @@
-"""What in a memory map will cost time, or cannot work: findings with a reason and advice. Nothing here fails a link.
+"""What in a memory map will cost time, or cannot work: findings with reasons and advice. None of them fails a link.
 
-All is judged from what is known without a run, so a buffer of several rows counts as one that DMA streams.
+They use only what is known without a run, so a buffer of several rows counts as one that DMA streams.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from bfsim.report.ldf.finding import Finding, listed
 from bfsim.report.ldf.map import ContentKind, MapSegment, MapSymbol, MemoryMap
 
 FULL_SHARE = 0.95
-"""A segment that is used beyond this share is nearly full."""
+"""Segments with a larger used share are nearly full."""
 
 
 def lint(memory_map: MemoryMap) -> tuple[Finding, ...]:
@@ -71,7 +71,7 @@ def _scratchpad(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _nearly_full(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Find segments with no room left, and none in a memory as fast that takes the same input sections."""
+    """Find segments without room, if no memory of the same speed for the same input sections has any."""
     for segment in memory_map.segments:
         if segment.used_share > FULL_SHARE and not any(
             _has_room_for(segment, each) for each in memory_map.segments
@@ -86,7 +86,7 @@ def _nearly_full(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _has_room_for(full: MapSegment, other: MapSegment) -> bool:
-    """Say whether the other segment takes all that the full one does, is as fast, and has room."""
+    """Whether the other segment takes everything that the full one does, is as fast, and has room."""
     as_fast = other.owner == full.owner and _level(other) == _level(full)
     return as_fast and other.used_share <= FULL_SHARE and _taken(full) <= _taken(other)
 

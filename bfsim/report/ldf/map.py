@@ -1,6 +1,6 @@
 """The memory map of one link as records: what lies where in each segment of an LDF, and what is still free.
 
-`layout.memory_map` makes it. Tables, picture and lint read nothing but these records.
+`map_builder.memory_map` makes it. Tables, picture and lint read nothing but these records.
 """
 
 from __future__ import annotations
@@ -9,17 +9,17 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 SHARED = "shared"
-"""Owner of what every core reaches."""
+"""Owner of memory that every core reaches."""
 
 
 class ContentKind(StrEnum):
-    """What is in a stretch of memory, as far as it can be told without a run."""
+    """The content of a stretch of memory, as far as it is known without a run."""
 
     CODE = "code"
     CAMERA = "camera"  # the PPI fills it
     LINES = "lines"  # a buffer of more than one row: an image, or a ring
     ROW = "row"
-    TABLE = "table"  # contents that travel with the firmware
+    TABLE = "table"  # constants that come with the firmware
     RESERVED = "reserved"  # RESERVE, and the gaps that alignment leaves
     FREE = "free"
 
@@ -28,7 +28,7 @@ class ContentKind(StrEnum):
 class MapSymbol:
     """A symbol in its place. `banks` are the internal banks of the SDRAM that it lies in, none elsewhere.
 
-    `line` of the LDF took it there. `owner` is a core, or "shared".
+    `line` is the line of the LDF that placed it. `owner` is a core, or "shared".
     """
 
     name: str
@@ -44,7 +44,7 @@ class MapSymbol:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapPiece:
-    """A stretch of a segment: one buffer, one core's code that lies side by side, a reserve, or what is free."""
+    """A stretch of a segment: one buffer, adjacent code of one core, a reserve, or free space."""
 
     name: str
     kind: ContentKind
@@ -54,7 +54,7 @@ class MapPiece:
 
     @property
     def is_named(self) -> bool:
-        """Whether a symbol is in it."""
+        """Whether it contains a symbol."""
         return self.kind not in (ContentKind.FREE, ContentKind.RESERVED)
 
 
@@ -74,7 +74,7 @@ class MapSection:
 class MapSegment:
     """A memory segment of the LDF, in the board's `memory`. `used_bytes` counts symbols, reserves and gaps.
 
-    `pieces` fill it from its start to its end. A reserve that expands into free space counts with its minimum only.
+    `pieces` fill it from start to end. A reserve that expands into free space counts with its minimum only.
     """
 
     name: str
@@ -93,7 +93,7 @@ class MapSegment:
         return self.nbytes - self.used_bytes
 
     def label(self, piece: MapPiece) -> str:
-        """Return the name of a piece, followed by its core if the piece belongs to another owner than the segment."""
+        """Return the name of a piece, followed by its core if it does not belong to the segment's owner."""
         return piece.name if piece.owner in (SHARED, self.owner) else f"{piece.name} ({piece.owner})"
 
     @property
@@ -114,7 +114,7 @@ class CacheRange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MemoryMap:
-    """An LDF with the symbols of a firmware in it; without a `firmware` only what the LDF itself says, and `why_without`."""
+    """An LDF with the symbols of a firmware in it; without `firmware` the LDF alone, and `why_without`."""
 
     ldf: str
     firmware: str

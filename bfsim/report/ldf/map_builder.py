@@ -1,4 +1,4 @@
-"""Lays a link out by address: what the linker says, the board's memories and the LDF's switches → a MemoryMap."""
+"""Arrange a link by address: the linker's result, the board's memories and the LDF's switches → a MemoryMap."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from bfsim.report.ldf.pieces import pieces_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardMemories:
-    """What the map must know of a board: its memories, none if they are unknown, and how its SDRAM is divided."""
+    """What the map needs of a board: its memories, none if they are unknown, and how its SDRAM is divided."""
 
     board: str
     regions: Sequence[Region]
@@ -36,9 +36,9 @@ def memory_map(
     height_px: int,
     why_without: str = "",
 ) -> MemoryMap:
-    """Return the map of `script` as `link_map` fills it, or empty without one, for which `why_without` is the reason.
+    """Return the map of `script` as filled by `link_map`, or empty without one, for the reason `why_without`.
 
-    `kinds`: what the symbols are, by processor (None: both) and name; every other one is code.
+    `kinds`: the kinds of symbols, by processor (None: both) and name; all other symbols are code.
     """
     builder = _Builder(script, link_map, memories, kinds)
     return MemoryMap(
@@ -77,7 +77,7 @@ class _Builder:
                 self._outputs.setdefault(output.segment, []).append((block, output))
 
     def segment(self, segment: Segment) -> MapSegment:
-        """Return one segment with what was placed in it, under whatever name of the same memory."""
+        """Return one segment with its symbols, under any name of the same memory."""
         memory, owner = self.memory(segment)
         start, end = segment.start, segment.end + 1
         address = attrgetter("address")
@@ -100,7 +100,7 @@ class _Builder:
         )
 
     def memory(self, segment: Segment) -> tuple[str, str]:
-        """Return the name of the memory under a segment, or of neighbours under it, and its owner."""
+        """Return the name of the memory or memories under a segment, and its owner."""
         if not self.memories.regions:
             return "unknown", SHARED
         try:
@@ -128,7 +128,7 @@ class _Builder:
         )
 
     def sections(self, segment: Segment, placements: Sequence[Placement]) -> Iterator[MapSection]:
-        """Yield the output sections that fill a segment, in the order in which they do."""
+        """Yield the output sections of a segment, in the order in which they fill it."""
         for block, output in self._outputs.get(segment.name, ()):
             statements = [each for each in output.statements if isinstance(each, InputSections)]
             lines = {each.line for each in statements}
@@ -143,7 +143,7 @@ class _Builder:
             )
 
     def reserves(self, segment: Segment) -> Iterator[MapPiece]:
-        """Yield the reserves in a segment; without a link only those that have an address."""
+        """Yield the reserves in a segment; without a link, only those that have an address."""
         start = attrgetter("start")
         first = bisect_left(self._reserved, segment.start, key=start)
         last = bisect_left(self._reserved, segment.end + 1, key=start)
@@ -155,6 +155,6 @@ class _Builder:
 
 
 def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
-    """Yield each input section once, where it is first asked for; those of one list in the order of their names."""
+    """Yield each input section once, at its first mention; those of one list in alphabetical order."""
     names = [name for each in statements for part in each.inputs for name in sorted(part.sections)]
     yield from dict.fromkeys(names)

@@ -1,4 +1,4 @@
-"""The drawing of a memory map as a file: PNG by pillow, or SVG."""
+"""Write the drawing of a memory map as a file: PNG by pillow, or SVG."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.ldf.sheet import PAPER, FilledBox, Sheet, Words
 
 PIXELS = 2
-"""PNG pixels per px of the drawing: small letters stay readable."""
+"""PNG pixels per px of the drawing, so that small letters stay readable."""
 
 
 def picture_bytes(memory_map: MemoryMap, path: Path) -> bytes:
-    """Return the picture of a map in the format that the suffix of `path` asks for.
+    """Return the picture of a map in the format of `path`'s suffix.
 
-    Raises ConfigError for any other suffix than .png and .svg.
+    Raises ConfigError for suffixes other than .png and .svg.
     """
     return format_of(path)(drawing_of(memory_map))
 
 
 def format_of(path: Path) -> Callable[[Sheet], bytes]:
-    """Return what makes a file of that name out of a drawing; raise ConfigError if nothing does."""
+    """Return the function that makes such a file from a drawing; raise ConfigError if there is none."""
     try:
         return FORMATS[path.suffix.lower()]
     except KeyError:
@@ -40,7 +40,7 @@ def png_of(sheet: Sheet) -> bytes:
     pen = ImageDraw.Draw(image)
     for box in sheet.boxes:
         left, top = round(box.x * PIXELS), round(box.y * PIXELS)
-        # pillow paints the corner, too; a piece too small to see is a line of one pixel
+        # pillow includes the corner; a piece that is too small to see becomes a line of one pixel
         right = max(left, round((box.x + box.width) * PIXELS) - 1)
         bottom = max(top, round((box.y + box.height) * PIXELS) - 1)
         pen.rectangle((left, top, right, bottom), fill=box.fill or None, outline=box.outline or None)

@@ -1,4 +1,4 @@
-"""What fills a segment piece by piece: symbols, reserves, gaps, and what is free."""
+"""The pieces of a segment: symbols, reserves, gaps, and free space."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.report.ldf.map import SHARED, ContentKind, MapPiece, MapSymbol
 def pieces_of(
     segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], reserves: Sequence[MapPiece]
 ) -> Iterator[MapPiece]:
-    """Yield what fills a segment. What is used and has no name is a gap before a symbol, or after the last one."""
+    """Yield the pieces of a segment. Used bytes without a name are a gap before a symbol, or after the last one."""
     placed = [_piece(each) for each in symbols if each.nbytes]
     named = _merged([*placed, *(each for each in reserves if each.nbytes)])
     last = max((each.start + each.nbytes for each in placed), default=segment.start)
@@ -49,7 +49,7 @@ def _piece(symbol: MapSymbol) -> MapPiece:
 
 
 def _merged(pieces: Iterable[MapPiece]) -> list[MapPiece]:
-    """Return the pieces by address, one core's code that lies side by side as one."""
+    """Return the pieces by address, with adjacent code of one core merged."""
     merged: list[MapPiece] = []
     ordered = sorted(pieces, key=lambda piece: piece.start)
     for (kind, _), group in groupby(ordered, key=lambda piece: (piece.kind, piece.owner)):

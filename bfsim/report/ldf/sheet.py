@@ -1,4 +1,4 @@
-"""A sheet of rectangles and words: what a drawing is made of, whatever file it becomes."""
+"""A sheet of rectangles and words: the drawing before it becomes a file of any format."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class FilledBox:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Words:
-    """One line of text; (x, y) is the middle of its left end, or with `is_right` of its right end."""
+    """One line of text; (x, y) is the middle of its left end or, with `is_right`, of its right end."""
 
     x: float
     y: float

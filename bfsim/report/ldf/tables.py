@@ -20,7 +20,7 @@ SCHEMA = "bfsim.ldf/1"
 
 
 def ldf_report(memory_map: MemoryMap, findings: Sequence[Finding], *, symbols: bool) -> RenderableType:
-    """Return map and findings: the fullness of each segment first, then the picture, then what is in them."""
+    """Return map and findings: first how full each segment is, then the picture, then the contents."""
     return stacked(
         _headline(memory_map),
         _segment_table(memory_map),

@@ -11,14 +11,15 @@ from bfsim.report.overlay.labels import Label, write_labels
 from bfsim.seen import PointMm, SeenFrame, SeenGeometry, SeenObject, Solid
 from bfsim.seen.colours import DepthScale
 
-LEAST_HEIGHT = 96  # beside pictures of a few lines
+LEAST_HEIGHT = 96  # for pictures of a few lines
 LEAST_MARK = 4  # radius of an object in the drawing
 
 
 def above_of(frame: SeenFrame, scale: DepthScale, height: int) -> Image.Image:
-    """Return the ground before the cameras, `height` pixels high, or the least, and three quarters as wide, up to the end of the scale.
+    """Return the ground before the cameras, up to the end of the scale; at least LEAST_HEIGHT px high.
 
-    The left camera looks up from the middle of the lower border. Without a geometry its axis is taken to be level.
+    It is `height` px high, and three quarters as wide. The left camera looks up from the middle of the lower border.
+    Without a geometry its axis is taken to be level.
     """
     height = max(height, LEAST_HEIGHT)
     width = 3 * height // 4
@@ -51,7 +52,7 @@ def above_of(frame: SeenFrame, scale: DepthScale, height: int) -> Image.Image:
 
 
 def _draw_object(pen: ImageDraw.ImageDraw, floor: _Floor, each: SeenObject) -> None:
-    """Draw a ball as a circle, and anything else as a bar as wide as it is: which way it is turned is not known."""
+    """Draw a ball as a circle, and anything else as a bar of its width, since its orientation is unknown."""
     x, y = floor.large(each.place_mm)
     half = max(LEAST_MARK, each.width_mm / 2 * floor.px_per_mm) * style.SMOOTH
     colour, stroke = style.faded(each.colour, each.accuracy), style.STROKE * style.SMOOTH
@@ -62,7 +63,7 @@ def _draw_object(pen: ImageDraw.ImageDraw, floor: _Floor, each: SeenObject) -> N
 
 
 class _Floor:
-    """Where on the drawing a place lies: the cameras look down by `tilt_deg`, and the upper border is `far_mm` away."""
+    """Maps places to the drawing: the cameras look down by `tilt_deg`, and the upper border is `far_mm` away."""
 
     def __init__(self, width: int, height: int, far_mm: float, tilt_deg: float) -> None:
         self.px_per_mm = height / far_mm
@@ -70,13 +71,13 @@ class _Floor:
         self._forward, self._down = math.cos(math.radians(tilt_deg)), math.sin(math.radians(tilt_deg))
 
     def at(self, place: PointMm) -> tuple[float, float]:
-        """Return the pixel of a place in the left camera's frame."""
+        """Return the pixel of a place, which is given in the left camera's frame."""
         x, y, z = place
         forward = z * self._forward - y * self._down
         return self._middle + x * self.px_per_mm, self._bottom - forward * self.px_per_mm
 
     def large(self, place: PointMm) -> tuple[float, float]:
-        """Return the same in the large drawing."""
+        """Return the same pixel in the large drawing."""
         x, y = self.at(place)
         return x * style.SMOOTH, y * style.SMOOTH
 
@@ -86,7 +87,7 @@ class _Floor:
 
 
 def _rings(scale: DepthScale) -> range:
-    """Return the distances that are marked, in mm: two to five round ones."""
+    """Return the distances to mark, in mm: two to five round ones."""
     size = 10 ** max(1, math.floor(math.log10(scale.far_mm / 5)))
     step = next(each for each in (size, 2 * size, 5 * size, 10 * size) if 5 * each >= scale.far_mm)
     return range(step, math.ceil(scale.far_mm), step)
@@ -99,7 +100,7 @@ def _draw_rings(pen: ImageDraw.ImageDraw, floor: _Floor, scale: DepthScale) -> N
 
 
 def _draw_sight(pen: ImageDraw.ImageDraw, floor: _Floor, frame: SeenFrame, geometry: SeenGeometry) -> None:
-    """Draw the borders of what the left picture shows."""
+    """Draw the borders of the left picture's view."""
     width = frame.cameras[0].width_px
     for column in (0, width - 1):
         slope = (column - geometry.principal_px[0]) / geometry.focal_px

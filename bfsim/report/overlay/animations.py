@@ -1,4 +1,4 @@
-"""The pictures of an overlay as one file that shows them one after the other: GIF, WebP, APNG, MP4."""
+"""The pictures of an overlay as one animated file: GIF, WebP, APNG, MP4."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FRAME_MS = 200
 """How long an animated file shows a frame: long enough to look at it."""
 
 TAG = "bfsim overlay"
-"""A remark in each file, by which an earlier overlay is known."""
+"""A remark in each file that identifies an earlier overlay."""
 
 
 Frame = Callable[[int], Image.Image]
@@ -25,7 +25,7 @@ Frame = Callable[[int], Image.Image]
 
 
 class _Film(Image.Image):
-    """Pictures as Pillow has those of an animated file: only that which is looked at is in memory."""
+    """Pictures in the form in which Pillow has those of an animated file: only the current one is in memory."""
 
     def __init__(self, frame: Frame, count: int) -> None:
         super().__init__()
@@ -35,7 +35,7 @@ class _Film(Image.Image):
         self.seek(0)
 
     def seek(self, frame: int) -> None:
-        """Look at a picture."""
+        """Go to a picture."""
         if frame >= self.n_frames:
             raise EOFError
         if frame != self._number:
@@ -44,17 +44,17 @@ class _Film(Image.Image):
             self._number = frame
 
     def tell(self) -> int:
-        """Return the number of the picture that is looked at."""
+        """Return the number of the current picture."""
         return self._number
 
 
 def _on_paper(frames: Sequence[Path]) -> Frame:
-    """Return what takes each picture, all on paper as large as the largest: firmware may change the size during a run."""
+    """Return a function that puts each picture on a sheet of the largest size: the size may change during a run."""
     sizes = []
     for each in frames:
         with Image.open(each) as image:
             sizes.append(image.size)
-    # video has one sample of colour for two by two pixels: no odd row or column
+    # video stores colours for blocks of two by two pixels, so width and height must be even
     width, height = (-(-max(size[axis] for size in sizes) // 2) * 2 for axis in (0, 1))
 
     def frame(number: int) -> Image.Image:
@@ -71,7 +71,7 @@ def _save_animation(frame: Frame, count: int, target: Path, **options: Any) -> N
 
 
 def _encode_gif(frames: Sequence[Path], target: Path) -> None:
-    # of Pillow's palettes this one keeps the colours of thin marks
+    # of Pillow's palettes, this one keeps the colours of thin marks
     whole = _on_paper(frames)
 
     def frame(number: int) -> Image.Image:
@@ -112,7 +112,7 @@ ENCODERS: dict[str, Callable[[Sequence[Path], Path], None]] = {
 
 
 def encoder_of(path: Path) -> Callable[[Sequence[Path], Path], None]:
-    """Return what makes the file; raise ConfigError if nothing does."""
+    """Return the function that makes such a file; raise ConfigError if there is none."""
     suffix = path.suffix.lower()
     if suffix not in ENCODERS:
         raise ConfigError(f"--overlay must be a folder or a file *{', *'.join(ENCODERS)}, not {path}")
@@ -127,7 +127,7 @@ def encoder_of(path: Path) -> Callable[[Sequence[Path], Path], None]:
 
 
 def png_remark() -> PngInfo:
-    """Return the remark as PNG has it."""
+    """Return the remark in the form for PNG."""
     remark = PngInfo()
     remark.add_text("Comment", TAG)
     return remark

@@ -1,4 +1,4 @@
-"""Overlays as files: a picture per frame in a folder, or one file that shows them one after the other."""
+"""Overlays as files: a picture per frame in a folder, or one animated file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ from bfsim.report.overlay.overlay import overlay_of
 from bfsim.seen import SeenFrame
 
 KEPT_LEVEL, DRAFT_LEVEL = 4, 1
-"""Of zlib, for pictures that are kept and for those that one file is made of: Pillow's 6 takes 1.6 to 2.5 times as long as 4 for 1 to 6 % less."""
+"""Levels of zlib for pictures that are kept, and for those that go into an animated file.
+
+Pillow's 6 takes 1.6 to 2.5 times as long as 4 for files that are 1 to 6 % smaller.
+"""
 
 _NAME = re.compile(r"frame-\d+\.png")
 
@@ -27,9 +30,9 @@ _NAME = re.compile(r"frame-\d+\.png")
 class OverlayWriter:
     """Context manager that draws frames for a folder, or for a file *.gif, *.webp, *.apng or *.mp4.
 
-    All is drawn beside `path` and put in its place on a clean exit of the `with` block; after an error or Ctrl-C
-    nothing is left. `layers` are what is drawn. An earlier overlay is replaced, and anything else in the folder
-    refused: ConfigError, as for a place that cannot be written.
+    Everything is drawn beside `path` and moved into place on a clean exit of the `with` block; after an error or Ctrl-C
+    nothing is left. `layers` are the layers to draw. An earlier overlay is replaced; if the folder holds anything else,
+    or the place cannot be written, ConfigError is raised.
     """
 
     def __init__(self, path: Path, layers: Collection[str] = LAYERS) -> None:
@@ -86,7 +89,7 @@ class OverlayWriter:
 
 
 def _require_folder(path: Path) -> None:
-    """Raise ConfigError unless `path` can be the folder: new, empty, or of an earlier overlay."""
+    """Raise ConfigError unless `path` can be the folder: new, empty, or with an earlier overlay in it."""
     if not path.is_dir():
         if path.exists():
             raise ConfigError(f"{path} must be a folder for the overlay, not a file")
@@ -111,7 +114,7 @@ def _earlier(folder: Path) -> Iterator[Path]:
 
 
 def _is_overlay(file: Path) -> bool:
-    """Whether a file has the remark of an overlay, which every format stores as plain text."""
+    """Whether a file contains the remark of an overlay, which every format stores as plain text."""
     if not file.stat().st_size:
         return False
     with file.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as content:

@@ -1,4 +1,4 @@
-"""What lies under the marks of an overlay: the picture, darkened and magnified, its map, its heat and its edges."""
+"""The ground of an overlay, under its marks: the picture, darkened and magnified, its map, its heat and its edges."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ FULL_GRADIENT = 96  # edges as strong as this are drawn at their brightest
 FAINTEST = 0.4
 EDGE_SIDE = 0.6  # of the side of a pixel
 
-MAP_SHARE = 0.45  # of the colour of a map over the picture
-MAP_STEPS = 4096  # from its first colour to its last: finer than 8 bits of red, green and blue show
+MAP_SHARE = 0.45  # weight of a map's colour over the picture
+MAP_STEPS = 4096  # from its first colour to its last: finer than 8 bits of red, green and blue can show
 
 
 def picture_with_edges(
     seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int, depths: DepthScale, hottest_us: float
 ) -> NDArray[np.uint8]:
-    """Return the picture, darkened and magnified, under its map and its heat, with a small square in each pixel that is an edge."""
+    """Return the picture, darkened and magnified, under its map, its heat, and a small square in each edge pixel."""
     size = (seen.width_px * scale, seen.height_px * scale)
     large = rgb_of(seen.picture).resize(size, Image.Resampling.BICUBIC).point(style.dark_levels())
     if seen.map:
@@ -62,7 +62,7 @@ def _map_paints() -> NDArray[np.uint8]:
 
 
 def _with_map(image: Image.Image, heat: SeenMap) -> Image.Image:
-    """Return a picture under a map: blue for the least of its numbers, red for the greatest, nothing where there is none."""
+    """Return a picture under a map: blue for its least number, red for its greatest, nothing where there is none."""
     values = np.asarray(heat.values, float)
     known = values[np.isfinite(values)]
     if not known.size:

@@ -1,4 +1,4 @@
-"""What stands beside and below a picture with its heat: what each row cost by stage, and what the colours mean."""
+"""What stands beside and below a picture with heat: the cost of each row by stage, and the meaning of the colours."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ STAGES: tuple[Colour, ...] = (
     (78, 143, 208), (224, 138, 60), (79, 168, 133), (199, 103, 168), (201, 177, 58), (123, 120, 214), (208, 96, 94),
     (90, 167, 184), (143, 143, 74),
 )  # fmt: skip
-"""Of stages in the order of the budget, from the first one again when all have been used."""
+"""Colours of stages in the order of the budget; they repeat when all have been used."""
 
 
 def colour_of(stages: Sequence[str], stage: str) -> Colour:
-    """Return the colour of a stage among all."""
+    """Return the colour of one of the `stages`."""
     return STAGES[stages.index(stage) % len(STAGES)]
 
 
 def longest_row_us(heats: Sequence[SeenHeat]) -> float:
-    """Return what the dearest row of some pictures cost, in µs: the longest bar."""
+    """Return the cost of the dearest row of some pictures, in µs, which is the length of the longest bar."""
     return max((float(each.total_us().sum(axis=1).max()) for each in heats), default=0.0)
 
 
 def bars_of(heat: SeenHeat, height: int, longest_us: float) -> Image.Image:
-    """Return a bar beside each row of a picture that is drawn `height` px high: what it cost, one stage after the other."""
+    """Return a bar beside each row of a picture that is drawn `height` px high: its cost, stage by stage."""
     stages = list(heat.stages_us)
     ends_us = np.cumsum([each.sum(axis=1) for each in heat.stages_us.values()], axis=0)
     ends_px = (ends_us / (longest_us or 1.0) * BARS).round().astype(int)
@@ -46,10 +46,10 @@ def bars_of(heat: SeenHeat, height: int, longest_us: float) -> Image.Image:
 
 
 def heat_legend(heats: Sequence[SeenHeat], width: int, hottest_us: float, longest_us: float) -> Image.Image:
-    """Return what colours and bars mean, and what each stage cost all cores: in places of the pictures, and elsewhere."""
+    """Return the meaning of colours and bars, and the cost of each stage on all cores, in the pictures and elsewhere."""
     stages = list(heats[0].stages_us)
     font = style.font(style.FONT)
-    # as high as that of all stages with any numbers: the legend is so for each frame of a run
+    # the height suits all stages with any numbers, so that all frames of a run have the same legend
     height = LINE * (1 + max(line for _, line in _lines(stages, width)) + 1) + style.MARGIN // 2
     strip = Image.new("RGB", (width, height), style.PAPER)
     pen = ImageDraw.Draw(strip)
@@ -76,7 +76,7 @@ def _words(heats: Sequence[SeenHeat], stages: Sequence[str]) -> Iterator[tuple[s
 
 
 def _lines(stages: Sequence[str], width: int) -> list[tuple[int, int]]:
-    """Return where the words on each stage begin, and in which line."""
+    """Return where the words on each stage begin, and on which line."""
     font = style.font(style.FONT)
     places, x, line = [], 0, 0
     for stage in stages:
@@ -103,5 +103,5 @@ def _draw_scale(strip: Image.Image, pen: ImageDraw.ImageDraw, hottest_us: float,
 
 
 def _time(us: float) -> str:
-    """Return a time in words, in ms however short it is: the font has no µ."""
+    """Return a time in words, always in ms: the font has no µ."""
     return f"{us / 1000:.3g} ms"

@@ -1,4 +1,4 @@
-"""Words on a picture: each beside what it names, none over another, and at most one a place."""
+"""Words on a picture: each beside what it names, without overlaps, and at most one at a place."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bfsim.report.overlay import style
 from bfsim.seen import Colour
 
 PAD = 4
-HALO = 2  # of words without a box
+HALO = 2  # around words without a box
 
 Box = tuple[float, float, float, float]
 """Left, top, right, bottom."""
@@ -19,9 +19,9 @@ Box = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """Words for what is at a place of a panel, in its pixels: in a box beside it, or without one in its middle.
+    """Words for something at a place of a panel, in pixels: in a box beside it, or without a box on its middle.
 
-    `width` and `height` are those of what is named. Of two labels the one with the greater `weight` goes first.
+    `width` and `height` are those of the named thing. Labels of greater `weight` are placed first.
     """
 
     x: float
@@ -35,7 +35,7 @@ class Label:
 
     @property
     def named(self) -> Box:
-        """The place of what is named."""
+        """The box of the named thing."""
         return (
             self.x - self.width / 2,
             self.y - self.height / 2,
@@ -45,10 +45,10 @@ class Label:
 
 
 def write_labels(pen: ImageDraw.ImageDraw, labels: Sequence[Label], panel: Box) -> None:
-    """Write labels inside of a panel, whose left top corner they count from; those without room are left out.
+    """Write labels into a panel, from whose top left corner their places count; those without room are left out.
 
-    Boxes go above, below or beside what they name, where they cover no other box and nothing that is named. What is named
-    by a label of more weight at the same place has none.
+    Boxes go above, below or beside the named thing, and cover neither another box nor a named thing. If a label of
+    greater weight names something at the same place, a label is left out.
     """
     named = _one_a_place([each for each in labels if each.is_boxed])
     kept = [_in(panel, each.named) for each in named]
@@ -70,7 +70,10 @@ def write_labels(pen: ImageDraw.ImageDraw, labels: Sequence[Label], panel: Box) 
 
 
 def _one_a_place(labels: Sequence[Label]) -> list[Label]:
-    """Return the labels by weight, without those whose middle lies in what one before them names, or the other way round."""
+    """Return the labels by weight, without those that share their place with one before them.
+
+    Two labels share a place if the middle of one lies in what the other names.
+    """
     kept: list[Label] = []
     for each in sorted(labels, key=lambda label: -label.weight):
         if not any(_holds(other.named, each) or _holds(each.named, other) for other in kept):
@@ -83,7 +86,7 @@ def _holds(box: Box, label: Label) -> bool:
 
 
 def _places(label: Label, size: tuple[float, float], panel: Box) -> Iterator[Box]:
-    """Yield where a label may go, the best place first."""
+    """Yield possible places of a label, the best first."""
     width, height = size
     left, top, right, bottom = _in(panel, label.named)
     x, y = (left + right) / 2, (top + bottom) / 2
@@ -92,7 +95,7 @@ def _places(label: Label, size: tuple[float, float], panel: Box) -> Iterator[Box
         above, below = top - height - 2 * PAD, bottom + 2 * PAD
         beside = [(right + 2 * PAD, y - height / 2), (left - width - 2 * PAD, y - height / 2)]
         corners = [(x - width / 2, above), (x - width / 2, below), *beside]
-        # a line further off at either side, where the next places are taken
+        # one pixel further away on either side, if the places before are taken
         corners += [(x - width / 2, above - height - 1), (x - width / 2, below + height + 1)]
     for corner in corners:
         at_x = min(max(corner[0], panel[0]), panel[2] - width)

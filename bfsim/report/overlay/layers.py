@@ -1,4 +1,4 @@
-"""Which of what was seen is drawn."""
+"""The layers of an overlay: which of the things seen are drawn."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ ABOVE = "above"
 """The view from above, beside the pictures."""
 
 LAYERS = (*_WITHOUT, ABOVE)
-"""All that can be drawn over the pictures, and beside them."""
+"""Everything that can be drawn over the pictures, and beside them."""
 
 UNDER_HEAT = ("objects",)
-"""What is drawn over heat if nobody says more: it is to be seen."""
+"""The default layers over heat, which is to stay visible."""
 
 
 def only(frame: SeenFrame, layers: Collection[str]) -> SeenFrame:
-    """Return a frame in which nothing was seen but what is in `layers`."""
+    """Return a frame with only those things seen that are in `layers`."""
     hidden = [without for name, without in _WITHOUT.items() if name not in layers]
     cameras = (reduce(lambda left, without: without(left), hidden, seen) for seen in frame.cameras)
     return replace(frame, cameras=tuple(cameras))

@@ -1,4 +1,4 @@
-"""What the marks of an overlay mean, each drawn by the pen that draws it in the pictures."""
+"""The meanings of an overlay's marks, each mark drawn by the pen that draws it in the pictures."""
 
 from __future__ import annotations
 
@@ -43,31 +43,31 @@ ENTRIES: tuple[tuple[str, str, Callable[[Pen], None]], ...] = (
     ("circles", "circle that failed", lambda pen: pen.circle(FAILED)),
     ("objects", "object", lambda pen: pen.object(OBJECT)),
 )
-"""The layer of each mark, what it means, and how it is drawn."""
+"""The layer of each mark, its meaning, and how it is drawn."""
 
 
 OF_DEPTH = {"edges", "lines", "above"}
-"""Layers whose colours say how far something is."""
+"""Layers whose colours show distances."""
 TITLE = "3-D lines and edges by depth, mm"
 
 
 def _step(text: str) -> int:
-    """Return how wide an entry is."""
+    """Return the width of an entry."""
     return GLYPH + round(style.font(style.FONT).getlength(text)) + GAP
 
 
 def _scale_width() -> int:
-    """Return how wide the scale of depths is."""
+    """Return the width of the scale of depths."""
     return round(style.font(style.FONT).getlength(TITLE)) + BAR + 3 * GAP + 100
 
 
 LEGEND_WIDTH = sum(_step(text) for _, text, _ in ENTRIES) + _scale_width()
-"""Of a whole legend in one row."""
+"""The width of a whole legend in one row."""
 
 
 @cache
 def legend(scale: DepthScale, layers: frozenset[str], width: int, *, is_empty: bool) -> Image.Image:
-    """Return the legend of what is drawn in `layers`, as many rows as it takes in a `width`; an empty one is as large."""
+    """Return the legend of `layers`, in as many rows as it takes in a `width`; an empty one has the same size."""
     font = style.font(style.FONT)
     entries = [(text, draw) for layer, text, draw in ENTRIES if layer in layers]
     steps = [_step(text) for text, _ in entries]
@@ -89,7 +89,7 @@ def legend(scale: DepthScale, layers: frozenset[str], width: int, *, is_empty: b
 
 
 def _places(widths: list[int], room: int) -> list[tuple[int, int]]:
-    """Return where entries begin, in rows as wide as there is room, and the middles of these."""
+    """Return where entries begin, in rows of width `room`, and the middles of the rows."""
     places = []
     x, y = 0, style.FOOT // 2
     for each in widths:
@@ -101,7 +101,7 @@ def _places(widths: list[int], room: int) -> list[tuple[int, int]]:
 
 
 def _write_scale(pen: ImageDraw.ImageDraw, x: float, middle: int, scale: DepthScale) -> None:
-    """Write the scale of depths: its ends at either side of a bar of its colours."""
+    """Write the scale of depths: a bar of its colours between its two ends."""
     font = style.font(style.FONT)
     pen.text((x, middle), TITLE, style.FAINT, font, anchor="lm")
     x += font.getlength(TITLE) + GAP / 2

@@ -18,19 +18,20 @@ from bfsim.seen.colours import DepthScale, depths_of
 from bfsim.seen.heat import hottest_row_us
 
 BETWEEN = "   "
-"""What stands between two numbers."""
+"""Separates two numbers."""
 
 HIGHEST = 2
-"""A picture is magnified to so many times the wanted width in height at most: one of a few columns would be of gigapixels."""
+"""The greatest height of a magnified picture, as a multiple of the wanted width: a few columns would fill gigapixels."""
 
 
 def overlay_of(
     frame: SeenFrame, layers: Collection[str] = LAYERS, panel_width: int = style.PANEL_WIDTH
 ) -> Image.Image:
-    """Return the sheet of a frame, RGB, with some `layers` drawn: the same size for frames of pictures of one size.
+    """Return the sheet of a frame, RGB, with some `layers` drawn; pictures of one size have sheets of one size.
 
-    A picture is about `panel_width` pixels wide, but a slim one at most twice as high; one alone is about as wide as the
-    legend in one row. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
+    A picture is about `panel_width` pixels wide, but at most twice as high; a single picture is about as wide as the
+    legend in one row. Cameras that see depth have a view from above beside them, and pictures with heat the cost of
+    each row.
     """
     frame, scale = only(frame, layers), depths_of(frame)
     wanted_px = panel_width if len(frame.cameras) > 1 else LEGEND_WIDTH
@@ -43,7 +44,7 @@ def overlay_of(
     inside = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) - 1)
     inside += above.width + style.MARGIN if above else 0
     inside += (BARS + GAP) * len(heats)
-    # slim pictures have a sheet that is wide enough for words
+    # for slim pictures, the sheet is wide enough for words
     room = inside if inside >= style.PANEL_WIDTH else LEGEND_WIDTH
     has_marks = any(map(_has_marks, frame.cameras))
     marks = legend(scale, frozenset(layers), room, is_empty=not has_marks)
@@ -71,7 +72,7 @@ def overlay_of(
 
 
 def _has_marks(seen: Seen) -> bool:
-    """Whether there is anything that the legend explains: firmware without a view has nothing."""
+    """Whether the legend has anything to explain: without a view, firmware has no marks."""
     features = (seen.edges, seen.blobs, seen.lines, seen.circles, seen.objects, seen.lines_3d, seen.edges_3d)
     return any(len(each) for each in features)
 
@@ -92,7 +93,7 @@ def _panel(
 
 
 def _write_head(pen: ImageDraw.ImageDraw, frame: SeenFrame, seen: Seen, left: int, width: int) -> None:
-    """Write whose picture it is, when, and how much was seen, the last numbers only where there is room."""
+    """Write whose picture it is, when it was taken, and what was seen, the last numbers only if there is room."""
     font, middle = style.font(style.FONT), style.HEAD // 2
     title = f"{seen.camera} camera"
     pen.text((left, middle), title, style.WORDS, font, anchor="lm")

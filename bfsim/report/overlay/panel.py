@@ -1,4 +1,4 @@
-"""One picture with the marks of all that was seen in it."""
+"""One picture with the marks of everything seen in it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.report.overlay.pen import LOSS_DEPTH, Pen
 from bfsim.seen import Seen, SeenEdges3D, SeenLine, SeenLine3D, SeenLoss, SeenObject, colours
 from bfsim.seen.colours import DepthScale
 
-LOSS_WEIGHT = 2  # more than that of any object
+LOSS_WEIGHT = 2  # above that of any object
 
 
 def panel_of(
@@ -25,10 +25,10 @@ def panel_of(
     depths: DepthScale,
     hottest_us: float = 0.0,
 ) -> tuple[Image.Image, list[Label]]:
-    """Return the picture of a camera with its marks, `scale` times larger, and the words to be put on it.
+    """Return the picture of a camera with its marks, `scale` times larger, and the labels to write on it.
 
-    `objects` are those that this camera shows; `lines_3d` and `edges_3d` those of the left picture, for the left one.
-    `hottest_us`: the end of the scale of its heat.
+    `objects` are those that this camera shows; `lines_3d` and `edges_3d` are those of the left picture, and empty for
+    the right one. `hottest_us`: the end of the scale of its heat.
     """
     under = Image.fromarray(picture_with_edges(seen, edges_3d, scale, depths, hottest_us))
     image = under.resize((under.width * style.SMOOTH, under.height * style.SMOOTH), Image.Resampling.NEAREST)
@@ -77,7 +77,7 @@ def _depth_of(line: SeenLine3D) -> float:
 
 
 def _loss_label(loss: SeenLoss, width_px: int) -> Label:
-    """Return what is missing in a band of rows, beside its bar."""
+    """Return a label for what is missing in a band of rows, beside its bar."""
     top, height = loss.top_px, loss.bottom_px + 1 - loss.top_px
     place = (
         LOSS_DEPTH * width_px / 2,

@@ -1,4 +1,4 @@
-"""The marks of an overlay, each as a pen draws it: rectangles, lines, circles, arrows."""
+"""The marks of an overlay, and how they are drawn: rectangles, lines, circles, arrows."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from PIL import Image, ImageDraw
 from bfsim.report.overlay import style
 from bfsim.seen import Colour, Point, SeenArrow, SeenBlob, SeenCircle, SeenLine, SeenLoss, SeenObject, colours
 
-DASH_DEG = 12  # of a circle that failed
+DASH_DEG = 12  # of a circle that failed a test
 
 
-LOSS_DEPTH = 0.03  # of the width of the picture: how far a band of which all was left out reaches into it
+LOSS_DEPTH = 0.03  # of the picture's width: the bar of a band of which everything was left out
 
 
 class Pen:
-    """Draws marks, `scale` times as large as in the picture, whose origin is at `origin`."""
+    """Draws marks, `scale` times as large as in the picture, whose top left corner is at `origin`."""
 
     def __init__(self, image: Image.Image, scale: int, origin: Point = (0, 0)) -> None:
         self._draw = ImageDraw.Draw(image)
@@ -32,7 +32,7 @@ class Pen:
             self._draw.rectangle((x - reach, y - reach, x + reach, y + reach), colours.EDGE)
 
     def blob(self, blob: SeenBlob) -> None:
-        """Draw its rectangle, round its pixels, and a cross in its centre."""
+        """Draw the rectangle of a blob around its pixels, and a cross in its centre."""
         corners = (blob.left_px - 0.5, blob.top_px - 0.5), (blob.right_px + 0.5, blob.bottom_px + 0.5)
         self._draw.rectangle([self._at(each) for each in corners], outline=blob.colour, width=self._stroke)
         x, y = self._at(blob.centre_px)
@@ -47,7 +47,7 @@ class Pen:
         self._draw.circle(start, style.DOT * style.SMOOTH, fill=colour, outline=style.PAPER, width=2)
 
     def circle(self, circle: SeenCircle) -> None:
-        """Draw a circle and its centre, or dashes where one failed."""
+        """Draw a circle and its centre, or dashes if it failed."""
         centre, radius = self._at(circle.centre_px), circle.radius_px * self._scale
         if circle.passed:
             self._draw.circle(centre, radius, outline=colours.CIRCLE, width=self._stroke)
@@ -58,7 +58,7 @@ class Pen:
             self._draw.arc(box, degrees, degrees + DASH_DEG, colours.FAILED, self._stroke)
 
     def object(self, each: SeenObject) -> None:
-        """Mark the corners of where an object is; the surer, the brighter."""
+        """Mark the corners of an object's place; the surer, the brighter."""
         colour = style.faded(each.colour, each.accuracy)
         x, y = self._at(each.image_px)
         half = [side * self._scale / 2 + 2 * self._stroke for side in each.image_size_px]
@@ -71,7 +71,7 @@ class Pen:
                     self._draw.line((corner, end), colour, self._stroke)
 
     def arrow(self, arrow: SeenArrow) -> None:
-        """Draw an arrow, its head a sixth of it long at most."""
+        """Draw an arrow whose head is at most a sixth of its length."""
         (x, y), (to_x, to_y) = self._at(arrow.start_px), self._at(arrow.end_px)
         self._draw.line((x, y, to_x, to_y), arrow.colour, self._stroke)
         length = math.hypot(to_x - x, to_y - y)

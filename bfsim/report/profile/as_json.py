@@ -1,4 +1,4 @@
-"""The profile of a run as JSON: all that its tables are made of, whole."""
+"""The profile of a run as JSON: everything in its tables, complete."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.trace import RunRecord
 
 SCHEMA = "bfsim.profile/1"
-"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+"""Name and version of the layout; the version rises when the meaning of a key changes or a key goes away."""
 
 
 def profile_json(run: RunRecord, core: str | None = None, stage: str | None = None, top: int = 20) -> str:
-    """Return the profile of a run of at least one frame; `top` is how many of the worst frames are in it."""
+    """Return the profile of a run of at least one frame, with the `top` worst frames."""
     view = View.of(run, core, stage, top)
     median, worst = worst_frames(run, core, stage, top)
     reasons = [

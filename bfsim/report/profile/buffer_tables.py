@@ -1,4 +1,4 @@
-"""Buffers: who accessed them, and what was waited for them; and what every master moved over each bus."""
+"""Buffers: their accesses and the waits for them; and what every master moved over each bus."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.report.wording.units import others_row
 
 
 def buffer_tables(view: View) -> Iterator[Table]:
-    """Yield the buffers that were waited for most or moved most, then the buses."""
+    """Yield the buffers with the longest waits or most traffic, then the buses."""
     buffers = buffers_of(view.run, view.core, view.stage)
     yield _access_table(view, buffers)
     moved = _move_table(view, buffers)
@@ -24,7 +24,7 @@ def buffer_tables(view: View) -> Iterator[Table]:
 
 
 def _access_table(view: View, buffers: Sequence[BufferProfile]) -> Table:
-    """Return who accessed buffers, and what was waited for them, most first."""
+    """Return the accesses to buffers and the waits for them, the longest first."""
     title = view.title("buffer")
     table = new_table(title, "Buffer", "Memory", "Reads", "Writes", "Cached%", "ms", "%", "Waits")
     table.columns[1].justify = table.columns[-1].justify = "left"
@@ -51,7 +51,7 @@ def _longest_wait(buffer: BufferProfile) -> str:
 
 
 def _move_table(view: View, buffers: Sequence[BufferProfile]) -> Table:
-    """Return what was moved over the buses for buffers, most first."""
+    """Return the traffic of the buses by buffer, most first."""
     pages = "Page hits", "misses", "conflicts"
     table = new_table("Buffers on the buses, all masters", "Buffer", "By cores", "By DMA", *pages)
     for each in sorted(buffers, key=lambda each: -each.core_bytes - each.dma_bytes)[: view.top]:
@@ -63,7 +63,7 @@ def _move_table(view: View, buffers: Sequence[BufferProfile]) -> Table:
 
 
 def _add_the_rest(table: Table, view: View, buffers: Sequence[BufferProfile]) -> None:
-    """Add what no buffer that is shown was waited for, so that the rows add up to the frames."""
+    """Add the waits for everything that is not shown, so that the rows add up to the frames."""
     cost, others = view.profile.cost, buffers[view.top :]
     waited = sum(each.stalled_cclk for each in buffers)
     left = {
@@ -82,7 +82,7 @@ def _add_the_rest(table: Table, view: View, buffers: Sequence[BufferProfile]) ->
 
 
 def traffic_tables(view: View) -> Iterator[Table]:
-    """Yield what every master moved, if any did."""
+    """Yield the traffic of every master, if there was any."""
     traffic = traffic_of(view.run)
     pages = "Page hits", "misses", "conflicts"
     table = new_table("Memories, all masters", "Memory", "Master", "Read", "Written", *pages, "Bus busy %")

@@ -1,4 +1,4 @@
-"""What each buffer costs: who accessed it, how often, over which bus, and who waited for it."""
+"""The cost of each buffer: who accessed it, how often, over which bus, and who waited for it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ IN_NO_BUFFER = "(in no buffer)"
 class BufferProfile:
     """One buffer. `reads` and `writes` are elements that kernels accessed, `fills` lines that data caches fetched for them.
 
-    Bytes and pages are those on the bus of its memory, of cores and of DMA; `stall_cclk` is what kernels waited for it.
+    Bytes and pages are those on the bus of its memory, by cores and DMA; `stall_cclk` is how long kernels waited for
+    it.
     """
 
     buffer: str
@@ -37,22 +38,22 @@ class BufferProfile:
 
     @property
     def stalled_cclk(self) -> int:
-        """Stalls for whatever reason."""
+        """Stalls for any reason."""
         return sum(self.stall_cclk.values())
 
     @property
     def cache_hits(self) -> float | None:
-        """Part of the reads that a data cache had, 0..1; None where none held lines of it."""
+        """The part of the reads that hit a data cache, 0..1; None if no cache held lines of it."""
         return max(0.0, 1 - self.fills / self.reads) if self.fills and self.reads else None
 
 
 def buffers_of(
     run: RunRecord, core: str | None = None, stage: str | None = None
 ) -> tuple[BufferProfile, ...]:
-    """Return every buffer that was used, what was waited for most first.
+    """Return every buffer that was used, that with the longest waits first.
 
-    Accesses and stalls are those of one core or of all, in one stage or in all of them; what moved over a bus is always that
-    of all masters in the whole run.
+    Accesses and stalls are those of one core or of all, in one stage or in all; the traffic of a bus is always that of
+    all masters in the whole run.
     """
     found = {
         each.buffer: BufferProfile(buffer=each.buffer, memory=each.memory, nbytes=each.nbytes)
@@ -93,14 +94,14 @@ def _add_traffic(found: dict[str, BufferProfile], traffic: TrafficRecord) -> Non
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficProfile:
-    """What a master moved to and from all buffers of a memory, and the share of the run in which it held its bus, 0..1."""
+    """What a master moved to and from all buffers of a memory, and the share of the run in which it held the bus, 0..1."""
 
     traffic: TrafficRecord
     busy_share: float
 
 
 def traffic_of(run: RunRecord) -> tuple[TrafficProfile, ...]:
-    """Return what every master moved over each bus. Memories are shared: it is that of all cores and stages."""
+    """Return what every master moved over each bus. Memories are shared, so it counts all cores and stages."""
     begin_cclk = run.frames[0].begin_cclk
     end_cclk = run.frames[-1].end_cclk
     sums: dict[tuple[str, str], list[TrafficRecord]] = {}

@@ -13,7 +13,7 @@ from bfsim.report.wording.units import others_row
 
 
 def caller_tables(view: View) -> Iterator[Table]:
-    """Yield the dearest kernels below those that call them: with their callees, and alone; then what is left."""
+    """Yield the dearest kernels below their callers: with their callees, and alone; then the rest."""
     nodes = [each for top in callers_of(view.run, view.core, view.stage) for each in top.walk()]
     dearest = sorted(nodes, key=lambda each: -each[1].inclusive_cclk)[: view.top]
     shown = {id(node) for _, node in dearest}

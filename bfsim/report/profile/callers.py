@@ -1,4 +1,4 @@
-"""The tree of calls: what each kernel costs on each path that leads to it, with and without those that it calls."""
+"""The tree of calls: the cost of each kernel on each path that leads to it, with and without its callees."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.trace import RunRecord
 
 @dataclass(slots=True, kw_only=True)
 class CallNode:
-    """A kernel as it was called through those above it. `own` is without its callees, `callees` the dearest first."""
+    """A kernel as called through those above it. `own` is without its callees; `callees` has the dearest first."""
 
     kernel: str
     calls: int = 0
@@ -21,11 +21,11 @@ class CallNode:
 
     @property
     def inclusive_cclk(self) -> int:
-        """Cycles with those of its callees."""
+        """Cycles including those of its callees."""
         return self.own.elapsed_cclk + sum(each.inclusive_cclk for each in self.callees.values())
 
     def walk(self, depth: int = 0) -> Iterator[tuple[int, CallNode]]:
-        """Yield it and all below it, the dearest first, with their depths."""
+        """Yield the kernel and all below it, the dearest first, with their depths."""
         yield depth, self
         for each in sorted(self.callees.values(), key=lambda node: -node.inclusive_cclk):
             yield from each.walk(depth + 1)
@@ -37,9 +37,9 @@ def kernel_names(run: RunRecord) -> dict[str, str]:
 
 
 def callers_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> tuple[CallNode, ...]:
-    """Return the kernels that the firmware itself calls, the dearest with all that they call first.
+    """Return the kernels that the firmware itself calls, the one that is dearest with all its callees first.
 
-    The counts are exact for each path, also where code was inlined.
+    The counts are exact for each path, even if code was inlined.
     """
     names, cores, stages = kernel_names(run), cores_of(run, core), stages_in(run, stage)
     top = CallNode(kernel="")

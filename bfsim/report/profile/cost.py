@@ -19,7 +19,7 @@ class Cost:
 
     @property
     def stalled_cclk(self) -> int:
-        """Stalls for whatever reason."""
+        """Stalls for any reason."""
         return sum(self.stall_cclk.values())
 
     @property
@@ -34,13 +34,13 @@ class Cost:
         self.idle_cclk += idle_cclk
 
     def take(self, issue_cclk: int, stall_cclk: Mapping[StallReason, int]) -> None:
-        """Take cycles of each kind away, of which there are as many."""
+        """Subtract cycles of each kind; there must be as many."""
         self.issue_cclk -= issue_cclk
         self.stall_cclk = self.stall_cclk - Counter(stall_cclk)
 
 
 def sum_of(costs: Iterable[Cost]) -> Cost:
-    """Return all costs together."""
+    """Return the sum of all costs."""
     result = Cost()
     for each in costs:
         result.add(each.issue_cclk, each.stall_cclk, each.idle_cclk)

@@ -1,4 +1,4 @@
-"""Where the cycles go: stage, owner and source line. Each level adds up to the one above, and all of it to the frames."""
+"""Where the cycles go: stage, owner and source line. Each level adds up to the one above, and the first to the frames."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from bfsim.trace.owner_costs import sum_of_owners
 
 @dataclass(slots=True, kw_only=True)
 class OwnerProfile:
-    """One owner in one stage: a kernel without its callees, or without a `symbol` what no kernel does. `place` is file:line.
+    """One owner in a stage: a kernel without its callees or, without a `symbol`, something else. `place` is file:line.
 
-    A kernel has what routines of the compiler's library do for it, in the lines that call them.
+    A kernel includes the library routines that it calls, in the lines of their calls.
     """
 
     owner: str
@@ -31,7 +31,7 @@ class OwnerProfile:
 
 
 Owners = dict[tuple[str, str], OwnerProfile]
-"""Those of a stage, by name and symbol."""
+"""The owners of a stage, by name and symbol."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -45,7 +45,7 @@ class StageProfile:
 
 @dataclass(slots=True, kw_only=True)
 class Profile:
-    """The frames of some cores broken down. `whole` is what all shares are of: these frames, on all of these cores together.
+    """A breakdown of the frames of some cores. Shares are parts of `whole`: these frames, on these cores together.
 
     `cost` is what the `stages` add up to: the whole, or one row of the budget with its parts.
     """
@@ -57,33 +57,33 @@ class Profile:
 
     @property
     def cost(self) -> Cost:
-        """What the stages add up to."""
+        """The sum of the `stages`."""
         return sum_of(each.cost for each in self.stages)
 
     def share(self, cclk: int) -> float:
-        """Return the part of the whole that some cycles are, 0..1."""
+        """Return the share of some cycles in the whole, 0..1."""
         return cclk / self.whole.elapsed_cclk if self.whole.elapsed_cclk else 0.0
 
 
 def stages_in(run: RunRecord, stage: str | None) -> tuple[str, ...]:
-    """Return the stages that a row of the budget holds, itself and its parts; without a name all of them."""
+    """Return the stages of a row of the budget, itself and its parts; without a name, all of them."""
     within = {each.stage: each.within for each in budget_rows(run)}
     return tuple(each for each in stage_names(run) if stage in (None, each, within.get(each)))
 
 
 def cores_of(run: RunRecord, core: str | None = None) -> tuple[str, ...]:
-    """Return the cores of a run, or the one that is asked for."""
+    """Return the cores of a run, or the one that was asked for."""
     return tuple(each.core for each in run.frames[0].cores) if core is None else (core,)
 
 
 def core_frames(run: RunRecord, cores: Sequence[str]) -> Iterator[CoreFrame]:
-    """Yield what the frames of a run were on these cores, without the start-up."""
+    """Yield the frames of a run on these cores, without the start-up."""
     for frame in without_start_up(run).frames:
         yield from (each for each in frame.cores if each.core in cores)
 
 
 def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> Profile:
-    """Break a run of at least one frame down, for one core or for all together, and for one stage or all of them."""
+    """Break down a run of at least one frame, for one core or all together, and for one stage or all."""
     cores, stages = cores_of(run, core), stages_in(run, stage)
     owners: dict[str, Owners] = {}
     costs: dict[str, Cost] = {}
@@ -109,7 +109,7 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
 
 
 def _add_kernels(owners: Mapping[str, Owners], kernels: Sequence[KernelRecord]) -> None:
-    """Give the owners that are kernels their lines, and what routines of the library cost to those that call them."""
+    """Add lines to the owners that are kernels, and the cost of library routines to their callers."""
     found: dict[tuple[str, str, str], list[KernelRecord]] = {}
     for alone, told in zip(kernels, in_callers(kernels), strict=True):
         if mine := owners.get(told.stage, {}).get((told.kernel, told.symbol)):
@@ -121,7 +121,7 @@ def _add_kernels(owners: Mapping[str, Owners], kernels: Sequence[KernelRecord]) 
         mine.place = place_of(records[0])
         mine.lines = Later(partial(_lines_that_ran, records))
         if mine.calls and not mine.cost.elapsed_cclk:
-            del owners[stage][kernel, symbol]  # a routine: all of it is in its callers
+            del owners[stage][kernel, symbol]  # a routine, whose cost is now in its callers
 
 
 def _lines_that_ran(records: Sequence[KernelRecord]) -> list[LineProfile]:

@@ -1,4 +1,4 @@
-"""The worst frames beside the median one."""
+"""The worst frames compared with the median one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FRAMES, OWNERS_A_FRAME = 3, 8
 
 
 def frame_tables(view: View) -> Iterator[Table]:
-    """Yield how far the worst frames are from the median frame, stage by stage, and for each which owners make it."""
+    """Yield how far the worst frames are from the median, stage by stage, and for each the owners that cause it."""
     median, worst = worst_frames(view.run, view.core, view.stage, FRAMES)
     cores = " + ".join(view.profile.cores)
     title = f"Core {cores}: the worst frames, ms beside the median frame {median.index} ({_ms(view, median.cclk)} ms)"

@@ -1,4 +1,4 @@
-"""The worst frames, and what in them differs from the median frame: stage by stage, owner by owner."""
+"""The worst frames, and how they differ from the median frame: stage by stage, owner by owner."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ WORK = "work"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnerDifference:
-    """By how many calls and cycles an owner differs from the median frame; `why` is the kind of cycles that differs most."""
+    """By how many calls and cycles an owner differs from the median frame; `why` is the kind that differs most."""
 
     stage: str
     owner: str
@@ -27,7 +27,10 @@ class OwnerDifference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameProfile:
-    """A frame: its cycles without idling and waits for the other core, by how many it differs from the median frame, and where, the most first."""
+    """A frame: its cycles without idling and waits for the other core, and their difference from the median frame.
+
+    The difference is also split by stages and owners, the greatest first.
+    """
 
     index: int
     cclk: int
@@ -39,9 +42,9 @@ class FrameProfile:
 def worst_frames(
     run: RunRecord, core: str | None = None, stage: str | None = None, most: int = 3
 ) -> tuple[FrameProfile, tuple[FrameProfile, ...]]:
-    """Return the median frame, and of those that took longer the `most` longest.
+    """Return the median frame, and the `most` longest of those that took longer.
 
-    Frames are compared by their cycles on one core or on all together, in one stage or in all of them.
+    Frames are compared by their cycles on one core or all together, in one stage or in all.
     """
     cores, stages = cores_of(run, core), stages_in(run, stage)
     frames = [(each.index, _owners(each, cores, stages)) for each in without_start_up(run).frames]

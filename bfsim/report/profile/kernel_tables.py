@@ -15,11 +15,11 @@ from bfsim.report.wording.operations import is_routine, words
 from bfsim.report.wording.units import others_row
 
 EXACT = 10_000
-"""Numbers below have every digit."""
+"""Smaller numbers are shown with every digit."""
 
 
 def kernel_tables(view: View) -> Iterator[Table]:
-    """Yield stages, in them the dearest kernels and what is no kernel, in those the dearest source lines of the run; of the others a sum."""
+    """Yield a table of stages, in each the dearest owners, in those the dearest source lines; of the rest, sums."""
     table = with_bar(
         new_table(view.title("stage, kernel and line"), "Stage / kernel / line", "Runs", "Each", *COST_HEADS)
     )
@@ -38,7 +38,7 @@ def kernel_tables(view: View) -> Iterator[Table]:
 
 
 def line_tables(view: View) -> Iterator[Table]:
-    """Yield the dearest source lines of the run, and what is left: other lines, and what no kernel does."""
+    """Yield the dearest source lines of the run, and the rest: other lines, and what no kernel does."""
     table = with_bar(new_table(view.title("source line"), "Kernel and line", "Runs", "Each", *COST_HEADS))
     for owner, line in _dearest(view.profile, view.top):
         text = f"{owner.owner}:{line.line} {line.text.strip()}"
@@ -58,7 +58,7 @@ def _dearest(profile: Profile, top: int | None = None) -> list[tuple[OwnerProfil
 
 
 def _add_owners(table: Table, view: View, stage: StageProfile, shown: set[int]) -> None:
-    """Add the owners of a stage that are `shown`, by their ids, or have a line that is."""
+    """Add the owners of a stage whose ids are in `shown`, or that have such a line."""
     others = []
     for owner in stage.owners:
         cost, lines = owner.cost, [line for line in owner.lines if id(line) in shown]
@@ -76,7 +76,7 @@ def _add_owners(table: Table, view: View, stage: StageProfile, shown: set[int]) 
 
 
 def _add_routines(table: Table, view: View, line: LineProfile) -> None:
-    """Add what the compiler's library works for a line, which is a part of that."""
+    """Add the work of library routines for a line, of which it is a part."""
     for name, cclk in line.operations_cclk.items():
         if is_routine(name):
             cost = Cost(issue_cclk=cclk)
@@ -85,13 +85,13 @@ def _add_routines(table: Table, view: View, line: LineProfile) -> None:
 
 
 def _name(owner: OwnerProfile) -> str:
-    """Return a name with its line, then the file: that is what gives way where room is short."""
+    """Return a name with its line, then the file, which is cut if room is short."""
     file, _, line = owner.place.rpartition(":")
     return f"{owner.owner}:{line}  {file}" if file else owner.owner
 
 
 def _runs(runs: int, cost: Cost) -> tuple[str, str]:
-    """Return how often something ran, and what each time cost; of large numbers what there is room for."""
+    """Return how often something ran, and the cost of each time; large numbers are shortened."""
     if not runs:
         return "", ""
     each = cost.elapsed_cclk / runs

@@ -1,4 +1,4 @@
-"""What routines of the compiler's library cost, in the lines that call them: object code has them as kernels of their own."""
+"""The cost of library routines, in the lines that call them: in object code, they are kernels of their own."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Owner = TypeVar("Owner", bound=tuple[Any, ...])
 
 @dataclass(frozen=True, slots=True)
 class Call(Generic[Owner]):
-    """So many `times` a line, by its place among those of its owner, called a routine."""
+    """A line, at `place` among those of its `caller`, and the `times` that it called a routine."""
 
     caller: Owner
     place: int
@@ -27,10 +27,10 @@ class Call(Generic[Owner]):
 def calls_of_routines(
     operations: Mapping[Owner, Sequence[Mapping[str, tuple[int, int]]]],
 ) -> Iterator[tuple[Owner, Sequence[Call[Owner]]]]:
-    """Yield each routine of the library that ran with the calls of it; what it calls itself was yielded before.
+    """Yield each library routine that ran, with its calls; the routines that it calls come before it.
 
-    `operations` are those of the lines of all kernels: calls of a routine are operations of its name. One that calls itself is
-    left out.
+    `operations` are those of the lines of all kernels: a call of a routine is an operation of its name. Routines that
+    call themselves are left out.
     """
     routines = {each[:-1]: each for each in operations if is_routine(each[-2])}
     waiting: dict[Owner, list[Call[Owner]]] = {}
@@ -49,7 +49,7 @@ def _calls_one(routine: Owner, calls: Mapping[Owner, Sequence[Call[Owner]]]) -> 
 
 
 def split(total: int, calls: Sequence[Call[Owner]]) -> list[int]:
-    """Return the part of a total that each call has: whole numbers that sum to it."""
+    """Return each call's part of a total: whole numbers that add up to it."""
     times, ends = 0, [0]
     for each in calls:
         times += each.times
@@ -58,10 +58,10 @@ def split(total: int, calls: Sequence[Call[Owner]]) -> list[int]:
 
 
 def in_callers(kernels: Sequence[KernelRecord]) -> tuple[KernelRecord, ...]:
-    """Return the records of kernels, where what routines of the library cost is part of the lines that call them.
+    """Return the records of kernels, with the cost of library routines merged into the lines that call them.
 
-    A line has as much of a routine, with what that calls in turn, as it has of the routine's calls on its core and in its stage.
-    Routines stay with nothing. The sums stay what they are.
+    A line gets the same share of a routine, including what the routine calls, as it has of the routine's calls on its
+    core and in its stage. Routines keep nothing. The sums stay the same.
     """
     found = {(each.core, each.stage, each.kernel, each.symbol): each for each in kernels}
     operations = {owner: [line.operations for line in each.lines] for owner, each in found.items()}
@@ -86,7 +86,7 @@ def _with_more(
     object_cclk: int,
     stall_cclk: Counter[StallReason],
 ) -> KernelRecord:
-    """Return a kernel whose line at a place has these cycles of a routine more."""
+    """Return a kernel with these cycles of a routine added to the line at `place`."""
     lines = [*caller.lines]
     line = lines[place]
     times, cclk = line.operations[routine]

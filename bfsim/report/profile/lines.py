@@ -1,4 +1,4 @@
-"""The source lines of a kernel with what they cost on all cores, added up."""
+"""The source lines of a kernel with their cost on all cores, added up."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.trace import KernelRecord
 
 @dataclass(slots=True, kw_only=True)
 class LineProfile:
-    """One source line of a kernel; `text` is the line as it is in the file. Operations are as in `LineCost`, times and cycles apart."""
+    """One source line of a kernel; `text` is as in the file. Operations are as in `LineCost`, times and cycles apart."""
 
     line: int
     text: str
@@ -24,7 +24,7 @@ class LineProfile:
 
 
 def lines_of(records: Sequence[KernelRecord]) -> tuple[LineProfile, ...]:
-    """Return all lines of a kernel, which has a record for each core and stage: those without a cost stand among the others."""
+    """Return all lines of a kernel, from its records for each core and stage; lines without a cost are included."""
     first = records[0]
     found = {
         number: LineProfile(line=number, text=text)
@@ -41,7 +41,7 @@ def lines_of(records: Sequence[KernelRecord]) -> tuple[LineProfile, ...]:
 
 
 def together(lines: Iterable[LineProfile]) -> tuple[LineProfile, ...]:
-    """Return lines of one kernel, each once with what it costs in all."""
+    """Return the lines of one kernel, each once with its total cost."""
     found: dict[int, LineProfile] = {}
     for each in lines:
         mine = found.setdefault(each.line, LineProfile(line=each.line, text=each.text))
@@ -53,5 +53,5 @@ def together(lines: Iterable[LineProfile]) -> tuple[LineProfile, ...]:
 
 
 def place_of(record: KernelRecord) -> str:
-    """Return where a kernel stands, as file:line."""
+    """Return the place of a kernel as file:line."""
     return f"{PurePath(record.file).name}:{record.first_line}"

@@ -1,4 +1,4 @@
-"""Cycles by kind: work, each reason of a stall, idling; and whose they are."""
+"""Cycles by kind: work, each reason of a stall, idling; and their owners."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What matters in a profile, said first: the stage, the kernel, and what memories and waits cost, in three sentences."""
+"""The main points of a profile, said first: the stage, the kernel, and what memories and waits cost."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ GROUPS: Mapping[str, frozenset[StallReason]] = {
     "interrupts": frozenset({StallReason.INTERRUPT}),
     "interlocks": frozenset({StallReason.INTERLOCK}),
 }
-"""Stalls that are not for memory, by what is waited for."""
+"""Stalls that do not concern memory, by what the core waits for."""
 MEMORY = frozenset(StallReason) - frozenset[StallReason]().union(*GROUPS.values())
 SLIGHT = 0.0005
-"""What is less of the whole is not told: it would be 0.0 %."""
+"""Smaller shares of the whole are not mentioned: they would be 0.0 %."""
 EXACT = 100
-"""Numbers from here on are told as whole ones."""
+"""From this number on, there are no decimals."""
 TEXT = 40
-"""Characters of a source line that are quoted."""
+"""The most characters of a quoted source line."""
 
 
 def sentences_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> tuple[str, str, str]:
     """Return three sentences about one core, in one row of the budget or in all of them.
 
-    Unless a core is asked for, it is the one that bounds the frame rate, or the one that is busiest in the row.
+    Unless a core is given, it is the one that bounds the frame rate, or the one that is busiest in the row.
     """
     name = core or _busiest(run, stage)
     profile = profile_of(run, name, stage)
@@ -58,7 +58,7 @@ def _percent(share: float) -> str:
 
 
 def _number(value: float) -> str:
-    """Return a number with three digits, or with all of them before the point."""
+    """Return a number with three digits, or with all digits before the point."""
     return f"{value:,.0f}" if value >= EXACT else f"{value:.3g}"
 
 
@@ -113,7 +113,7 @@ def _of_kernels(profile: Profile) -> str:
 
 
 def _in_all_stages(same: Sequence[OwnerProfile]) -> OwnerProfile:
-    """Return what a kernel costs in several stages together."""
+    """Return the cost of a kernel in several stages together."""
     return OwnerProfile(
         owner=same[0].owner,
         symbol=same[0].symbol,
@@ -125,7 +125,7 @@ def _in_all_stages(same: Sequence[OwnerProfile]) -> OwnerProfile:
 
 
 def _of_lines(kernel: OwnerProfile) -> str:
-    """Say which of its lines takes most, and how often that runs in a call."""
+    """Say which line of a kernel takes most, and how often it runs in a call."""
     line = max(kernel.lines, key=lambda each: each.cost.elapsed_cclk, default=None)
     if line is None or not line.executions:
         return ""

@@ -1,4 +1,4 @@
-"""The profile of a run as rich tables that fit 80 columns, behind the three sentences that matter most."""
+"""The profile of a run as rich tables that fit 80 columns, after the three sentences that matter most."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ VIEWS: Mapping[str, Callable[[View], Iterator[Table]]] = {
     "frame": frame_tables,
     "caller": caller_tables,
 }
-"""What a profile can be by; the first is what is shown unasked."""
+"""The views of a profile; the first is the default."""
 
 
 def profile_report(
@@ -55,7 +55,7 @@ def profile_report(
 
 
 def _notes(run: RunRecord, by: str) -> Table:
-    """Return what ran, and what else can be asked."""
+    """Return what ran, and which other views there are."""
     table = notes_table()
     for name, text in what_ran(run):
         table.add_row(name, text)

@@ -1,4 +1,4 @@
-"""What every table of a profile is of, and the cells that they share."""
+"""The scope of every table of a profile, and the cells that the tables share."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from bfsim.report.tables.table import percent
 from bfsim.trace import RunRecord
 
 NO_KERNEL = "(no kernel)"
-"""The row of what rings, semaphores, interrupts and the cameras have."""
+"""The row for the cycles of rings, semaphores, interrupts and cameras."""
 BAR = 10
-"""Characters that stand for the whole."""
+"""The length of a bar for the whole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +42,11 @@ class View:
 
     @property
     def all(self) -> str:
-        """What the last row is called, which the others add up to."""
+        """The name of the last row, the sum of the others."""
         return "All" if self.stage is None else f"All of {self.stage}"
 
     def of_no_kernel(self) -> Cost:
-        """Return what rings, semaphores, interrupts and the cameras have of it."""
+        """Return the cycles of rings, semaphores, interrupts and cameras."""
         owners = (owner for stage in self.profile.stages for owner in stage.owners)
         return sum_of(each.cost for each in owners if not each.symbol)
 
@@ -59,7 +59,7 @@ class View:
         return percent(self.profile.share(cclk), 1)
 
     def bar(self, cost: Cost) -> Text:
-        """Return work, stalls and idling as parts of the whole."""
+        """Return a bar of work, stalls and idling as parts of the whole."""
         return bar_of(cost, self.profile.whole.elapsed_cclk, BAR)
 
     def cost_cells(self, cost: Cost) -> tuple[str, str, str, Text]:
@@ -73,7 +73,7 @@ COST_HEADS = "ms", "stall%", "%"
 
 
 def with_bar(table: Table) -> Table:
-    """Give a table the column for bars; where room is short its names give way, never a number."""
+    """Add the column for bars to a table; if room is short, names are cut, never numbers."""
     key = Text.assemble(*(part for each in (WORK, STALL, IDLE) for part in (each,)))
     table.add_column(key, no_wrap=True, min_width=BAR)
     table.expand, table.columns[0].ratio = True, 1

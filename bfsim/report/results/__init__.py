@@ -1,1 +1,1 @@
-"""What a run left behind as JSON, what was seen included; and read back."""
+"""The records of a run and what was seen in it as JSON; and reading them back."""

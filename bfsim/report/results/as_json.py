@@ -1,4 +1,4 @@
-"""Everything a run left behind, as plain dictionaries and lists for `--json`."""
+"""All records of a run, as plain dictionaries and lists for `--json`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.trace import RunRecord, RunWarning
 
 SCHEMA = "bfsim.run/4"
-"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+"""Name and version of the layout; the version rises when the meaning of a key changes or a key goes away."""
 
 
 Seen = Mapping[int, Mapping[str, Any]]
@@ -26,11 +26,11 @@ _NUMBERS = re.compile(r"\[\n\s+(-?[\d.e+-]+(?:,\n\s+-?[\d.e+-]+)*)\n\s+\]")
 
 
 _FRAMES = "\0frames"
-"""Stands for the frames where the text around them is made."""
+"""Stands for the frames while the text around them is made."""
 
 
 def as_json(run: RunRecord) -> dict[str, Any]:
-    """Return the records of a run of at least one frame as they are, and beside them warnings, budget and digests.
+    """Return the records of a run of at least one frame, and with them warnings, budget and digests.
 
     Keys are the field names of `bfsim.trace` and `bfsim.report.budget.budget`, so each carries its unit.
     """
@@ -64,9 +64,9 @@ def _flat(warning: RunWarning) -> dict[str, Any]:
 
 
 def json_chunks(run: RunRecord, seen: Seen | None = None) -> Iterator[str]:
-    """Yield `as_json` as indented text that ends in a line feed, with lists of numbers in one line.
+    """Yield `as_json` as indented text that ends in a line feed, with lists of numbers on one line.
 
-    A chunk holds a frame: what was seen of all of them need not be in memory at once.
+    Each chunk holds a frame, so that what was seen in all frames need not be in memory at once.
     """
     plain = as_json(run)
     frames, plain["frames"] = plain["frames"], [_FRAMES]

@@ -1,4 +1,4 @@
-"""Results of earlier runs: the files that `bfsim run --json` writes, read back."""
+"""Read back the results of earlier runs: the files that `bfsim run --json` writes."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from bfsim.report.results.result import Result
 from bfsim.trace import RunRecord, WarningKind
 
 LARGEST, LONGEST_NUMBER = (1 << 63) - 1, 20
-"""Of whole numbers, the latter in digits and a sign."""
+"""The largest whole number, and the most characters of one, with its sign."""
 OWNERS = "owners"
-"""The key of whose the cycles were."""
+"""The key of the owners of cycles."""
 
 
 def read_result(path: Path) -> Result:
-    """Read what `bfsim run --json` wrote. Raises ConfigError that names the file, the key and what must be there."""
+    """Read a file of `bfsim run --json`. Raises ConfigError that names the file, the key and what belongs there."""
     plain = _plain(path)
     if plain.get("schema") != SCHEMA:
         raise ConfigError(
@@ -45,7 +45,7 @@ def read_result(path: Path) -> Result:
 
 
 def _wrong(run: RunRecord, owners: tuple[OwnerFrames, ...]) -> Iterator[str]:
-    """Yield what no run leaves, and what no report can be made of."""
+    """Yield what no run produces, and what no report can use."""
     if not run.frames:
         yield "frames must be at least one, and there is none"
     if not all(each.cores for each in run.frames):
@@ -74,7 +74,7 @@ def _plain(path: Path) -> dict[str, Any]:
 
 
 def _whole(digits: str) -> int:
-    """Return a whole number, of at most 64 bits: what is more has no place among floats."""
+    """Return a whole number of at most 64 bits: larger ones do not fit among floats."""
     number = int(digits) if len(digits) <= LONGEST_NUMBER else LARGEST + 1
     if abs(number) > LARGEST:
         raise ValueError(f"a number must have at most 64 bits, not be {digits[:LONGEST_NUMBER]}")
@@ -92,7 +92,7 @@ def _owners() -> TypeAdapter[dict[str, tuple[OwnerFrames, ...]]]:
 
 
 def _assumptions(plain: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Return those of the warnings that cannot be derived from other records."""
+    """Return the warnings that cannot be derived from other records."""
     warnings = plain.get("warnings")
     kinds = {WarningKind.GEOMETRY.value, WarningKind.CLOCKS.value, WarningKind.TABLES.value}
     return [

@@ -12,9 +12,9 @@ from bfsim.trace import RunRecord
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """A run; by the frame's index what was seen in it (`seen_json`), nothing where the firmware has no view; and whose the cycles were.
+    """A run, what was seen in each frame by index (`seen_json`; nothing without a view), and the owners of its cycles.
 
-    What was read from a file has its `owners` here alone, and not in the frames of the run.
+    If it was read from a file, its `owners` are only here, and not in the frames of the run.
     """
 
     run: RunRecord

@@ -26,9 +26,9 @@ Pixels = tuple[int, int]
 
 
 class SeenStore(Mapping[int, dict[str, Any]]):
-    """What was seen in each frame (`seen_json`) by the frame's index; in memory there is one frame at a time.
+    """What was seen in each frame (`seen_json`) by the frame's index, with one frame at a time in memory.
 
-    A context manager; raises ConfigError where there is no room for its file.
+    A context manager; raises ConfigError if there is no room for its file.
     """
 
     def __init__(self, *, with_features: bool) -> None:
@@ -62,8 +62,8 @@ class SeenStore(Mapping[int, dict[str, Any]]):
 def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     """Return times, objects, and lines and edges in space; with features also what was found in each picture.
 
-    Keys are the field names of `bfsim.seen`, so each carries its unit. Coordinates in pixels count in the camera's whole
-    picture, also when the firmware looked at an area of it. Of an edge in space there is [x, y, z].
+    Keys are the field names of `bfsim.seen`, so each carries its unit. Coordinates in pixels refer to the camera's
+    whole picture, even if the firmware looked at an area of it. An edge in space is [x, y, z].
     """
     found: dict[str, Any] = jsonable(_seen(frame, with_features=with_features), _without_numpy)
     return found
@@ -83,12 +83,12 @@ def _seen(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
 
 
 def _without_numpy(value: Any) -> object:
-    """Return a number or an array that a view has computed as Python has it."""
+    """Return a number or an array that a view has computed as plain Python values."""
     return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
 
 
 def name_of_object(seen: Mapping[str, Any]) -> str:
-    """Return what an object of `seen_json` is called: what is only remembered, or only known by its direction, is another thing."""
+    """Return the name of an object of `seen_json`; one only remembered, or only known by direction, has another name."""
     notes = [
         what
         for key, what in (("is_direction", "direction only"), ("age_frames", "remembered"))
@@ -110,7 +110,7 @@ def _plain(record: Any, corner: Pixels = (0, 0)) -> dict[str, Any]:
 
 
 def _in_whole(name: str, value: Any, corner: Pixels) -> Any:
-    """Return a field's value, in coordinates of the whole picture if it is a place in an area that begins at `corner`."""
+    """Return a field's value; places in an area that begins at `corner` become places in the whole picture."""
     left, top = corner
     if name in POINTS:
         return value[0] + left, value[1] + top

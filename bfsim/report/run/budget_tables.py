@@ -14,7 +14,7 @@ from bfsim.trace import RunRecord, StallReason
 
 
 def budget_table(run: RunRecord, core: CoreBudget) -> Table:
-    """Return the rows of a core in ms, beside a reference if there is one, and what was work, stalls and idling."""
+    """Return the rows of a core in ms, beside a reference if there is one, split into work, stalls and idling."""
     hz, beside = run.identity.cclk_hz, () if run.reference is None else (run.reference,)
     columns = (*spread_heads(run), *(each.name for each in beside), "share", "issue", "stall", "idle")
     table = new_table(
@@ -46,7 +46,7 @@ def spread_heads(run: RunRecord) -> tuple[str, ...]:
 
 
 def spread_cells(run: RunRecord, spread: Spread) -> tuple[int, ...]:
-    """Return the numbers of a spread that are told, in its own unit."""
+    """Return the numbers of a spread that are shown, in its own unit."""
     p95 = (spread.p95,) if has_p95(run) else ()
     return spread.minimum, spread.median, *p95, spread.maximum
 

@@ -1,4 +1,4 @@
-"""What each frame took on each core, stage by stage, as a table."""
+"""The time of each frame on each core, stage by stage, as a table."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SHOWN_AT_EACH_END = 4
 
 
 def frame_table(run: RunRecord) -> Table:
-    """Return the frames in ms, core by core; of a long run the first ones and the last ones."""
+    """Return the frames in ms, core by core; of a long run, the first and the last ones."""
     rows = budget_rows(run)
     names = [row.stage for row in rows if row.within is None]
     table = new_table("Frames: ms", "Frame", "Core", *names, FRAME, "Latency")

@@ -25,11 +25,11 @@ from bfsim.report.what_ran.configuration import configuration_of
 from bfsim.trace import REST, RunRecord
 
 REMARKS_LISTED = 20
-"""Different remarks that are listed."""
+"""The number of distinct remarks that are listed."""
 
 
 def run_report(run: RunRecord, target: Target | None = None) -> RenderableType:
-    """Return the report of a run of at least one frame, the most wanted numbers first, beside a target if there is one."""
+    """Return the report of a run of at least one frame, the main numbers first, with a target if there is one."""
     budget = budget_of(run)
     hz = run.identity.cclk_hz
     return stacked(
@@ -50,7 +50,7 @@ def run_report(run: RunRecord, target: Target | None = None) -> RenderableType:
 
 
 def headline(run: RunRecord, budget: Budget) -> Text:
-    """Return frame rate, frame time, latency, and what went missing."""
+    """Return frame rate, frame time, latency, and losses."""
     latency, hz = budget.latency_cclk, run.identity.cclk_hz
     median, maximum = milliseconds(latency.median, hz), milliseconds(latency.maximum, hz)
     lines = [
@@ -85,7 +85,7 @@ def _start_up_note(run: RunRecord, budget: Budget) -> Iterator[Text]:
 
 
 def _results_table(run: RunRecord) -> Iterator[Table]:
-    """Yield what the firmware published, if it did."""
+    """Yield the numbers that the firmware published, if any."""
     names = dict.fromkeys(name for frame in run.frames for name in frame.results)
     if names:
         table = new_table("Results per frame", "Result", *spread_heads(run))
@@ -96,7 +96,7 @@ def _results_table(run: RunRecord) -> Iterator[Table]:
 
 
 def _remarks(run: RunRecord) -> Iterator[Table]:
-    """Yield what the firmware said about frames, if it did: each sentence once."""
+    """Yield the firmware's remarks about frames, if any: each sentence once."""
     frames = frames_by_remark(run)
     if not frames:
         return
@@ -111,7 +111,7 @@ def _remarks(run: RunRecord) -> Iterator[Table]:
 
 
 def configuration(run: RunRecord) -> Table:
-    """Return what was run on what, and the digests of it and of its cycles."""
+    """Return what ran on what, and the digests of it and of its cycles."""
     table = notes_table()
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
     for name, text in (*configuration_of(run), TRUST):

@@ -1,4 +1,4 @@
-"""What to know beside the numbers of a run, in one grid: its warnings, its frames, what ran, and where to look next."""
+"""What to know about the numbers of a run, in one grid: its warnings, its frames, what ran, and where to look next."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MUCH_STALL = 0.1
 
 
 def notes(run: RunRecord, budget: Budget, bound: Bound, target: Target | None) -> Table:
-    """Return the warnings, and what to know beside the numbers, in one grid."""
+    """Return the warnings, and what to know about the numbers, in one grid."""
     table = notes_table()
     for each in warnings_of(run):
         table.add_row("Warning", f"{each.kind}: {each.text}", style="yellow")
@@ -60,7 +60,7 @@ def _facts(run: RunRecord, budget: Budget, bound: Bound) -> Iterator[tuple[str, 
 
 
 def _remarks(run: RunRecord) -> Iterator[tuple[str, str]]:
-    """Yield the first sentences that the firmware said about frames, each once."""
+    """Yield the firmware's first remarks about frames, each once."""
     frames = frames_by_remark(run)
     for text, said in list(frames.items())[:REMARKS_TOLD]:
         yield "Remark", f"frame {said[0]}: {text}"
@@ -69,7 +69,7 @@ def _remarks(run: RunRecord) -> Iterator[tuple[str, str]]:
 
 
 def frames_by_remark(run: RunRecord) -> dict[str, list[int]]:
-    """Return the indices of the frames that the firmware said each sentence about, in the order of the first of them."""
+    """Return the indices of the frames with each of the firmware's remarks, sorted by their first frames."""
     frames: dict[str, list[int]] = {}
     for frame in run.frames:
         for text in frame.remarks:
@@ -78,7 +78,7 @@ def frames_by_remark(run: RunRecord) -> dict[str, list[int]]:
 
 
 def _frames(run: RunRecord, core: CoreBudget) -> str:
-    """Say how many there were, how long they took, and how much of the first was the start-up."""
+    """Say how many frames there were, how long they took, and how much of the first was the start-up."""
     hz, first = run.identity.cclk_hz, run.frames[0]
     few = 1 < len(run.frames) < FRAMES_FOR_P95
     why = f" (a p95 from {FRAMES_FOR_P95} frames on: of fewer it is the max)" if few else ""
@@ -99,7 +99,7 @@ def _frames(run: RunRecord, core: CoreBudget) -> str:
 
 
 def _spread(run: RunRecord, spread: Spread) -> str:
-    """Return median and maximum, and a p95 where there are frames enough for one; of one frame its number."""
+    """Return median and maximum, and a p95 if there are enough frames; of one frame, its number."""
     if len(run.frames) == 1:
         return f"{milliseconds(spread.maximum, run.identity.cclk_hz):.2f} ms"
     p95 = {"p95": spread.p95} if has_p95(run) else {}
@@ -118,7 +118,7 @@ def _latency(run: RunRecord, budget: Budget) -> str:
 
 
 def _wait_cclk(frame: FrameRecord) -> int:
-    """Return how long a picture was there before the cores were done with the frame before."""
+    """Return how long a picture was there before the cores had finished the frame before."""
     return min(max(0, frame.begin_cclk - frame.last_line_cclk), latency_cclk(frame))
 
 

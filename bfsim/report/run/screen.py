@@ -1,4 +1,4 @@
-"""What `bfsim run` says on one screen: the verdict, one budget for all cores, and what to know about it."""
+"""The single screen of `bfsim run`: the verdict, one budget for all cores, and what to know about it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from bfsim.report.tables.table import new_table, percent, stacked
 from bfsim.trace import REST, RunRecord
 
 BAR = 20
-"""Characters that stand for a whole frame."""
+"""The length of a bar for a whole frame, in characters."""
 SLIVER = "▏"
 
 
 def screen(run: RunRecord, target: Target | None = None) -> RenderableType:
     """Return the report of a run of at least one frame on one screen, beside a target if there is one.
 
-    Its medians and shares are without the start-up.
+    Its medians and shares do not include the start-up.
     """
     budget = budget_of(without_start_up(run))
     bound = bound_of(budget)
@@ -63,7 +63,7 @@ def _stage(row: StageRow | None) -> str:
 
 
 def _table(run: RunRecord, budget: Budget, bound: Bound) -> Table:
-    """Return one row a stage that took any time: median ms and stall of each core, and its share of the core that bounds."""
+    """Return a row for each stage that took time: median ms and stall of each core, and its share of the bounding core."""
     hz, core = run.identity.cclk_hz, bound.core
     beside = () if run.reference is None else (run.reference.name,)
     names = [head for each in budget.cores for head in (f"{each.core} ms", "stall%")]
@@ -95,7 +95,7 @@ def _cells(row: StageRow, hz: float) -> tuple[str, str]:
 
 
 def bar(row: StageRow, core: CoreBudget) -> Text:
-    """Return a row's work, stalls and idling as parts of a frame, `BAR` characters long; a sliver if it is less than one."""
+    """Return a row's work, stalls and idling as parts of a frame, `BAR` characters long; less than one is a sliver."""
     text = bar_of(row, core.frame.elapsed_cclk.total, BAR)
     if row.elapsed_cclk.total and not text:
         parts = (row.issue_cclk, WORK), (row.stalled_cclk, STALL), (row.idle_cclk, IDLE)

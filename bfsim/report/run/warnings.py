@@ -1,4 +1,4 @@
-"""What a user must not overlook in a run: what was assumed, missed, lost, or not taken."""
+"""What a user must not overlook in a run: assumptions, missed frames, losses."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ MISSED_LISTED = 10
 """Missed frames that are listed by number."""
 
 MACHINE_LOSSES = {"ppi_words_lost": "words of the camera that the DMA was too late for"}
-"""What the simulated machine publishes as lost, as `RunRecord.losses` for what the firmware does."""
+"""Losses that the simulated machine publishes, as `RunRecord.losses` for those of the firmware."""
 
 
 def warnings_of(run: RunRecord) -> tuple[RunWarning, ...]:
-    """Return the warnings about a run of at least one frame, those about all of it first."""
+    """Return the warnings about a run of at least one frame, those about the whole run first."""
     return (*run.assumptions, *_missed(run), *_devices(run), *_lost(run))
 
 
@@ -44,7 +44,7 @@ def _listed(frames: Sequence[int]) -> str:
 
 
 def _lost(run: RunRecord) -> Iterator[RunWarning]:
-    """Yield what was lost. Cores that lost the very same share a warning: a recording of one camera is seen by both."""
+    """Yield what was lost. Cores with identical losses share a warning: both see a recording of one camera."""
     for name, what in (*MACHINE_LOSSES.items(), *run.losses.items()):
         alike: dict[tuple[tuple[tuple[int, int], ...], str], list[str]] = {}
         for core in run.frames[0].cores:
@@ -71,7 +71,7 @@ def _worst(lost: Sequence[tuple[int, int]]) -> tuple[int, int]:
 
 
 def _rows(run: RunRecord, name: str, index: int) -> str:
-    """Return in which rows most was lost in a frame, and which part, if that is published as `name` of top, bottom and percent."""
+    """Return the rows in which a frame lost most, and which part, if published as `name` of top, bottom and percent."""
     results = next(each.results for each in run.frames if each.index == index)
     top, bottom, percent = (results.get(name.format(each)) for each in ("top", "bottom", "percent"))
     if top is None or bottom is None or percent is None:

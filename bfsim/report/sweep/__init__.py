@@ -1,1 +1,1 @@
-"""What a sweep found: a table of all points, those on the Pareto front, and a plot."""
+"""The results of a sweep: a table of all points, those on the Pareto front, and a plot."""

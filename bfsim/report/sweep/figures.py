@@ -1,4 +1,4 @@
-"""What a sweep keeps of a run: its figures under the names that `bfsim check` has for them, and what cores waited for."""
+"""What a sweep keeps of a run: its figures under the names of `bfsim check`, and the waits of the cores."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from bfsim.trace import StallReason
 FRAME_RATE, FRAME_TIME, WORST_FRAME = "frame_rate Hz", "frame.median ms", "frame.max ms"
 LATENCY, MISSED, ON_CHIP = "latency.median ms", "missed", "on_chip B"
 SEEN = f"{OBJECTS}."
-"""Begins the names of those figures that only runs have in which there was such an object."""
+"""Begins the names of figures that a run has only if it saw such an object."""
 SDRAM = "SDRAM"
 
 DIGITS = 6
-"""Behind the point: below a cycle, in ms."""
+"""After the point: finer than a cycle, in ms."""
 
 
 def sweep_figures(result: Result) -> dict[str, int | float]:
     """Return the figures of a run of at least one frame, by names that end in the unit, such as Thinning.A.median ms.
 
-    Beside those of `figures_by_name`: the bytes taken of all memories on the chip; of each core the share of its time that
-    it idled, and its stalls by reason, a frame; of each kind of object, and each number that the firmware publishes, the
-    total and the median of the frames.
+    These are the figures of `figures_by_name`, the bytes used of all memories on the chip, for each core its share of
+    idle time and its stalls by reason per frame, and the total and the median for each kind of object and each
+    published number.
     """
     run, figures = result.run, figures_of(result)
     hz = run.identity.cclk_hz

@@ -11,12 +11,12 @@ from bfsim.report.sweep.figures import FRAME_RATE, FRAME_TIME, LATENCY, MISSED, 
 from bfsim.report.sweep.table import Row
 
 RATE_SHARE = 0.002
-"""Rates of firmware that waits for pictures differ by up to so much: by where in a few frames its waits begin and end."""
+"""Rates of firmware that waits for pictures differ by up to this share: it depends on when waits begin and end."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A point: what the setting is called that it is shown as a part of, what it is called, and its row of the table."""
+    """A point: the name of its setting, its own name, and its row of the table."""
 
     setting: str
     name: str
@@ -25,7 +25,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
-    """A setting over its recordings: the least frame rate, the median of medians, the most of the rest, all frames missed."""
+    """A setting over its recordings: the least rate, medians of frame time and latency, the maximum of the rest."""
 
     name: str
     recordings: int
@@ -38,7 +38,7 @@ class Line:
 
 
 def lines_of(points: Iterable[Shown]) -> list[Line]:
-    """Return a line for each setting of points that are done; the fastest one first, of those as fast the one with the shortest frames."""
+    """Return a line for each setting of finished points, the fastest first; among equals, the shortest frames first."""
     by_name = defaultdict[str, list[Row]](list)
     for each in points:
         by_name[each.setting].append(each.row)
@@ -59,7 +59,7 @@ def lines_of(points: Iterable[Shown]) -> list[Line]:
 
 
 def _ranked(lines: Sequence[Line]) -> Iterator[Line]:
-    """Yield lines that are sorted by their rates with those first that do less, where rates differ no more than by how pictures come."""
+    """Yield lines sorted by rate; where rates differ only by how pictures come, shorter frames come first."""
     rest = list(lines)
     while rest:
         alike = [each for each in rest if each.frame_rate_hz >= (1 - RATE_SHARE) * rest[0].frame_rate_hz]

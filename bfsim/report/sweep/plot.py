@@ -17,11 +17,11 @@ Axes = tuple[str, str]
 
 PARETO: Axes = (ON_CHIP, FRAME_TIME)
 MOST_COLOURS = 10
-"""As many settings can be told apart by colour."""
+"""The most settings that colours can tell apart."""
 WIDTH_PX, HEIGHT_PX = 560, 360
 EDGE_PX = 5
 WIDER_PX = 2
-"""A character of the legend may be so much wider in the font of whoever looks than in that the plot was measured with."""
+"""How much wider a character of the legend may be in the viewer's font than in the font that measured the plot."""
 _INK = "#555555"
 
 
@@ -38,8 +38,8 @@ def axes_of(text: str) -> Axes:
 def plot_svg(points: Sequence[tuple[str, Row]], axes: Axes) -> str:
     """Return an SVG of points, given by setting and row; those that lack one of the columns are left out.
 
-    The front is drawn where of both columns it is known whether more or less is better. Raises ConfigError for a column
-    that is not there, or in which there is nothing.
+    The front is drawn if it is known for both columns whether more or less is better. Raises ConfigError for a column
+    that does not exist or is empty.
     """
     import altair as alt
     import vl_convert
@@ -82,7 +82,7 @@ def plot_svg(points: Sequence[tuple[str, Row]], axes: Axes) -> str:
 
 
 def _drawable(cell: Any) -> Any:
-    """Return a number as it is, and text without what XML has no way to write."""
+    """Return a number unchanged, and text without characters that XML cannot hold."""
     return printable(cell) if isinstance(cell, str) else cell
 
 
@@ -105,7 +105,7 @@ def _channel(kind: Any, name: str, cells: Sequence[object]) -> Any:
 
 
 def _front(values: Sequence[dict[str, Any]], axes: Axes) -> list[dict[str, float]]:
-    """Return the places on the front in their order; nothing where nobody can say what is better."""
+    """Return the places on the front in order; nothing if it is unknown what is better."""
     x_sign, y_sign = map(sign_of, axes)
     if not x_sign or not y_sign:
         return []

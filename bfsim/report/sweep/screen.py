@@ -24,7 +24,7 @@ ONE_FRAME = "Hz of a run of one frame has the wait for its picture in it, frame 
 
 
 def sweep_report(points: Sequence[Shown], files: Sequence[Path], kept: int, top: int) -> RenderableType:
-    """Return what came out of a sweep, and in which files all of it is; so many points were `kept` from before."""
+    """Return the results of a sweep, and the files that hold all of them; `kept` points come from earlier."""
     done = [each for each in points if FRAME_RATE in each.row]
     errors = [(each.name, str(each.row["error"])) for each in points if each.row["error"]]
     number = f"{len(points):,} point{'s' if len(points) != 1 else ''}"
@@ -44,7 +44,7 @@ def sweep_report(points: Sequence[Shown], files: Sequence[Path], kept: int, top:
 
 
 def point_list(points: Sequence[tuple[str, int, str]]) -> RenderableType:
-    """Return names of points with their frames, 0 where nobody knows, and how it stands with them."""
+    """Return names of points with their frames, 0 if unknown, and their states."""
     table = new_table("", "Point", "Frames", "")
     table.columns[0].no_wrap, table.columns[0].overflow = False, "fold"
     table.columns[-1].justify = "left"
@@ -54,7 +54,7 @@ def point_list(points: Sequence[tuple[str, int, str]]) -> RenderableType:
 
 
 def best_table(lines: Sequence[Line], top: int) -> Iterator[RenderableType]:
-    """Yield the `top` lines as a table; a star marks what is on the front of frame time against memory on the chip."""
+    """Yield the `top` lines as a table; a star marks those on the front of frame time against memory on the chip."""
     starred = {lines[each].name for each in front([(each.frame_ms, each.on_chip_bytes) for each in lines])}
     several = any(each.recordings > 1 for each in lines)
     title = "Least Hz, median and max of frames over all recordings" if several else "Best points"
@@ -81,7 +81,7 @@ def best_table(lines: Sequence[Line], top: int) -> Iterator[RenderableType]:
 
 
 def failures(errors: Iterable[tuple[str, str]]) -> str:
-    """Return what failed, given names and errors: each error once, with some of the names."""
+    """Return the failures, given names and errors: each error once, with some of the names."""
     by_error = defaultdict[str, list[str]](list)
     for name, error in errors:
         by_error[error].append(name)

@@ -12,20 +12,20 @@ from bfsim.files.save import growing_file, writing
 
 Cell = str | int | float | None
 Row = Mapping[str, Cell]
-"""The cells of a point by their columns; one that is not there is empty."""
+"""The cells of a point by their columns; a missing one is empty."""
 MOST_BITS = 63
-"""[Parquet] Of a whole number, without its sign."""
+"""[Parquet] Bits of a whole number, without its sign."""
 
 
 def columns_of(rows: Sequence[Row]) -> dict[str, list[Cell]]:
-    """Return the columns of all rows in the order in which they first come; each holds either numbers or text."""
+    """Return the columns of all rows in order of appearance; each holds either numbers or text."""
     names = dict.fromkeys(name for row in rows for name in row)
     columns = {name: [row.get(name) for row in rows] for name in names}
     return {name: _of_one_type(cells) for name, cells in columns.items()}
 
 
 def _of_one_type(cells: list[Cell]) -> list[Cell]:
-    """Return cells as whole numbers, as floats or as text; whole numbers that have no place in a column of 64 bits are text."""
+    """Return cells as whole numbers, floats or text; whole numbers that do not fit into 64 bits make it text."""
     there = [each for each in cells if each is not None]
     kinds = {type(each) for each in there}
     if any(isinstance(each, int) and each.bit_length() > MOST_BITS for each in there):
@@ -45,7 +45,7 @@ def csv_of(rows: Sequence[Row]) -> str:
 
 
 def write_parquet(path: Path, rows: Sequence[Row]) -> None:
-    """Write the table as Parquet. Raises ImportError where pyarrow is not installed."""
+    """Write the table as Parquet. Raises ImportError if pyarrow is not installed."""
     import pyarrow as pa
     from pyarrow import parquet
 

@@ -1,4 +1,4 @@
-"""A table that, where the terminal is too narrow for it, is printed in pieces instead of without some of its columns."""
+"""A table that is printed in pieces, rather than without some of its columns, if the terminal is too narrow."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rich.measure import Measurement
 from rich.table import Column, Table
 
 LEAST_NAME, LEAST_TEXT = 24, 12
-"""Names may be cut, and texts folded, to so many characters, if that keeps a table together."""
+"""The least width to which names may be cut, and texts folded, if that keeps a table together."""
 
 
 class SplitTable(Table):
-    """A rich table whose right-hand columns follow below where they have no room; its first column is in every piece."""
+    """A rich table whose right-hand columns follow below if they do not fit; its first column is in every piece."""
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the table, or its pieces with an empty line between them."""
@@ -37,7 +37,7 @@ class SplitTable(Table):
         return left + 1 + right
 
     def _pieces(self, console: Console, options: ConsoleOptions) -> Iterator[tuple[int, list[Column]]]:
-        """Yield the columns of each piece, as many as have room beside the first one, and how wide that is."""
+        """Yield the columns of each piece, as many as fit beside the first one, and their width."""
         name = min(_width(self.columns[0], console, options), LEAST_NAME)
         taken: list[Column] = []
         left = options.max_width
@@ -64,7 +64,7 @@ class SplitTable(Table):
 
 
 def _width(column: Column, console: Console, options: ConsoleOptions) -> int:
-    """Return how wide a column is where there is room for all of its cells; a head may fold between words."""
+    """Return the width of a column that has room for all of its cells; a head may fold between words."""
     roomy = options.update(max_width=1000)
     cells = [Measurement.get(console, roomy, each).maximum for each in column.cells]
     return max(*cells, Measurement.get(console, roomy, column.header).minimum, column.min_width or 0, 0)

@@ -1,4 +1,4 @@
-"""What tables of reports have in common: how they look, how they follow each other, and shares in percent."""
+"""What tables of reports have in common: their looks, how they are stacked, and shares in percent."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def new_table(title: str, first: str, *numbers: str) -> Table:
 
 
 def notes_table() -> Table:
-    """Return a table for names, and a sentence or two beside each."""
+    """Return a table for names, each with a sentence or two beside it."""
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
@@ -42,5 +42,5 @@ def notes_table() -> Table:
 
 
 def percent(part: float, whole: float) -> str:
-    """Return a share in percent, with one digit behind the point; 0 of 0 is 0."""
+    """Return a share in percent, with one decimal; 0 of 0 is 0."""
     return f"{100 * part / whole:.1f}" if whole else "0.0"

@@ -1,1 +1,1 @@
-"""Files for viewers that others make: Perfetto, speedscope, Foxglove."""
+"""Files for other people's viewers: Perfetto, speedscope, Foxglove."""

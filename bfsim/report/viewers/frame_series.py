@@ -1,4 +1,4 @@
-"""What each frame cost, stalled and warned of, as series beside its pictures: for a viewer that plots topics."""
+"""The cost, stalls and warnings of each frame, as series beside its pictures: for viewers that plot topics."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.trace import CoreFrame, RunRecord, StageCost, StallReason
 
 
 class Sample(NamedTuple):
-    """The numbers of a frame for one topic. `kind` names what the numbers are; all samples of a kind have the same names."""
+    """The numbers of a frame for one topic. `kind` says what they are; all samples of a kind have the same names."""
 
     frame: int
     topic: str
@@ -30,7 +30,7 @@ class Note(NamedTuple):
 
 
 def samples_of(run: RunRecord) -> Iterator[Sample]:
-    """Yield the numbers of all frames, in ms: the frame, each row of the budget of each core, the stalls of each core by reason."""
+    """Yield the numbers of all frames, in ms: frames, the budget's rows by core, the stalls of each core by reason."""
     hz, rows = run.identity.cclk_hz, budget_rows(run)
     topics = _topics(row.stage for row in rows)
     for frame in run.frames:
@@ -48,7 +48,7 @@ def samples_of(run: RunRecord) -> Iterator[Sample]:
 
 
 def _topics(stages: Iterable[str]) -> dict[str, str]:
-    """Return a name for the topic of each stage: plain letters, each one once, and not that of the frame."""
+    """Return a name for the topic of each stage: plain letters, unique, and not that of the frame."""
     topics: dict[str, str] = {}
     for stage in stages:
         plain = topic = re.sub(r"\W+", "_", stage.lower()).strip("_")
@@ -82,7 +82,7 @@ def _stalls(core: CoreFrame, hz: float) -> dict[str, float]:
 
 
 def notes_of(run: RunRecord) -> Iterator[Note]:
-    """Yield what was assumed, missed, lost and remarked, at the frame that it is about, in the order of the frames."""
+    """Yield assumptions, missed frames, losses and remarks, each at its frame, in the order of the frames."""
     first, last = run.frames[0].index, run.frames[-1].index
     yield from (Note(first, f"{each.kind}: {each.text}", is_warning=True) for each in run.assumptions)
     losses = {**MACHINE_LOSSES, **run.losses}

@@ -1,10 +1,10 @@
-"""A timeline as a file that https://ui.perfetto.dev opens: Perfetto's own protobuf, written span by span as the run goes on.
+"""A timeline for https://ui.perfetto.dev: Perfetto's own protobuf, written span by span while the run goes on.
 
-Times in the file are ns, rounded down. A CCLK cycle is longer than a ns, so that each ns is of one cycle only, and `cycle_of`
-has the cycles back, exactly.
+Times in the file are ns, rounded down. A CCLK cycle is longer than a ns, so each ns belongs to one cycle, and
+`cycle_of` returns the exact cycle.
 
-A call has its issue cycles and interlocks as arguments. Its waits for memories are slices within its own, at its end: where in
-the call they were is not known.
+A call has its issue cycles and interlocks as arguments. Its waits for memories are slices within its own, at its end:
+where in the call they occurred is not known.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from bfsim.trace import StallReason
 
 _LEVEL = 1  # of zlib: fast
 _CALLED, _MOVED = ("issue_cclk", "interlocks_cclk"), ("bytes",)
-"""Names of what a slice says besides its time."""
+"""Names of a slice's arguments."""
 _ENDED = "ended"
 """The mark at the end of a wait."""
 _TOGETHER = 1 << 14
-"""Packets that are compressed together."""
+"""The number of packets that are compressed together."""
 _TOP = "board"
-"""The track that all others lie below."""
+"""The track above all others."""
 _ORDER = ("core", "SDRAM", "L2", "MDMA", "IMDMA", "PPI", "semaphore", "lock")
-"""Devices from top to bottom, by how their names begin; the peripherals follow."""
+"""Devices from top to bottom, by the beginnings of their names; the peripherals follow."""
 _TRACKS = ("frames", "stages", "work", "interrupts")
 """Tracks of a core from top to bottom; the others follow by name."""
 
 
 def cycle_of(ns: int, cclk_hz: Fraction) -> int:
-    """Return the cycle that `ns_of` gave `ns` for, at up to 1 GHz."""
+    """Return the cycle for which `ns_of` returned `ns`, at up to 1 GHz."""
     return -(-ns * cclk_hz.numerator // (NS * cclk_hz.denominator))
 
 
@@ -48,11 +48,11 @@ class PerfettoTrace:
         self._cclk_hz = Fraction(cclk_hz)
         self._uuids: dict[tuple[str, ...], int] = {}
         self._tracks: dict[tuple[str, str], Track] = {}
-        self._of_kind: dict[tuple[SpanKind, str, str], Track] = {}  # found faster than by its name
+        self._of_kind: dict[tuple[SpanKind, str, str], Track] = {}  # faster than by name
         self._packets: list[bytes] = []
 
     def add(self, spans: Sequence[Span]) -> None:
-        """Write spans, which come in the order of time on each track; `flush` behind the last ones."""
+        """Write spans, which come in order of time on each track; call `flush` after the last ones."""
         for span in spans:
             kind = span.kind
             key = kind, span.where, span.name if kind is SpanKind.LEVEL else ""
@@ -64,14 +64,14 @@ class PerfettoTrace:
             self.flush()
 
     def flush(self) -> None:
-        """Write what is held back to be compressed together."""
+        """Write the packets that are held back for compression."""
         if self._packets:
             compressed = zlib.compress(b"".join(self._packets), _LEVEL)
             self._packets.clear()
             self._stream.write(framed(proto.TracePacket(compressed_packets=compressed)))
 
     def _open(self, span: Span) -> Track:
-        """Describe the track of a span, and the device that it belongs to where that is new."""
+        """Describe the track of a span, and its device if it is new."""
         where, name = span.track
         if not self._uuids:
             self._describe((), 0, _TOP, 0)  # Perfetto's page keeps an order below a track, not at the top
@@ -111,7 +111,7 @@ def _slice(track: Track, span: Span) -> None:
 
 
 def _wait(track: Track, span: Span) -> None:
-    """Write a wait, with a mark where it ends: an arrow leads to what begins later, and a wait may begin before its transfer."""
+    """Write a wait, with a mark at its end: an arrow leads forward in time, and a wait may begin before its transfer."""
     track.begin(span.begin_cclk, span.name, span.flow)
     if span.flow:
         track.mark(span.end_cclk, _ENDED, span.flow)
@@ -153,5 +153,5 @@ _WRITE: dict[SpanKind, Callable[[Track, Span], None]] = {
 
 
 def _rank(name: str, order: Sequence[str]) -> int:
-    """Return where a track stands among its siblings: by what its name begins with."""
+    """Return the position of a track among its siblings, by the beginning of its name."""
     return next((number for number, each in enumerate(order) if name.startswith(each)), len(order))

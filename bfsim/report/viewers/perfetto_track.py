@@ -11,7 +11,7 @@ from perfetto.protos.perfetto.trace import perfetto_trace_pb2 as proto
 
 _CLOCK, _BOOTTIME = 64, proto.BUILTIN_CLOCK_BOOTTIME
 _MOST_KNOWN = 1 << 14
-"""Packets that are kept for each track."""
+"""The number of packets that are kept for each track."""
 NS = 1_000_000_000
 
 
@@ -21,10 +21,10 @@ def ns_of(cclk: int, cclk_hz: Fraction) -> int:
 
 
 class Track:
-    """One track, as a sequence of packets: its clock counts ns from the packet before, and its names are told once.
+    """One track, as a sequence of packets: its clock counts ns from the previous packet, and names are sent once.
 
-    What all its packets share is a default. Those that differ in their time only are put together once: the time is
-    appended, as fields may come in any order.
+    What all its packets share is a default. Packets that differ only in their time are built once: the time is
+    appended, since fields may come in any order.
     """
 
     def __init__(self, uuid: int, cclk_hz: Fraction, write: Callable[[bytes], None]) -> None:
@@ -57,7 +57,7 @@ class Track:
         arguments: tuple[str, ...] = (),
         values: tuple[int, ...] = (),
     ) -> None:
-        """Begin a slice at a cycle. `flow`: a number that it shares with another slice, or 0; only few have one."""
+        """Begin a slice at a cycle. `flow`: a number that it shares with another slice, or 0; few slices have one."""
         key = name, values
         octets = None if flow else self._known.get(key)
         if octets is None:
@@ -81,7 +81,7 @@ class Track:
         return packet
 
     def mark(self, cclk: int, name: str, flow: int) -> None:
-        """Put a mark at a cycle, which shares the number `flow` with a slice."""
+        """Put a mark at a cycle; it shares the number `flow` with a slice."""
         packet = self._packet(type=proto.TrackEvent.TYPE_INSTANT, name_iid=self._iid("event_names", name))
         packet.track_event.flow_ids[:] = [flow]
         self._append(packet.SerializeToString(), cclk)
@@ -99,7 +99,7 @@ class Track:
         self._append(octets, cclk)
 
     def _keep(self, key: tuple[object, ...], packet: Any) -> bytes:
-        """Return the bytes of a packet, and know them from now on."""
+        """Return the bytes of a packet, and keep them for later."""
         if len(self._known) == _MOST_KNOWN:
             self._known.clear()
         octets: bytes = packet.SerializeToString()
@@ -114,7 +114,7 @@ class Track:
         self._write(_head(len(octets)) + octets)
 
     def _iid(self, table: str, name: str) -> int:
-        """Return the number of a name on this track; one that is new is told."""
+        """Return the number of a name on this track; a new name is sent first."""
         iid = self._iids.get((table, name))
         if iid is None:
             iid = self._iids[table, name] = len(self._iids) + 1
@@ -124,7 +124,7 @@ class Track:
         return iid
 
     def _packet(self, **event: int) -> Any:
-        """Return a packet of the track with an event, if there is any."""
+        """Return a packet of the track, with an event if there is one."""
         return proto.TracePacket(
             trusted_packet_sequence_id=self._uuid,
             sequence_flags=proto.TracePacket.SEQ_NEEDS_INCREMENTAL_STATE,
@@ -133,7 +133,7 @@ class Track:
 
 
 def _varint(number: int) -> bytes:
-    """Return a number in protobuf's bytes of seven bits, the lowest ones first."""
+    """Return a number as a varint of protobuf: seven bits per byte, the lowest first."""
     octets = bytearray()
     while number > 0x7F:
         octets.append(number & 0x7F | 0x80)
@@ -144,7 +144,7 @@ def _varint(number: int) -> bytes:
 
 @lru_cache(1 << 10)
 def _head(length: int) -> bytes:
-    """Return what stands before a packet of so many bytes in a file: field 1 of a Trace."""
+    """Return the head of a packet of `length` bytes in a file: field 1 of a Trace."""
     return b"\x0a" + _varint(length)
 
 
@@ -155,6 +155,6 @@ def _stamp(ns: int) -> bytes:
 
 
 def framed(packet: Any) -> bytes:
-    """Return a packet as it stands in a file: one comes behind the other."""
+    """Return a packet as it stands in a file, one after the other."""
     octets: bytes = packet.SerializeToString()
     return _head(len(octets)) + octets

@@ -1,8 +1,8 @@
-"""Where the cycles went as a flame graph that https://www.speedscope.app opens: a profile for each core, its weights in cycles.
+"""Where the cycles went as a flame graph for https://www.speedscope.app: a profile for each core, weighted by cycles.
 
-A stack is the stage, within the one that it is a part of, then the kernel and those that it calls, or what else the core was
-busy with: a ring, a semaphore, an interrupt. Waits stand in what had them, by reason. Each stage is as wide as its row of
-the budget.
+A stack is the stage, within the one that it is part of, then the kernel and its callees, or other work of the core: a
+ring, a semaphore, an interrupt. Waits stand below their owner, by reason. Each stage is as wide as its row of the
+budget.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Stack = tuple[str, ...]
 
 
 def stacks_of(run: RunRecord, core: str) -> dict[Stack, int]:
-    """Return the cycles of one core over all frames, by stage and what it did there; kernels are named by their symbols."""
+    """Return the cycles of one core over all frames, by stage and activity; kernels are named by their symbols."""
     within = {row.stage: (row.within,) for row in budget_rows(run) if row.within}
     sums: Counter[Stack] = Counter()
 
@@ -49,7 +49,7 @@ def _of_no_kernel(run: RunRecord, core: str) -> Iterator[OwnerCost]:
 
 
 def speedscope_json(run: RunRecord) -> str:
-    """Return the file's text."""
+    """Return the text of the file."""
     frames: dict[str, int] = {}
     profiles = []
     for core in (each.core for each in run.frames[0].cores):

@@ -1,18 +1,18 @@
-"""How much of a run was counted on object code, instruction by instruction, and how much was estimated."""
+"""How much of a run was timed on object code, instruction by instruction, and how much was estimated."""
 
 from __future__ import annotations
 
 from bfsim.trace import RunRecord
 
 MODEL_ERROR_PERCENT = 10
-"""Of a kernel that the model never saw, on average. [measured] docs/accuracy.md"""
+"""The mean error for a kernel that the model has never seen. [measured] docs/accuracy.md"""
 TRUST = "Trust", "docs/accuracy.md: how far, and what is assumed or not modelled"
-"""What is said beside the code that ran and its timing: the page has the measured errors of both. A line of 80 columns."""
+"""Shown beside the code that ran and its timing: where to find the measured errors of both. A line of 80 columns."""
 OF_FILES = "object code of files"
 
 
 def code_in_words(run: RunRecord) -> str:
-    """Say whose object code ran, for which part of the issue cycles; nothing where all was estimated as was asked for."""
+    """Say whose object code ran, for which part of the issue cycles; "" if everything was estimated, as asked."""
     share, code = run.object_share, run.identity.code
     has_code = bool(run.identity.code_digest)
     if not (share or has_code):

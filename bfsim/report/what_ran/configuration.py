@@ -1,4 +1,4 @@
-"""What was run on what, in words, and the digests of it."""
+"""What ran on what, in words, and the digests of it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bfsim.trace import CodeRecord, RunRecord
 
 
 def configuration_of(run: RunRecord) -> Iterator[tuple[str, str]]:
-    """Yield each part of what was run with its name, and the digests of it and of its cycles."""
+    """Yield each part of what ran with its name, and the digests of it and of its cycles."""
     identity = run.identity
     yield "Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px"
     if run.geometry:
@@ -43,7 +43,7 @@ def _firmware(run: RunRecord) -> str:
 
 
 def _messages(run: RunRecord, over: str) -> str:
-    """Say what went over a peripheral in each direction, and how long the longest message took."""
+    """Say what a peripheral transferred in each direction, and how long the longest message took."""
     parts = []
     for direction in ("out", "in"):
         mine = [each for each in run.messages if (each.over, each.direction) == (over, direction)]

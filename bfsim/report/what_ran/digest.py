@@ -1,4 +1,4 @@
-"""Two fingerprints of a run: of all that its result depends on, and of every cycle number in it.
+"""Two fingerprints of a run: one of everything that its result depends on, one of every cycle number in it.
 
 Equal identities must give equal cycles, on every machine.
 """

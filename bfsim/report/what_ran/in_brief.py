@@ -1,4 +1,4 @@
-"""What ran on what, in a few lines: for screens that end with it. `configuration` has all of it."""
+"""What ran on what, in a few lines at the end of a screen. `configuration` has everything."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from bfsim.report.wording.units import mhz
 from bfsim.trace import RunRecord
 
 DIGITS_TOLD = 12
-"""As much of a digest is enough to see that two runs are the same."""
+"""Enough digits of a digest to see that two runs are the same."""
 
 
 def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
-    """Yield whose code it was, the names of what ran, where its errors are told, and the digests of that and of its cycles."""
+    """Yield whose code ran, the names of what ran, where to find the errors, and the digests of inputs and cycles."""
     identity = run.identity
     compiler = identity.compiler
     if run.object_share == 1:

@@ -1,1 +1,1 @@
-"""How reports say numbers, operations of the Blackfin, and names that others gave."""
+"""The wording of numbers, of operations of the Blackfin, and of foreign names in reports."""

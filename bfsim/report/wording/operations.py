@@ -1,4 +1,4 @@
-"""What the operations of the Blackfin (`bfsim.kernel.operations.Op`) and the routines of its run-time library are called in sentences."""
+"""The names of the Blackfin's operations (`bfsim.kernel.operations.Op`) and library routines in sentences."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ WORDS = {
     "push_multiple": "push of several registers",
     "pop_multiple": "pop of several registers",
 }
-"""By `Op`; a branch that is taken against what the chip expects costs as much as one that is not."""
+"""By `Op`; both kinds of mispredicted branches cost the same."""
 
 ROUTINES = {
     **dict.fromkeys(("__divsi3", "__udivsi3"), "division"),
@@ -58,14 +58,14 @@ ROUTINES = {
     "__fixsfsi": "conversion from float",
     "sqrtf": "float square root",
 }  # fmt: skip
-"""What GCC's library calls its routines, as estimates do."""
+"""The names of the routines in GCC's library, by those in estimates."""
 
 
 def is_routine(name: str) -> bool:
-    """Whether an operation is a routine of the library: it is, where it has a name that no other one has."""
+    """Whether an operation is a library routine: those have a name that no other operation has."""
     return bool(name) and name not in WORDS
 
 
 def words(name: str) -> str:
-    """Return what an operation is called."""
+    """Return the name of an operation."""
     return f"library {ROUTINES.get(name, name)}" if is_routine(name) else WORDS.get(name, "operations")
