@@ -1,7 +1,7 @@
-"""Recorded stereo frames: MCAP files in and out, and the importers that make them. Knows no simulator.
+"""Recorded stereo frames: MCAP files in and out, and the importers that make them. Independent of the simulator.
 
-What every run needs stands here; what writes, imports, calibrates, describes and renders is imported from its own module, because it
-takes its time.
+This package has what every run needs. The modules that write, import, calibrate, describe and render are imported
+separately, because they take time to load.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a calibration found, as a recording keeps it: errors of every picture, what was left out, and the lenses."""
+"""The result of a calibration as a recording keeps it: errors of all pictures, what was left out, and the lenses."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LensName = Literal["pinhole", "fisheye"]
 class ViewError:
     """A view of the board: the names of its pictures, of one camera or the left and the right one, and their errors.
 
-    errors_px are the RMS distances of the corners found from those of the fitted cameras. `is_outlier`: the cameras
+    errors_px are the RMS distances between the corners found and those of the fitted cameras. `is_outlier`: the cameras
     were fitted without it.
     """
 
@@ -30,7 +30,7 @@ class ViewError:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LensFit:
-    """A camera as it was fitted: focal lengths and principal point, across and down, and the terms of distortion."""
+    """A fitted camera: focal lengths and principal point, across and down, and the terms of distortion."""
 
     focal_px: tuple[float, float]
     principal_px: tuple[float, float]
@@ -39,12 +39,13 @@ class LensFit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationReport:
-    """What the chessboards tell of the cameras.
+    """The result of a calibration with chessboards.
 
-    reprojection_px is the RMS distance of the corners found from those of the fitted cameras, without outliers.
-    vertical_rms_px and vertical_worst_px are how far the rows of a corner differ between the rectified pictures, and
-    vertical_before_px (RMS) between the recorded ones; 0 for a single camera, as is baseline_mm. focal_px is that of
-    the rectified pictures, whose principal point is their middle; baseline_mm is as right as the size of the squares.
+    reprojection_px is the RMS distance between the corners found and those of the fitted cameras, without outliers.
+    vertical_rms_px and vertical_worst_px tell how far the rows of a corner differ between the rectified pictures, and
+    vertical_before_px (RMS) between the recorded ones; they are 0 for a single camera, as is baseline_mm. focal_px is
+    that of the rectified pictures, whose principal point is their middle; baseline_mm is as accurate as the size of the
+    squares.
     """
 
     lens: LensName
@@ -70,16 +71,16 @@ class CalibrationReport:
 
     @property
     def has_measured_focal(self) -> bool:
-        """Whether the focal length is what was measured, the mean of the left camera's, and not one that was given."""
+        """Whether the focal length was measured, as the mean of the left camera's, rather than given."""
         return any(self.focal_px == mean_focal_px(left.focal_px) for left in self.cameras[:1])
 
     def to_json(self) -> str:
-        """The report as text."""
+        """Return the report as text."""
         return _adapter().dump_json(self).decode()
 
     @classmethod
     def from_json(cls, text: str) -> CalibrationReport:
-        """The report out of its text. Raises RecordingError."""
+        """Return the report from its text. Raises RecordingError."""
         from pydantic import ValidationError
 
         try:
@@ -93,13 +94,13 @@ class CalibrationReport:
 
 
 def mean_focal_px(focal_px: tuple[float, float]) -> float:
-    """The one focal length of a rectified picture, from that across and that down of its camera."""
+    """Return the single focal length of a rectified picture, from the ones across and down of its camera."""
     return sum(focal_px) / 2
 
 
 @cache
 def _adapter() -> TypeAdapter[CalibrationReport]:
-    """Return what reads and writes the JSON of reports: few recordings have one, and every run would wait for pydantic."""
+    """Return the adapter for the JSON of reports, made when needed: few recordings have one, and pydantic loads slowly."""
     from pydantic import TypeAdapter
 
     return TypeAdapter(CalibrationReport)

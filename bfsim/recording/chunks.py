@@ -1,7 +1,7 @@
-"""The chunks of an MCAP file: read one at a time, within bounds, and their messages in the order of time.
+"""The chunks of an MCAP file, read one at a time, within limits, with their messages in order of time.
 
-A file of some kilobytes can say that it holds gigabytes. So what a chunk decompresses to is bounded before it is
-decompressed, and so are the messages that wait for their turn.
+A file of some kilobytes can claim to hold gigabytes. So the decompressed size of a chunk is limited in advance, as are
+the messages that wait for their turn.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from mcap.summary import Summary
 from bfsim.errors import RecordingError, shown
 
 LARGEST_CHUNK_BYTES = 128 << 20
-"""Of a chunk before it was compressed: two pictures of the largest size. Programs write chunks of 1 to 8 MB."""
+"""The largest chunk before compression: two pictures of the largest size. Programs write chunks of 1 to 8 MB."""
 
 MOST_MESSAGES = 1 << 16
-"""On the topics that are read, in a chunk."""
+"""In a chunk, on the topics that are read."""
 
 _MOST_WAITING_BYTES = 2 * LARGEST_CHUNK_BYTES
-"""Of messages in chunks that overlap in time."""
+"""Of messages that wait because chunks overlap in time."""
 
 RECORD_HEAD = struct.Struct("<BQ")  # opcode, length [MCAP specification, "Records"]
 _CHUNK_HEAD = struct.Struct("<QQQII")  # times of first and last message, size, CRC32, length of a name
@@ -38,7 +38,7 @@ _MESSAGE_HEAD = struct.Struct("<HIQQ")  # channel, sequence, log time, publish t
 
 
 def records_in(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Yield opcode, start and end of each record in some bytes. Raises ValueError where they break off."""
+    """Yield opcode, start and end of each record in some bytes. Raises ValueError if they end within a record."""
     position = 0
     while position < len(data):
         if position + RECORD_HEAD.size > len(data):
@@ -54,9 +54,9 @@ def records_in(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 class ChunkReader:
-    """Reads the chunks that an index lists. `offset` is that of the one last begun, and `end` is behind all of those.
+    """Reads the chunks that an index lists. `offset` is the begin of the latest, `end` the end of all so far.
 
-    Raises RecordingError for one that is too large, and whatever mcap and the decompressors raise for one that is damaged.
+    Raises RecordingError for a chunk that is too large; for a damaged one, the errors of mcap and the decompressors.
     """
 
     def __init__(self, stream: IO[bytes], path: Path, size_bytes: int, summary: Summary) -> None:
@@ -91,7 +91,7 @@ class ChunkReader:
             yield channels[message.channel_id], message
 
     def _with(self, channels: dict[int, Channel]) -> Iterator[ChunkIndex]:
-        """Yield the chunks that may hold messages of some channels; one without an index of its own may hold any."""
+        """Yield the chunks that may hold messages of some channels; a chunk without an index may hold any."""
         for index in self._summary.chunk_indexes:
             found = index.message_index_offsets
             if not found or not channels.keys().isdisjoint(found):
@@ -115,7 +115,7 @@ class ChunkReader:
             )
 
     def _decompressed(self, index: ChunkIndex) -> bytes:
-        """Return the records in a chunk as they were before they were compressed."""
+        """Return the decompressed records of a chunk."""
         self.offset = index.chunk_start_offset
         heads = RECORD_HEAD.size + _CHUNK_HEAD.size
         if self.offset + heads > self._size_bytes:
@@ -126,7 +126,7 @@ class ChunkReader:
         _, _, nbytes, crc, _ = _CHUNK_HEAD.unpack_from(head, RECORD_HEAD.size)
         if opcode != Opcode.CHUNK or length > self._size_bytes - self.offset - RECORD_HEAD.size:
             raise ValueError("it is not where the index says")
-        largest = max(nbytes, length)  # without compression the second holds the first
+        largest = max(nbytes, length)  # without compression, the length covers the records
         if largest > LARGEST_CHUNK_BYTES:
             self._refuse(
                 f"must hold at most {_size(LARGEST_CHUNK_BYTES)}, not {_size(largest)}; write the recording with smaller chunks"
@@ -146,7 +146,7 @@ class ChunkReader:
 
 
 def _decompressed(chunk: Chunk) -> bytes:
-    """Decompress a chunk to no more than the size that it says."""
+    """Decompress a chunk, to at most the size that it claims."""
     nbytes = chunk.uncompressed_size
     match chunk.compression:
         case "":

@@ -1,6 +1,6 @@
-"""The MCAP file under a recording: opened with every checksum verified, and with errors that name the byte.
+"""The MCAP file of a recording: every checksum is verified on opening, and errors name the byte.
 
-Knows records, channels and chunks; knows nothing of pictures.
+This module handles records, channels and chunks, but knows nothing of pictures.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from zstandard import ZstdError
 from bfsim.errors import RecordingError, shown
 from bfsim.recording.chunks import RECORD_HEAD, ChunkReader, records_in
 
-# All that mcap 1.x and the decompressors let through when the bytes under them are wrong.
+# All errors of mcap 1.x and the decompressors that wrong bytes can cause.
 _DAMAGE = (
     McapError,
     ZstdError,
@@ -49,7 +49,7 @@ _DAMAGE = (
 )
 
 MAGIC = b"\x89MCAP0\r\n"
-"""What a file begins and ends with [MCAP specification, "Magic"]. mcap has it where it writes files, which few runs do."""
+"""The beginning and end of a file [MCAP specification, "Magic"]. mcap defines it in its writer, which few runs need."""
 
 # Footer record [MCAP specification, "Footer (op=0x02)"]: opcode, length, summary start, summary offset start,
 # CRC32 of the summary and of the footer up to here. The closing magic follows.
@@ -58,7 +58,7 @@ _TAIL_BYTES = _FOOTER.size + len(MAGIC)
 _CRC_BYTES = 4
 
 _PART_BYTES = 1 << 20
-"""What is read at a time of a file that is read as it is stored."""
+"""Bytes that are read at a time for the digest of the stored file."""
 
 _MADE_BY = "`bfsim record import` makes a recording from images, raw frames, a video or a bag"
 _OTHER_FILES = {
@@ -67,21 +67,21 @@ _OTHER_FILES = {
     ".json": "a script goes behind `--script`",
     ".toml": "a script goes behind `--script`, a baseline behind `bfsim check --baseline`, and `bfsim sweep` takes a sweep",
 }
-"""What to say of files of a user that are given in the place of a recording."""
+"""What to say when other files of a user are given in place of a recording."""
 
 
 class McapContainer:
-    """An open MCAP file. Raises RecordingError, on opening and reading, for all that is wrong with it."""
+    """An open MCAP file. Raises RecordingError, on opening and reading, for anything wrong with it."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
         self.read_end = 0
-        """The byte behind the last of all chunks that were read so far."""
+        """The end of the chunks that were read so far, in bytes."""
         if self.path.is_dir():
             raise RecordingError(
                 f"{self.path}: recording must be a readable file, not a folder; `bfsim record import` makes one of a folder of pictures"
             )
-        if self.path.is_fifo():  # one that nobody writes to would be waited for
+        if self.path.is_fifo():  # reading a pipe without a writer would block
             raise RecordingError(
                 f"{self.path}: recording must be a file that can be read from any place, not a pipe; save it under a name first"
             )
@@ -108,7 +108,7 @@ class McapContainer:
         self._stream.close()
 
     def messages(self, topics: list[str]) -> Iterator[tuple[Channel, Message]]:
-        """Messages of `topics` in the order of their time stamps, a few chunks in memory at a time."""
+        """Yield the messages of `topics` in the order of their time stamps, with a few chunks in memory at a time."""
         chunks = ChunkReader(self._stream, self.path, self.size_bytes, self.summary)
         messages = chunks.messages(topics)
         while True:
@@ -124,7 +124,10 @@ class McapContainer:
             yield channel, message
 
     def stored_digest(self, end: int) -> str:
-        """Return a digest of the index, and of the file up to a byte, as it is stored: if it is the same, so is what was read up to there."""
+        """Return a digest of the index, and of the file as stored up to byte `end`.
+
+        If it is the same, so is everything that was read up to there.
+        """
         digest = hashlib.sha256(self._index_bytes)
         self._stream.seek(0)
         while part := self._stream.read(min(_PART_BYTES, max(0, end - self._stream.tell()))):
@@ -132,20 +135,20 @@ class McapContainer:
         return digest.hexdigest()
 
     def channel(self, topic: str) -> tuple[Channel, Schema | None] | None:
-        """The channel with this topic and its schema, or None."""
+        """Return the channel with this topic and its schema, or None."""
         for channel in self.summary.channels.values():
             if channel.topic == topic:
                 return channel, self.summary.schemas.get(channel.schema_id)
         return None
 
     def message_count(self, topic: str) -> int:
-        """How many messages of `topic` the file's statistics promise."""
+        """Return the number of messages of `topic` according to the file's statistics."""
         found = self.channel(topic)
         counts = self.summary.statistics.channel_message_counts if self.summary.statistics else {}
         return counts.get(found[0].id, 0) if found else 0
 
     def metadata(self, name: str) -> dict[str, str] | None:
-        """Entries of the metadata record `name`, or None."""
+        """Return the entries of the metadata record `name`, or None."""
         for index in self.summary.metadata_indexes:
             if index.name == name:
                 body, _ = self._record(Opcode.METADATA, index.offset, name)
@@ -163,7 +166,7 @@ class McapContainer:
         return None
 
     def attachment(self, name: str) -> bytes | None:
-        """Bytes of the attachment `name`, or None."""
+        """Return the bytes of the attachment `name`, or None."""
         for index in self.summary.attachment_indexes:
             if index.name == name:
                 where = f"attachment {shown(name)} at byte {index.offset}"
@@ -191,7 +194,7 @@ class McapContainer:
         return body, int.from_bytes(body[-_CRC_BYTES:], "little")
 
     def _index(self) -> bytes:
-        """Return the bytes of the index, after a look at both ends of the file."""
+        """Return the bytes of the index, after checking both ends of the file."""
         head = self._stream.read(len(MAGIC))
         if head != MAGIC:
             start = f"one that starts with {shown(head.decode('latin-1'))}" if head else "an empty one"
@@ -219,7 +222,7 @@ class McapContainer:
         return summary
 
     def _summary_of(self, index: bytes) -> Summary:
-        """Return what the index lists. No other records are read in it: a chunk there would be one that nothing bounds."""
+        """Return what the index lists. Other records in it are not read: nothing would limit a chunk there."""
         summary = Summary()
         for opcode, start, end in records_in(index):
             stream = ReadDataStream(io.BytesIO(index[start:end]))

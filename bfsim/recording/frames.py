@@ -1,4 +1,4 @@
-"""What a recording holds, as plain data: stereo frames, stereo geometry, rectification tables."""
+"""The content of a recording as plain data: stereo frames, stereo geometry, rectification tables."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ DisparityImage = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class StereoGeometry:
-    """Where the two cameras are: equal, parallel, side by side; or where the one is that feeds both sides.
+    """The positions of the two cameras: equal, parallel, side by side; or of the one that feeds both sides.
 
-    focal_px is the focal length after rectification, in pixels of the recorded image; baseline_mm the
-    distance between the optical centres, 0 for a single camera; height_mm their height above the floor; tilt_deg how
-    far they look down. The last two are None where nobody has measured them, as after a calibration.
+    focal_px is the focal length after rectification, in pixels of the recorded image; baseline_mm is the distance
+    between the optical centres, 0 for a single camera; height_mm is their height above the floor; tilt_deg is how far
+    they look down. The last two are None if nobody has measured them, as after a calibration.
     """
 
     focal_px: float
@@ -60,7 +60,7 @@ class StereoGeometry:
 
     @property
     def stance(self) -> tuple[float, float]:
-        """Height in mm and tilt in degrees, for those who need both. Raises RecordingError where one is unknown."""
+        """Height in mm and tilt in degrees, for those who need both. Raises RecordingError if one is unknown."""
         if self.height_mm is None or self.tilt_deg is None:
             raise RecordingError("stereo geometry: height_mm and tilt_deg must both be known")
         return self.height_mm, self.tilt_deg
@@ -68,10 +68,10 @@ class StereoGeometry:
 
 @dataclass(frozen=True, slots=True)
 class RectificationTables:
-    """For each camera the source pixel of each rectified pixel: `rectified[y, x] = picture[row[y, x], column[y, x]]`.
+    """For each camera, the source pixel of each rectified pixel: `rectified[y, x] = picture[row[y, x], column[y, x]]`.
 
-    left and right are int32 of shape (2, height, width): the source rows, then the source columns. Where the
-    camera saw nothing of a rectified pixel, both are -1.
+    left and right are int32 of shape (2, height, width): the source rows, then the source columns. Both are -1 where
+    the camera saw nothing of a rectified pixel.
     """
 
     left: NDArray[np.int32]
@@ -99,11 +99,11 @@ class RectificationTables:
 
 @dataclass(frozen=True, slots=True)
 class StereoFrame:
-    """One picture of each camera, with the time each was taken and, where known, what is in the scene.
+    """One picture of each camera, with its time and, if known, what is in the scene.
 
-    left and right may be read-only. left_ns and right_ns are nanoseconds since the recording's own epoch;
-    they differ when the cameras are not locked to each other. disparity_px, float32 of shape (height, width), is
-    how much farther left the right picture shows what each left pixel shows, 0 for what is infinitely far.
+    left and right may be read-only. left_ns and right_ns are nanoseconds since the recording's own epoch; they differ
+    if the cameras are not locked to each other. disparity_px, float32 of shape (height, width), is how much farther
+    left the right picture shows what each left pixel shows, 0 at infinite distance.
     """
 
     index: int

@@ -13,7 +13,7 @@ from bfsim.files.drafts import growing_draft
 
 
 def require_free(path: Path, *, force: bool) -> None:
-    """Raise RecordingError unless a recording may be written at `path`: nothing is there, or a *.mcap that `force` overwrites."""
+    """Raise RecordingError unless `path` may be written: it is free, or a *.mcap that `force` overwrites."""
     if not path.exists():
         return
     if not force:
@@ -25,16 +25,16 @@ def require_free(path: Path, *, force: bool) -> None:
 
 
 def growing_file(path: Path) -> AbstractContextManager[IO[bytes]]:
-    """Yield a stream beside `path` that takes its place on a clean exit of the `with` block.
+    """Yield a stream to a file beside `path` that replaces it on a clean exit of the `with` block.
 
-    Raises RecordingError where the system refuses.
+    Raises RecordingError if the system refuses.
     """
     return growing_draft(path, partial(writing, path))
 
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turn what the system says against writing into a RecordingError."""
+    """Turn the system's errors of writing into RecordingError."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Describes a recording by reading all of it, which also proves every checksum."""
+"""Describe a recording by reading all of it, which also verifies every checksum."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class CameraTiming:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingInfo:
-    """What `bfsim record info` shows.
+    """The content of `bfsim record info`.
 
-    skew_ns: right minus left time stamp of a frame, least and greatest. rectified_shares: of the left and right
-    rectified pixels, those that the camera saw (0 to 1); None without rectification tables.
+    skew_ns: the least and the greatest difference of a frame's right and left time stamp. rectified_shares: the shares
+    (0 to 1) of the left and right rectified pixels that the camera saw; None without rectification tables.
     """
 
     path: Path
@@ -51,7 +51,7 @@ class RecordingInfo:
 
 
 def describe_recording(reader: RecordingReader, progress: Progress | None = None) -> RecordingInfo:
-    """Read every frame of the recording and sum it up. Raises RecordingError where it is damaged."""
+    """Read every frame of the recording and summarise it. Raises RecordingError if it is damaged."""
     left_ns: list[int] = []
     right_ns: list[int] = []
     for frame in reader.frames():

@@ -1,4 +1,4 @@
-"""How a recording is laid out in its MCAP file: the names, and the two small encodings that are ours.
+"""The layout of a recording in its MCAP file: the names, and the two small encodings of our own.
 
 Pictures are `foxglove.RawImage` messages (encoding `uyvy`), so that Foxglove and other viewers show them.
 A message's log time is the moment the picture was taken, in nanoseconds since the recording's own epoch.
@@ -27,7 +27,7 @@ TOPICS = (LEFT_TOPIC, RIGHT_TOPIC, TRUTH_TOPIC, DISPARITY_TOPIC)
 
 IMAGE_SCHEMA = "foxglove.RawImage"
 IMAGE_ENCODINGS = ("uyvy", "yuv422")
-"""The two names that the RawImage schema has for the byte order U0 Y0 V0 Y1; the first is the one written."""
+"""The RawImage schema's two names for the byte order U0 Y0 V0 Y1; the first is the one written."""
 
 TRUTH_SCHEMA = "bfsim.GroundTruth"
 TRUTH_JSON_SCHEMA = json.dumps({"title": TRUTH_SCHEMA, "type": "object"}).encode()
@@ -40,33 +40,33 @@ GEOMETRY_RECORD = "stereo_geometry"
 CALIBRATION_RECORD = "calibration"
 """One entry, `json`: a CalibrationReport."""
 RESIDUAL_PLOT_NAME = "calibration_residuals.png"
-"""Attachment: what `residual_plot` draws."""
+"""Attachment: the plot of `residual_plot`."""
 DESCRIPTION_RECORD = "recording"
 RECTIFICATION_NAMES = {"left": "rectification_left.npy", "right": "rectification_right.npy"}
-"""Attachments: .npy arrays (NumPy's format 1.0), int32, (2, height, width), as `RectificationTables` says."""
+"""Attachments: .npy arrays (NumPy's format 1.0), int32, (2, height, width), as in `RectificationTables`."""
 
 CHUNK_BYTES = 1 << 20
-"""A chunk is decompressed as a whole: small chunks keep memory low, large ones keep the index short."""
+"""Chunks are decompressed as a whole: small ones save memory, large ones keep the index short."""
 
 LARGEST_PICTURE_BYTES = 64 << 20
 """The whole SDRAM of the largest board, and half a chunk."""
 
 LAST_NS = (1 << 63) - 1
-"""MCAP has room for twice as much; viewers and numpy hold signed nanoseconds."""
+"""MCAP could hold twice as much, but viewers and numpy use signed nanoseconds."""
 
 CRC_KEY = "crc32"
 LIBRARY_PREFIX = "bfsim/"
 
 
 def seal(record: Mapping[str, str]) -> dict[str, str]:
-    """Metadata record with a checksum of its entries: MCAP protects only chunks, attachments and index."""
+    """Return a metadata record with a checksum of its entries: MCAP protects only chunks, attachments and index."""
     return {**record, CRC_KEY: f"{_metadata_crc(record):08x}"}
 
 
 def unseal(record: Mapping[str, str], library: str) -> dict[str, str]:
-    """Entries of a metadata record without the checksum; ValueError if they do not match it.
+    """Return the entries of a metadata record without the checksum; raise ValueError if it does not match.
 
-    Only a record that bfsim itself wrote, as the file's `library` tells, must have one.
+    Only records written by bfsim itself, according to the file's `library`, must have one.
     """
     entries = {key: value for key, value in record.items() if key != CRC_KEY}
     unsealed = CRC_KEY not in record and not library.startswith(LIBRARY_PREFIX)
@@ -80,17 +80,17 @@ def _metadata_crc(record: Mapping[str, str]) -> int:
 
 
 def table_to_npy(table: NDArray[np.int32]) -> bytes:
-    """Rectification table as the bytes of a .npy file."""
+    """Return a rectification table as the bytes of a .npy file."""
     stream = io.BytesIO()
     np.save(stream, table, allow_pickle=False)
     return stream.getvalue()
 
 
 def table_from_npy(data: bytes) -> NDArray[np.int32]:
-    """Rectification table out of the bytes of a .npy file; its type and shape are not checked here."""
+    """Return a rectification table from the bytes of a .npy file; its type and shape are not checked here."""
     try:
         return _array_in(data)
-    # What NumPy lets through where it cannot read a header, which is Python's text.
+    # errors of NumPy when it cannot read a header, which is Python source
     except (
         ValueError,
         TypeError,
@@ -119,4 +119,4 @@ _NPY_HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,
 }
-"""By the version of the format: 3.0 is for fields with names."""
+"""By format version: 3.0 is for named fields."""

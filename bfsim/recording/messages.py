@@ -1,4 +1,4 @@
-"""The messages of a recording as plain data. Each is checked, and `where` it is stands in the RecordingError for one that is wrong."""
+"""Check the messages of a recording and return them as plain data. A RecordingError says `where` the message is."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def disparity_of(message: Message, width: int, height: int, where: str) -> Dispa
 
 
 def image_of(message: Message, where: str) -> RawImage:
-    """Return a camera's message as an image whose sizes fit each other and its data."""
+    """Return a camera's message as an image whose sizes match each other and its data."""
     image = _parsed(message, where)
     if image.encoding not in layout.IMAGE_ENCODINGS:
         raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {shown(image.encoding)} {where}")

@@ -1,4 +1,4 @@
-"""Pictures as separate brightness and colour planes, and the way from there to the camera's UYVY.
+"""Pictures as separate brightness and colour planes, and their conversion to the camera's UYVY.
 
 UYVY here is BT.601 in full range (0 to 255), as JPEG has it and as OmniVision sensors send it with output
 range "00 to FF" (register COM15, the setting of the Linux driver ov7670.c for YUV). One colour sample serves
@@ -42,9 +42,9 @@ class YuvPlanes:
         return YuvPlanes(*(pair[0] for pair in pairs)), YuvPlanes(*(pair[1] for pair in pairs))
 
     def resized(self, width: int, height: int) -> YuvPlanes:
-        """The picture scaled to width x height (4:2:2); what sticks out of that shape is cut off evenly.
+        """Return the picture scaled to width x height (4:2:2); whatever is outside that shape is cut off evenly.
 
-        Shapes are kept (a ball stays round), and the triangle filter does not invent edges by ringing.
+        Shapes are kept (a ball stays round), and the triangle filter does not create edges by ringing.
         """
         cut = _centred_cut(self.size, (width, height))
         return YuvPlanes(
@@ -54,7 +54,9 @@ class YuvPlanes:
         )
 
     def cropped(self, width: int, height: int) -> YuvPlanes:
-        """The middle width x height of the picture, which must be as large; by one pixel left or up, if colours ask."""
+        """Return the middle width x height of the picture, which must be as large; one pixel left or up for the
+        colours.
+        """
         left, top = ((have - want) // 4 * 2 for have, want in zip(self.size, (width, height), strict=True))
         own_width, own_height = self.size
 
@@ -67,7 +69,7 @@ class YuvPlanes:
         return YuvPlanes(cut(self.y), cut(self.u), cut(self.v))
 
     def to_uyvy(self) -> UyvyImage:
-        """The picture, of even width, as the camera sends it: uint8 of shape (height, 2 * width)."""
+        """Return the picture, of even width, as the camera sends it: uint8 of shape (height, 2 * width)."""
         width, height = self.size
         uyvy = np.empty((height, width // 2, 4), np.uint8)
         uyvy[..., 0] = _chroma_422(self.u, width, height)
@@ -78,29 +80,29 @@ class YuvPlanes:
 
     @classmethod
     def from_uyvy(cls, uyvy: UyvyImage) -> YuvPlanes:
-        """The planes (4:2:2) of a picture of shape (height, 2 * width)."""
+        """Return the planes (4:2:2) of a picture of shape (height, 2 * width)."""
         return cls(uyvy[:, 1::2], uyvy[:, 0::4], uyvy[:, 2::4])
 
     @classmethod
     def from_yuyv(cls, yuyv: NDArray[np.uint8]) -> YuvPlanes:
-        """The planes (4:2:2) of a picture of shape (height, 2 * width), as cameras on USB send it: Y before U and V."""
+        """Return the planes (4:2:2) of a picture of shape (height, 2 * width) from a USB camera: Y before U and V."""
         return cls(yuyv[:, 0::2], yuyv[:, 1::4], yuyv[:, 3::4])
 
     @classmethod
     def from_grey(cls, y: Plane) -> YuvPlanes:
-        """The planes of a picture without colour."""
+        """Return the planes of a picture without colour."""
         grey = np.full_like(y, 128)
         return cls(y, grey, grey)
 
     @classmethod
     def from_image(cls, image: Image.Image) -> YuvPlanes:
-        """The planes (4:4:4) of an image of 8 bits a channel."""
+        """Return the planes (4:4:4) of an image of 8 bits a channel."""
         rgb = np.asarray(image.convert("RGB"), np.int32)
         yuv = ((rgb @ _RGB_TO_YUV + _YUV_OFFSET) >> 16).astype(np.uint8)
         return cls(yuv[..., 0], yuv[..., 1], yuv[..., 2])
 
     def stretched(self) -> YuvPlanes:
-        """The picture from limited range (16 to 235, colour 16 to 240 [BT.601]) in full range."""
+        """Return the picture stretched from limited range (16 to 235, colour 16 to 240 [BT.601]) to full range."""
         levels = np.arange(256)
         y_levels = np.clip(np.rint((levels - 16) * 255 / 219), 0, 255).astype(np.uint8)
         chroma_levels = np.clip(np.rint((levels - 128) * 255 / 224 + 128), 0, 255).astype(np.uint8)
@@ -110,7 +112,7 @@ class YuvPlanes:
 def fit_matrix(
     size: tuple[int, int], resize: tuple[int, int] | None, crop: tuple[int, int] | None
 ) -> NDArray[np.float64]:
-    """Return the matrix (3, 3) from pixels of a picture to those of `resized(*resize)`, `cropped(*crop)` or the same one.
+    """Return the matrix (3, 3) from pixels of a picture to those after `resized(*resize)`, `cropped(*crop)` or neither.
 
     Pixels are counted at their centres.
     """
@@ -138,7 +140,7 @@ def _chroma_422(plane: Plane, width: int, height: int) -> Plane:
 
 
 def _centred_cut(source: tuple[int, int], target: tuple[int, int]) -> tuple[float, float]:
-    """Return the parts (0 to 1) of the source's width and height that have the target's aspect ratio."""
+    """Return the fractions (0 to 1) of the source's width and height that have the target's aspect ratio."""
     aspect = (target[0] * source[1]) / (target[1] * source[0])
     return min(1.0, aspect), min(1.0, 1 / aspect)
 

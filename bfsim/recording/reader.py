@@ -1,4 +1,4 @@
-"""Reads a recording, stereo frame by stereo frame, in memory that does not depend on its length."""
+"""Read a recording frame by frame, with memory that does not depend on its length."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ from bfsim.recording.messages import disparity_of, image_of, picture_of, truth_o
 if TYPE_CHECKING:
     from bfsim.recording.calibration_report import CalibrationReport
 
-# One camera may start before the other. Farther ahead its clock is another, and waiting would fill memory.
+# One camera may start before the other. If it is further ahead, its clock is a different one, and waiting would fill
+# the memory.
 _AHEAD_BYTES = 64 << 20
 _AHEAD_PICTURES = 2  # of any size
 
@@ -33,9 +34,9 @@ _AHEAD_PICTURES = 2  # of any size
 class RecordingReader:
     """Context manager that opens one recording; its properties are checked and known from the start.
 
-    width and height are in pixels and the same for both cameras. frame_count is the number of stereo frames.
-    geometry, rectification and calibration are None where the recording has none. library names the program that wrote the
-    file. Everything raises RecordingError.
+    width and height are in pixels and the same for both cameras. frame_count is the number of stereo frames. geometry,
+    rectification and calibration are None if the recording has none. library names the program that wrote the file.
+    Everything raises RecordingError.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -70,15 +71,15 @@ class RecordingReader:
 
     @property
     def read_end(self) -> int:
-        """The byte behind all that was read so far of frames."""
+        """The end of the frames that were read so far, in bytes of the file."""
         return self._file.read_end
 
     def stored_digest(self, end: int) -> str:
-        """Return a digest of the file as it is stored up to a byte: if it is the same, so are the frames that were read up to there."""
+        """Return a digest of the file as stored up to byte `end`: if it is the same, so are the frames up to there."""
         return self._file.stored_digest(end)
 
     def residual_plot(self) -> bytes:
-        """Plot (PNG) of how far the chessboards' corners are from the fitted cameras'."""
+        """The plot (PNG) of how far the chessboards' corners are from those of the fitted cameras."""
         plot = self._file.attachment(layout.RESIDUAL_PLOT_NAME)
         if plot is None:
             raise RecordingError(
@@ -89,12 +90,12 @@ class RecordingReader:
 
     @property
     def truth_count(self) -> int:
-        """How many frames have ground truth."""
+        """The number of frames with ground truth."""
         return self._file.message_count(layout.TRUTH_TOPIC)
 
     @property
     def disparity_count(self) -> int:
-        """How many frames have exact disparities."""
+        """The number of frames with exact disparities."""
         return self._file.message_count(layout.DISPARITY_TOPIC)
 
     @property
@@ -117,10 +118,10 @@ class RecordingReader:
         self._file.close()
 
     def frames(self, limit: int | None = None) -> Iterator[StereoFrame]:
-        """Stereo frames from the first, at most `limit`.
+        """Yield stereo frames from the first, at most `limit`.
 
-        The k-th picture of the left camera goes with the k-th of the right. The pictures are read-only.
-        Each camera's time stamps rise strictly.
+        The k-th picture of the left camera is paired with the k-th of the right. The pictures are read-only. Each
+        camera's time stamps rise strictly.
         """
         count = self.frame_count if limit is None else min(limit, self.frame_count)
         frames = self._pair()
@@ -197,7 +198,7 @@ class RecordingReader:
                 )
 
     def _advice(self) -> str:
-        """Say how a recording is made of a ROS 2 bag, if the file is one."""
+        """Say how to make a recording of a ROS 2 bag, if the file is one."""
         is_bag = any(each.name.startswith("sensor_msgs/") for each in self._file.summary.schemas.values())
         return "; `bfsim record import` makes a recording of a bag of ROS" if is_bag else ""
 

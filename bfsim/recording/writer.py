@@ -1,4 +1,4 @@
-"""Writes a recording, pair by pair; it appears under its name when it is complete, or not at all."""
+"""Write a recording, pair by pair; it appears under its name when it is complete, or not at all."""
 
 from __future__ import annotations
 
@@ -127,8 +127,8 @@ class RecordingWriter:
     ) -> None:
         """Append one stereo frame.
 
-        left and right are uint8 of shape (height, 2 * width) in UYVY order; left_ns and right_ns are when
-        they were taken, later than those of the frame before; truth is what JSON can hold; disparity_px is
+        left and right are uint8 of shape (height, 2 * width) in UYVY order; left_ns and right_ns are the times when
+        they were taken, later than those of the frame before; truth is anything that JSON can hold; disparity_px is
         float32 of shape (height, width). Raises RecordingError.
         """
         for topic, image, time_ns in (
@@ -136,7 +136,7 @@ class RecordingWriter:
             (layout.RIGHT_TOPIC, right, right_ns),
         ):
             self._check(topic, image, time_ns)
-        # Truth is stamped no later than its pictures: a reader in time order has it when the pair is complete.
+        # Truth is stamped no later than its pictures, so that a reader in time order has it when the pair is complete.
         truth_ns = min(left_ns, right_ns)
         if truth is not None:
             self._add_message(layout.TRUTH_TOPIC, truth_ns, self._encode_truth(truth))

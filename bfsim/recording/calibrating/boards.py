@@ -1,4 +1,4 @@
-"""Where the inner corners of a chessboard are in pictures: by two finders of OpenCV, and what had to be skipped."""
+"""Find the inner corners of a chessboard in pictures, by two finders of OpenCV, and report what was skipped."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from bfsim.recording.planes import Plane, YuvPlanes, fit_matrix
 
 Corners = NDArray[np.float32]
 
-# Corners are refined in a window of half this part of the least distance of two, at most so many pixels, until they
-# move less, or so often. [assumed; OpenCV's tutorial has 11 px and 0.001 px]
+# Corners are refined in a window of half this part of the smallest distance between two, up to this many pixels, until
+# they move less, or up to a number of times. [assumed; OpenCV's tutorial has 11 px and 0.001 px]
 _WINDOW_PART, _LARGEST_WINDOW_PX = 0.5, 11
 _LEAST_MOVE_PX, _MOST_STEPS = 0.001, 100
 
 
 @dataclass(frozen=True, slots=True)
 class BoardView:
-    """A board as one or both cameras saw it at once: names of the pictures, and the corners (count, 2) in each."""
+    """A board as one or both cameras saw it at one time: names of the pictures, and the corners (count, 2) in each."""
 
     names: tuple[str, ...]
     points: tuple[Corners, ...]
@@ -71,7 +71,7 @@ def find_views(
 
 
 def _together(folder: Path, *, mono: bool) -> tuple[list[tuple[Path, ...]], list[Skipped]]:
-    """Return the pictures that were taken at once, and those that have no partner."""
+    """Return the pictures that were taken at the same time, and those that have no partner."""
     if mono:
         images, others = images_and_others(str(folder))
         return [(path,) for path in images], others
@@ -81,7 +81,7 @@ def _together(folder: Path, *, mono: bool) -> tuple[list[tuple[Path, ...]], list
 
 
 def _pictures_of(folder: Path, side: str) -> tuple[list[Path], list[Skipped]]:
-    """Return a camera's images in a folder, and the files beside them: of the folder in it that is that side's, if there is one."""
+    """Return a camera's images in a folder, or in the subfolder of that side if there is one, and other files there."""
     if not folder.is_dir():
         raise RecordingError(
             f"{folder}: chessboard pictures must be in a folder, but there is none of that name"
@@ -120,7 +120,7 @@ def _brought(points: Corners, to_recorded: NDArray[np.float64]) -> Corners:
 def _corners_in(cv2: Any, grey: Plane, corners: tuple[int, int]) -> Corners:
     """Return the corners (count, 2): by sectors, then so with more effort, then by the squares' outlines.
 
-    The last one sees boards at the rim and in bad light that the first misses, and needs refining.
+    The last one sees boards at the rim and in bad light that the first misses, and its corners need refining.
     """
     accurate = cv2.CALIB_CB_ACCURACY
     for flags in (accurate, accurate | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE):
@@ -144,7 +144,7 @@ def _refined(cv2: Any, grey: Plane, points: Corners, corners: tuple[int, int]) -
 
 
 def _numbered_like(first: Corners, other: Corners, corners: tuple[int, int]) -> Corners:
-    """Return `other` in the order of `first`: a board that is turned or mirrored has the same corners."""
+    """Return `other` in the order of `first`: a turned or mirrored board has the same corners."""
     grid = other.reshape(corners[1], corners[0], 2)
     grids = [grid, grid.swapaxes(0, 1)] if corners[0] == corners[1] else [grid]
     orders: Sequence[Corners] = [

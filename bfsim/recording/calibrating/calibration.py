@@ -33,12 +33,13 @@ from bfsim.recording.importing.sources import Skipped
 from bfsim.recording.reader import RecordingReader
 from bfsim.recording.writer import RecordingWriter
 
-# Fewer views than this leave the distortion to chance. [assumed]
+# Fewer views leave the distortion to chance. [assumed]
 FEWEST_VIEWS = 5
 
 OUTLIER_MEDIANS, LEAST_OUTLIER_PX = 3.0, 0.3
-"""A view is left out if its error is more than so many times the median of all, and more than finders of corners err in
-good pictures. [assumed]"""
+"""A view is left out if its error is more than this many times the median, and more than corner finders err in good
+pictures. [assumed]
+"""
 
 _SKIPPED_LISTED = 5
 
@@ -47,7 +48,7 @@ _MODELS: dict[LensName, type[CameraModel]] = {"pinhole": PinholeModel, "fisheye"
 
 @dataclass(frozen=True, slots=True)
 class StereoCalibration:
-    """The tables that rectify, what was found on the way to them, and a plot (PNG) of how far the corners are off."""
+    """The tables that rectify, the report on how they were found, and a plot (PNG) of the corners' residuals."""
 
     tables: RectificationTables
     report: CalibrationReport
@@ -69,11 +70,11 @@ def calibrate_recording(
     bits: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> StereoCalibration:
-    """Write `recording` with the rectification tables and the geometry of its cameras to `output`, or in its own place.
+    """Write `recording`, with rectification tables and the geometry of its cameras, to `output` or in its own place.
 
-    See `calibrate` for the folder `chessboards`. The recording's focal length, height and tilt are kept, if it has
-    them and no others are given, and its baseline becomes the measured one; a focal length that was measured before is
-    measured anew. Pictures, time stamps and ground truth stay as they are. Raises RecordingError.
+    See `calibrate` for the folder `chessboards`. The recording's focal length, height and tilt are kept, if it has them
+    and no others are given, but a measured focal length is measured anew. The baseline becomes the measured one.
+    Pictures, time stamps and ground truth stay as they are. Raises RecordingError.
     """
     with RecordingReader(recording) as reader:
         size, old, text = (reader.width, reader.height), reader.geometry, reader.description
@@ -111,7 +112,7 @@ def calibrate_recording(
         calibration=report,
         residual_plot=calibration.plot,
     )
-    # The reader closes before the writer takes its file's place.
+    # The reader must close before the writer replaces its file.
     with writer, RecordingReader(recording) as reader:
         for frame in reader.frames():
             writer.add(
@@ -187,7 +188,7 @@ def _too_few(
     what = "pictures" if mono else "pairs"
     names: dict[str, dict[str, None]] = {}
     for each in skipped:
-        names.setdefault(each.reason, {})[each.name] = None  # a name may be of both folders
+        names.setdefault(each.reason, {})[each.name] = None  # a name may occur in both folders
     reasons = [f"{listed([*of_one], _SKIPPED_LISTED)}: {reason}" for reason, of_one in names.items()]
     more = (
         f"; and for {len(reasons) - _SKIPPED_LISTED} more reasons" if len(reasons) > _SKIPPED_LISTED else ""
@@ -202,9 +203,9 @@ def _too_few(
 def _fit_without_outliers(
     model: CameraModel, board: Floats, views: Sequence[BoardView], size: tuple[int, int]
 ) -> tuple[Fit, list[BoardView], tuple[ViewError, ...]]:
-    """Fit the cameras again and again, each time without the views that fit none of the others.
+    """Fit the cameras repeatedly, each time without the views that fit none of the others.
 
-    Return also the views that are left, and the errors of all.
+    Also return the remaining views, and the errors of all views.
     """
     used, outliers = list(views), list[ViewError]()
     while True:
@@ -229,10 +230,10 @@ def _fit_without_outliers(
 def _fit_what_can_be(
     model: CameraModel, board: Floats, views: Sequence[BoardView], size: tuple[int, int]
 ) -> tuple[Fit, list[BoardView], list[ViewError]]:
-    """Fit the cameras to the views; where that fails, without those that fit ordinary lenses worst.
+    """Fit the cameras to the views; if that fails, leave out those that fit ordinary lenses worst.
 
-    The model of fisheyes fails as a whole where a single view is grossly wrong, that of ordinary lenses hardly ever. The
-    errors of what is left out are by the latter. Raises RecordingError where too few views are left.
+    One grossly wrong view makes the fit of fisheyes fail as a whole, but hardly ever that of ordinary lenses. The
+    errors of views that are left out come from the latter. Raises RecordingError if too few views are left.
     """
     sides = list(zip(*(view.points for view in views), strict=True))
     try:
@@ -251,7 +252,7 @@ def _turns(fit: Fit, folder: Path) -> list[Floats]:
     """Return the rotation (3, 3) of each camera into the rectified frame; the only camera stays as it is."""
     if len(fit.cameras) == 1:
         return [np.eye(3)]
-    # From the left camera, the right one's optical centre is at -R't.
+    # Seen from the left camera, the right one's optical centre is at -R't.
     centre = -(fit.rotation.T @ fit.shift)
     if centre[0] <= 0:
         raise RecordingError(
@@ -271,7 +272,7 @@ def _row_differences(
 ) -> tuple[Floats, Floats]:
     """Return how far the rows of corners differ between both pictures, as recorded and as rectified.
 
-    Counted are the corners that the rectified pictures show, all if these show none.
+    Only corners inside the rectified pictures count, or all if there are none.
     """
     if len(pairs) == 1:
         return np.zeros(1), np.zeros(1)

@@ -1,4 +1,4 @@
-"""Draws how far the corners of chessboards are from where the fitted cameras have them: arrows, and a bar a picture."""
+"""Plot how far the corners of chessboards are from those of the fitted cameras: arrows, and a bar for each picture."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Colour = tuple[int, int, int]
 
 _PANEL_PX, _MARGIN_PX, _ROW_PX, _NAME_PX = 520, 12, 16, 170
 _ARROW_PX = 20
-"""Length at which an error of the usual size is drawn, at most."""
+"""The most that an error of the usual size is drawn long."""
 
 _PAPER, _INK, _FRAME, _OUTLIER = (255, 255, 255), (30, 30, 30), (190, 190, 190), (205, 30, 30)
 
@@ -31,9 +31,9 @@ def draw_residuals(
 ) -> bytes:
     """Return a PNG: for each camera its picture with an arrow at every corner, and the error of every picture.
 
-    `points` (cameras, views) of corners (count, 2) and `residuals_px` (cameras, views, corners, 2) are of the views that
-    the cameras were fitted to, which are the first of `views`; the rest are outliers. A corner's arrow leads from where
-    the fitted camera has it, enlarged as the caption says.
+    `points` (cameras, views) of corners (count, 2) and `residuals_px` (cameras, views, corners, 2) belong to the views
+    that the cameras were fitted to, which are the first of `views`; the rest are outliers. A corner's arrow starts
+    where the fitted camera has it; its length is enlarged as the caption says.
     """
     scale = _PANEL_PX / size[0]
     panel_height = round(size[1] * scale)
@@ -62,7 +62,7 @@ def draw_residuals(
 
 
 def _draw_bars(draw: ImageDraw.ImageDraw, views: Sequence[ViewError], top: int, width: int) -> None:
-    """Draw a row for each view: its pictures' names, and a bar each as long as its error."""
+    """Draw a row for each view: the names of its pictures, and for each a bar as long as its error."""
     draw.text((_MARGIN_PX, top), "RMS error of each picture in px; red: left out", _INK)
     worst_px = max(error for view in views for error in view.errors_px) or 1.0
     columns = np.linspace(_MARGIN_PX, width, len(views[0].names) + 1)
@@ -77,7 +77,7 @@ def _draw_bars(draw: ImageDraw.ImageDraw, views: Sequence[ViewError], top: int, 
 
 
 def _enlargement(shown_px: NDArray[np.float64]) -> float:
-    """Return 1, 2 or 5 times a power of ten, so that the usual error is at most as long as an arrow should be."""
+    """Return 1, 2 or 5 times a power of ten that draws the usual error at most as long as an arrow should be."""
     usual = float(np.sqrt(np.square(shown_px).sum(axis=-1).mean())) or 1.0
     most = _ARROW_PX / usual
     power = 10.0 ** np.floor(np.log10(most))
@@ -85,7 +85,7 @@ def _enlargement(shown_px: NDArray[np.float64]) -> float:
 
 
 def _colour(index: int, count: int) -> Colour:
-    """Return one of `count` hues, none of them red."""
+    """Return one of `count` hues, none of which is red."""
     hue = 0.1 + 0.8 * index / count
     red, green, blue = (round(255 * part) for part in colorsys.hsv_to_rgb(hue, 0.85, 0.75))
     return red, green, blue

@@ -1,4 +1,4 @@
-"""What ROS's camera_info says: the geometry of the cameras, and the tables that rectify their pictures.
+"""ROS's camera_info: the geometry of the cameras, and the tables that rectify their pictures.
 
 K is the camera's matrix, D its distortion, R its turn into the rectified axes, P the matrix of the rectified pair, whose
 fourth column holds the baseline [sensor_msgs/CameraInfo]. Geometry and tables are for pictures with the principal point
@@ -23,18 +23,18 @@ from bfsim.recording.frames import RectificationTables, StereoGeometry
 CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 
 _TERMS = {"plumb_bob": (4, 5), "rational_polynomial": (8,), "equidistant": (4,), "fisheye": (4,), "": (0,)}
-"""How many terms of distortion each model has: sensor_msgs/distortion_models, in OpenCV's order."""
+"""The number of distortion terms of each model: sensor_msgs/distortion_models, in OpenCV's order."""
 _FISHEYES = ("equidistant", "fisheye")
 _SAME_PX = 0.01
-"""Pictures that rectification would move by less are left as they are."""
+"""If rectification moves no pixel by more, pictures are left as they are."""
 
 
 @dataclass(frozen=True, slots=True)
 class CameraInfo:
     """One camera as its topic describes it: `matrix` K (9 numbers), `turn` R (9), `projection` P (12, in px and m).
 
-    `is_window`: binned or cut out of what these are about. `is_rectified`: it is about other pictures than the rectified
-    ones that are there.
+    `is_window`: the pictures are binned, or cut out of those that it describes. `is_rectified`: it describes other
+    pictures than the rectified ones in the bag.
     """
 
     topic: str
@@ -49,7 +49,7 @@ class CameraInfo:
 
     @classmethod
     def of(cls, message: Any, topic: str, *, is_rectified: bool) -> CameraInfo:
-        """Return what a message says; ROS 1 has the letters as capitals."""
+        """Return the content of a message; in ROS 1 the letters are capitals."""
         d, k, r, p = (
             tuple(float(each) for each in getattr(message, name, getattr(message, name.upper(), ())))
             for name in "dkrp"
@@ -61,18 +61,18 @@ class CameraInfo:
 
     @property
     def lens(self) -> FittedCamera:
-        """The matrix (3, 3) and the distortion of the pictures that are there."""
+        """The matrix (3, 3) and the distortion of the pictures in the bag."""
         if self.is_rectified:
             return FittedCamera(np.reshape(self.projection, (3, 4))[:, :3], np.zeros(4))
         return FittedCamera(np.reshape(self.matrix, (3, 3)), np.array(self.distortion or (0.0,) * 4))
 
     @property
     def rotation(self) -> Floats:
-        """The turn (3, 3) of the pictures that are there into the rectified axes."""
+        """The rotation (3, 3) of the pictures in the bag into the rectified axes."""
         return np.eye(3) if self.is_rectified else np.reshape(self.turn, (3, 3))
 
     def problem(self, size: tuple[int, int]) -> str:
-        """Say why it cannot be used for pictures of that size, or nothing."""
+        """Say why it cannot be used for pictures of that size; "" if it can."""
         return next(self._problems(size), "")
 
     def _problems(self, size: tuple[int, int]) -> Iterator[str]:
@@ -99,7 +99,7 @@ class CameraInfo:
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """Geometry and tables, given or made of camera_info, and what is to be said of them."""
+    """Geometry and tables, given or made from camera_info, and notes on them."""
 
     geometry: StereoGeometry | None
     tables: RectificationTables | None
@@ -115,9 +115,9 @@ def rig_of(
 ) -> Rig:
     """Return geometry and tables for pictures of `size`, of one camera or of a left and a right one.
 
-    `sizes` are those of the pictures in the bag, and `fits` (3, 3) lead from their pixels to the recorded ones. What is
-    `given` is kept; the focal length of a geometry is what the tables lead to. Raises RecordingError where both cameras
-    are swapped, and where OpenCV is needed and not there.
+    `sizes` are those of the pictures in the bag, and `fits` (3, 3) map their pixels to the recorded ones. Whatever is
+    `given` is kept; a geometry gets the focal length of the tables. Raises RecordingError if the cameras are swapped,
+    or if OpenCV is needed but not installed.
     """
     known = [each for each in cameras if each]
     if len(known) < len(cameras):
@@ -153,7 +153,7 @@ def _tables_in_words(cameras: list[CameraInfo]) -> str:
 
 
 def _baseline_mm(cameras: list[CameraInfo]) -> float | None:
-    """Return the baseline, 0 of one camera, or None where P does not tell it."""
+    """Return the baseline, 0 for one camera, or None if P does not have it."""
     if len(cameras) == 1:
         return 0.0
     left, right = (each.projection[3] / each.projection[0] for each in cameras)
@@ -169,7 +169,7 @@ def _baseline_mm(cameras: list[CameraInfo]) -> float | None:
 def _tables(
     cameras: list[CameraInfo], fits: tuple[Floats, ...], size: tuple[int, int], focal_px: float
 ) -> RectificationTables | None:
-    """Return the tables to one focal length and the middle of the picture, or None where nothing would move."""
+    """Return the tables for one focal length and a centred principal point, or None if no pixel would move."""
     width, height = size
     target = np.array([[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]])
     lenses = [

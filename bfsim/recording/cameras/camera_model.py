@@ -38,13 +38,13 @@ class Fit:
 
     @property
     def errors_px(self) -> Floats:
-        """RMS distance of the corners found from those of the fitted cameras (cameras, views)."""
+        """RMS distance between the corners found and those of the fitted cameras (cameras, views)."""
         errors_px: Floats = np.sqrt(np.square(self.residuals_px).sum(axis=3).mean(axis=2))
         return errors_px
 
 
 class CameraModel(ABC):
-    """How a lens bends light, and how to find by how much."""
+    """How a lens bends light, and how to fit its parameters."""
 
     def __init__(self) -> None:
         self.cv2 = load_opencv()
@@ -52,7 +52,7 @@ class CameraModel(ABC):
     def fit(self, board: Floats, sides: Sequence[Sequence[Floats]], size: tuple[int, int]) -> Fit:
         """Fit the cameras to the corners of each view of each side; `board` (corners, 3) is in mm.
 
-        Raises RecordingError where they cannot be fitted.
+        Raises RecordingError if they cannot be fitted.
         """
         try:
             if len(sides) == 1:
@@ -91,7 +91,7 @@ class CameraModel(ABC):
         size: tuple[int, int],
         alone: Sequence[FittedCamera],
     ) -> tuple[tuple[FittedCamera, ...], Floats, Floats, list[Any]]:
-        """Fit both cameras from what each is `alone`; return also the rotation, the shift, and the poses."""
+        """Fit both cameras, starting from each one `alone`; also return the rotation, the shift, and the poses."""
 
     @abstractmethod
     def project(self, board: Floats, turn: Floats, shift: Floats, camera: FittedCamera) -> Floats:
@@ -109,18 +109,18 @@ class CameraModel(ABC):
 
 
 def load_opencv(purpose: str = "to calibrate and rectify cameras") -> Any:
-    """Return OpenCV, which little needs. Raises RecordingError, with the purpose, where it is not installed."""
+    """Return OpenCV, which few functions need. Raises RecordingError, with the purpose, if it is not installed."""
     try:
         cv2 = importlib.import_module("cv2")
     except ImportError as error:
         raise RecordingError(f'OpenCV must be installed {purpose}: pip install "bfsim[opencv]"') from error
-    # Threads would add up in another order every time.
+    # Threads would add up in a different order each time.
     cv2.setNumThreads(1)
     return cv2
 
 
 def _moved(cv2: Any, pose: tuple[Floats, Floats], turn: Floats, shift: Floats) -> tuple[Floats, Floats]:
-    """Return the pose (rotation vector, shift) of a board in the axes that `turn` and `shift` lead to."""
+    """Return the pose (rotation vector, shift) of a board in the axes reached by `turn` and `shift`."""
     matrix, _ = cv2.Rodrigues(np.asarray(pose[0], np.float64).reshape(3, 1))
     vector, _ = cv2.Rodrigues(turn @ matrix)
     return vector, turn @ np.asarray(pose[1], np.float64).ravel() + shift

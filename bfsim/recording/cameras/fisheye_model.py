@@ -1,4 +1,4 @@
-"""Lenses of 100° and more: four terms of the angle off the axis [Kannala and Brandt 2006]."""
+"""Lenses of 100° and more: four terms in the angle from the axis [Kannala and Brandt 2006]."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from bfsim.recording.cameras.camera_model import CameraModel, FittedCamera, Floats, flat
 
 FARTHEST_CORNER_RAD = np.radians(80)
-"""Where the fit of a fisheye begins to seek the corner farthest off the axis. At 90 and more there is no way back from it."""
+"""Where the fit of a fisheye first places the corner farthest off the axis. From 90° and more it cannot return."""
 
 
 class FisheyeModel(CameraModel):
@@ -19,14 +19,14 @@ class FisheyeModel(CameraModel):
 
     @property
     def _refine(self) -> int:
-        """Flags of a fit that begins with given cameras. OpenCV 4 has them beside this model, 5 among all others."""
+        """Flags of a fit that starts from given cameras. OpenCV 4 has them in this model, OpenCV 5 among all others."""
         flags = self.cv2.fisheye if hasattr(self.cv2.fisheye, "CALIB_FIX_SKEW") else self.cv2
         return int(flags.CALIB_USE_INTRINSIC_GUESS | flags.CALIB_RECOMPUTE_EXTRINSIC | flags.CALIB_FIX_SKEW)
 
     def fit_one(
         self, board: Floats, side: Sequence[Floats], size: tuple[int, int]
     ) -> tuple[FittedCamera, list[Any]]:
-        """Fit one camera, from one that sees all corners before it: OpenCV's own start fails on most wide lenses."""
+        """Fit one camera, from one with all corners in front of it: OpenCV's own start fails on most wide lenses."""
         middle = (np.array(size) - 1) / 2
         focal_px = max(np.linalg.norm(points - middle, axis=1).max() for points in side) / FARTHEST_CORNER_RAD
         start = np.array([[focal_px, 0, middle[0]], [0, focal_px, middle[1]], [0, 0, 1]])

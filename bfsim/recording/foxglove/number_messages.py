@@ -1,4 +1,4 @@
-"""Messages of numbers under names, for viewers that plot them: a schema of protobuf for each set of names."""
+"""Messages of named numbers, for viewers that plot them: one protobuf schema for each set of names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class NumberMessages:
         self._classes: dict[str, Any] = {}
 
     def message(self, kind: str, frame: int, numbers: Mapping[str, float]) -> Any:
-        """Return a message; the first one of a kind says which names all of its kind have."""
+        """Return a message; the first one of a kind determines the names of all."""
         if kind not in self._classes:
             self._classes[kind] = self._class(kind, numbers)
         return self._classes[kind](**{FRAME_FIELD: frame}, **numbers)

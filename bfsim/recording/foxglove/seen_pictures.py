@@ -23,12 +23,12 @@ FONT_PX = 9.0
 
 
 def image_message(seen: Seen, time_ns: int) -> RawImage:
-    """Return the picture that a core looked at, in colours that every viewer takes."""
+    """Return the picture that a core looked at, in an encoding that every viewer takes."""
     return _image(seen, rgb_of(seen.picture), time_ns)
 
 
 def heat_message(seen: Seen, heat: SeenHeat, hottest_us: float, time_ns: int) -> RawImage:
-    """Return the same picture under its heat; `hottest_us` a row is the end of the scale."""
+    """Return the same picture under its heat; the scale ends at `hottest_us` a row."""
     return _image(seen, heated(rgb_of(seen.picture), heat, hottest_us), time_ns)
 
 
@@ -74,7 +74,7 @@ def features_message(seen: Seen, objects: Iterable[SeenObject], time_ns: int) ->
 
 
 def color(colour: Colour, alpha: float = 1.0) -> Color:
-    """Return a colour as Foxglove has it, 0 to 1."""
+    """Return a colour in Foxglove's form, 0 to 1."""
     red, green, blue = colour
     return Color(r=red / 255, g=green / 255, b=blue / 255, a=alpha)
 
@@ -91,7 +91,7 @@ def _points(
 
 
 def _point(point: Point) -> Point2:
-    """Return a point as Foxglove counts: from the corner of the first pixel, not from its middle."""
+    """Return a point in Foxglove's coordinates, from the corner of the first pixel rather than its middle."""
     return Point2(x=point[0] + 0.5, y=point[1] + 0.5)
 
 

@@ -39,7 +39,7 @@ MM = 0.001
 LINE_PX = 2.0
 FONT_M = 0.03
 DIRECTION_M = 1.0
-"""How long an object is drawn of which only the direction is known."""
+"""The length to draw for an object of which only the direction is known."""
 
 FAINTEST = 0.3
 """Opacity of an object of accuracy 0."""
@@ -53,7 +53,7 @@ def transforms_message(geometry: SeenGeometry, time_ns: int) -> FrameTransforms:
         parent_frame_id=FLOOR,
         child_frame_id=LEFT,
         translation=Vector3(z=geometry.height_mm * MM),
-        # from a camera's axes to the floor's, then down round the axis that points to the left
+        # from a camera's axes to the floor's, then down round the axis that points left
         rotation=Quaternion(x=-down, y=down, z=-up, w=up),
     )
     right = FrameTransform(
@@ -70,7 +70,7 @@ def transforms_message(geometry: SeenGeometry, time_ns: int) -> FrameTransforms:
 def calibration_message(
     geometry: SeenGeometry, camera: str, size_px: tuple[int, int], time_ns: int
 ) -> CameraCalibration:
-    """Return how a rectified camera sees."""
+    """Return the calibration of a rectified camera."""
     width, height = size_px
     focal, (x, y) = geometry.focal_px, geometry.principal_px
     shift = -focal * geometry.baseline_mm * MM if camera == RIGHT else 0.0
@@ -87,8 +87,8 @@ def calibration_message(
 
 
 def objects_message(objects: Iterable[SeenObject], tilt_deg: float, time_ns: int) -> SceneUpdate:
-    """Return the objects: spheres and upright boxes of their models' sizes, and lines to what only has a direction."""
-    # round the axis to the right, so that boxes stand upright before a camera that looks down
+    """Return the objects: spheres and upright boxes of their models' sizes, or lines if only the direction is known."""
+    # a turn round the axis to the right, so that boxes stand upright before a camera that looks down
     half = math.radians(tilt_deg) / 2
     upright = Quaternion(x=math.sin(half), w=math.cos(half))
     return _update((_object(number, each, upright) for number, each in enumerate(objects)), time_ns)
@@ -112,7 +112,7 @@ def _object(number: int, each: SeenObject, upright: Quaternion) -> SceneEntity:
     elif each.solid is Solid.SPHERE:
         size = Vector3(x=width, y=height, z=width)
         entity.spheres.append(SpherePrimitive(pose=pose, size=size, color=colour))
-    else:  # a model has no depth
+    else:  # models have no depth
         size = Vector3(x=width, y=height, z=min(width, height))
         entity.cubes.append(CubePrimitive(pose=pose, size=size, color=colour))
     return entity
@@ -136,7 +136,7 @@ def lines_message(lines: Iterable[SeenLine3D], time_ns: int) -> SceneUpdate:
 
 
 def edges_message(edges: Iterable[SeenEdges3D], time_ns: int) -> PointCloud:
-    """Return the edges in space, with a red, green, blue and alpha of their depth."""
+    """Return the edges in space, with red, green, blue and alpha by depth."""
     places = [place for each in edges for place in each.places_mm.tolist()]
     points = np.zeros(len(places), [("place", "<f4", 3), ("colour", "u1", 4)])
     if places:
@@ -165,7 +165,7 @@ def edges_message(edges: Iterable[SeenEdges3D], time_ns: int) -> PointCloud:
 
 
 def _update(entities: Iterable[SceneEntity], time_ns: int) -> SceneUpdate:
-    """Return the update that has these entities in the left camera's frame take the place of all before."""
+    """Return an update that replaces all earlier entities by these, in the left camera's frame."""
     message = SceneUpdate(deletions=[SceneEntityDeletion(type=SceneEntityDeletion.ALL)], entities=entities)
     for each in (*message.deletions, *message.entities):
         each.timestamp.FromNanoseconds(time_ns)

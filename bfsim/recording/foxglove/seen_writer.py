@@ -1,6 +1,6 @@
-"""Writes what was seen to an MCAP file for Foxglove and rerun: pictures with marks, and objects, lines and edges in space.
+"""Write what was seen to an MCAP file for Foxglove and rerun: marked pictures, and objects, lines and edges in space.
 
-These messages are of Foxglove's own schemas. Beside them are numbers of each frame, to be plotted, in protobuf schemas of
+These messages have Foxglove's own schemas. With them are the numbers of each frame, for plots, in protobuf schemas of
 their names. All carry the time at which the picture was taken.
 """
 
@@ -47,7 +47,7 @@ WARNINGS_TOPIC = "/warnings"
 class SeenWriter:
     """Context manager that writes one file; it appears on a clean exit of the `with` block, or not at all.
 
-    Raises RecordingError where the file cannot be written or is another one already.
+    Raises RecordingError if the file cannot be written or is already another kind of file.
     """
 
     def __init__(self, path: Path) -> None:
@@ -73,21 +73,21 @@ class SeenWriter:
         return self
 
     def add(self, frame: SeenFrame) -> None:
-        """Append what was seen in a frame, in the order of time."""
+        """Append what was seen in a frame; frames come in order of time."""
         self._times_ns[frame.index] = frame.time_ns
         for topic, time_ns, message in sorted(self._messages(frame), key=lambda each: each[1]):
             self._write(topic, time_ns, message, frame.index)
 
     def has(self, frame: int) -> bool:
-        """Whether something was seen in a frame: of others there is no picture, and no time is known."""
+        """Whether something was seen in a frame: other frames have no picture and no known time."""
         return frame in self._times_ns
 
     def add_numbers(self, frame: int, topic: str, kind: str, numbers: Mapping[str, float]) -> None:
-        """Append numbers of a frame, in which something must have been seen; all of a kind have the same names."""
+        """Append numbers of a frame in which something was seen; all numbers of a kind have the same names."""
         self._write(topic, self._times_ns[frame], self._numbers.message(kind, frame, numbers), frame)
 
     def add_note(self, frame: int, text: str, *, is_warning: bool) -> None:
-        """Append a sentence about a frame, in which something must have been seen."""
+        """Append a sentence about a frame in which something was seen."""
         time_ns = self._times_ns[frame]
         message = Log(level=Log.WARNING if is_warning else Log.INFO, message=text, name="bfsim")
         message.timestamp.FromNanoseconds(time_ns)
@@ -100,9 +100,9 @@ class SeenWriter:
             self._mcap.add_message(channel, time_ns, data, time_ns, sequence=frame)
 
     def _messages(self, frame: SeenFrame) -> Iterator[tuple[str, int, Any]]:
-        """Yield topic, time and message of all there is to say of a frame."""
+        """Yield topic, time and message of everything that was seen in a frame."""
         time_ns, tilt_deg = frame.time_ns, 0.0
-        for geometry in list(frame.geometries.values())[:1]:  # the cameras are parallel, and one rig
+        for geometry in list(frame.geometries.values())[:1]:  # the cameras are parallel, one rig
             tilt_deg = geometry.tilt_deg
             yield TRANSFORMS_TOPIC, time_ns, transforms_message(geometry, time_ns)
         hottest_us = hottest_row_us(each.heat for each in frame.cameras if each.heat)
@@ -122,7 +122,7 @@ class SeenWriter:
         yield EDGES_TOPIC, time_ns, edges_message(frame.edges_3d(), time_ns)
 
     def _channel(self, topic: str, message: Any) -> int:
-        """Return the channel of a topic, which its first message opens."""
+        """Return the channel of a topic, which is opened with its first message."""
         if topic not in self._channels:
             kind = message.DESCRIPTOR.full_name
             if kind not in self._schemas:
@@ -141,7 +141,7 @@ class SeenWriter:
 
 
 def _is_ours(path: Path) -> bool:
-    """Whether a file is an earlier one of `SeenWriter`, and not a recording or anything else."""
+    """Whether a file was written by `SeenWriter` before, and is not a recording or anything else."""
     try:
         container = McapContainer(path)
     except RecordingError:

@@ -1,1 +1,1 @@
-"""From pictures in files to a recording: image files, raw frames and videos, and which of them were taken at once."""
+"""From picture files to a recording: image files, raw frames and videos, and which pictures were taken together."""

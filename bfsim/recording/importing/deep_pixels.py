@@ -1,4 +1,4 @@
-"""Pixels of 16 bits, of which a camera uses a part: the upper 8 bits of that are kept."""
+"""Pixels of 16 bits, of which a camera uses a part: the upper 8 of the used bits are kept."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FEWEST_BITS, MOST_BITS = 8, 16
 
 
 def check_bits(bits: int | None) -> None:
-    """Raise RecordingError unless a camera may use so many bits of 16."""
+    """Raise RecordingError unless a camera may use this many of 16 bits."""
     if bits is not None and not FEWEST_BITS <= bits <= MOST_BITS:
         raise RecordingError(f"`--bits` must be {FEWEST_BITS} to {MOST_BITS}, not {bits}")
 
@@ -22,7 +22,7 @@ def check_bits(bits: int | None) -> None:
 def upper_bits(pixels: NDArray[Any], bits: int | None) -> Plane:
     """Return the upper 8 of the `bits` that a camera uses.
 
-    Raises RecordingError if it was not said how many these are, and for pixels that have more.
+    Raises RecordingError if `bits` is not given, or if pixels have more.
     """
     darkest, brightest = int(pixels.min()), int(pixels.max())
     if bits is None:
@@ -42,7 +42,7 @@ def upper_bits(pixels: NDArray[Any], bits: int | None) -> Plane:
 
 
 def are_uppermost(pixels: NDArray[Any], bits: int) -> bool:
-    """Whether the bits that a camera uses may be the uppermost of the 16, as some cameras send them: all others are 0."""
+    """Whether the camera may use the uppermost of the 16 bits, as some cameras do: all others are 0."""
     is_of_16 = pixels.min() >= 0 and not int(pixels.max()) >> MOST_BITS
     return bool(is_of_16 and not (pixels & ((1 << (MOST_BITS - bits)) - 1)).any())
 

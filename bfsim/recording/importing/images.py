@@ -21,7 +21,7 @@ from bfsim.recording.importing.sources import IMAGE_SUFFIXES, PictureSource, Ski
 from bfsim.recording.planes import YuvPlanes
 
 _DEEP = ";16"
-"""In Pillow's names of what pixels of 16 bits are like: `I;16`, `RGB;16B`."""
+"""In Pillow's names of modes with 16 bits a pixel: `I;16`, `RGB;16B`."""
 _BRIGHTEST = (1 << MOST_BITS) - 1
 _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
 
@@ -29,7 +29,7 @@ _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", 
 def open_image_pair(
     left: str, right: str, *, mixed: bool, bits: int | None = None, pattern: BayerPattern | None = None
 ) -> list[PictureSource]:
-    """Images of both cameras as `open_images` has them, those that belong together: as many of either."""
+    """Return the images of both cameras, as `open_images` does, in matching pairs."""
     lefts, rights = (images_and_others(source) for source in (left, right))
     pairs, alone = pairs_of(lefts[0], rights[0], f"{left} and {right}: images")
     sides = list(zip(*pairs, strict=True))
@@ -42,10 +42,11 @@ def open_image_pair(
 def open_images(
     source: str, *, mixed: bool, bits: int | None = None, pattern: BayerPattern | None = None
 ) -> PictureSource:
-    """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10).
+    """Return the images of a folder, of a pattern or of one file, in natural order of their names (2 before 10).
 
-    Images that cannot be read are skipped, if one can; others that are of another size than the first are refused,
-    unless they may be `mixed`. `bits` as in `decoded`. `pattern`: of the colours of a sensor's filters, whose pixels grey images are.
+    Unreadable images are skipped, unless all are; images of another size than the first are refused, unless sizes may
+    be `mixed`. `bits` as in `decoded`. `pattern`: the pattern of the sensor's colour filters, if grey images are its
+    raw pixels.
     """
     return _source(source, *images_and_others(source), mixed=mixed, bits=bits, pattern=pattern)
 
@@ -71,7 +72,7 @@ def _source(
 
 
 def _first_readable(paths: list[Path], bits: int | None) -> tuple[str, tuple[int, int]]:
-    """Return name and size of the first image that can be read; if none can, raise what is wrong with the first."""
+    """Return name and size of the first readable image; if there is none, raise the error of the first image."""
     errors = []
     for path in paths:
         try:
@@ -107,7 +108,7 @@ def _pictures(
 
 
 def picture_of_file(path: Path) -> UyvyImage:
-    """Return an image as a camera would send it, UYVY; of an odd width the last column is left out."""
+    """Return an image as a camera would send it, UYVY; without its last column if the width is odd."""
     picture = load_image(path).convert("RGB")
     if picture.width < 2:
         raise RecordingError(f"{path}: image must be at least 2 pixels wide, not {picture.width}")
@@ -115,7 +116,7 @@ def picture_of_file(path: Path) -> UyvyImage:
 
 
 def images_and_others(source: str) -> tuple[list[Path], list[Skipped]]:
-    """Return the image files of a folder, of a pattern or of one file, in natural order of their names, and the files beside them."""
+    """Return the images of a folder, a pattern or one file, in natural order, and the other files there."""
     path = Path(source)
     if is_pattern(source):
         found = _matching(path)
@@ -141,14 +142,14 @@ def images_and_others(source: str) -> tuple[list[Path], list[Skipped]]:
 
 def images_among(paths: Iterable[Path]) -> tuple[list[Path], list[Skipped]]:
     """Return the image files in natural order of their names, and the other files."""
-    # A link that leads nowhere is a picture that cannot be read, and not none.
+    # A broken link counts as a picture that cannot be read.
     files = sorted((each for each in paths if each.is_file() or _is_broken_link(each)), key=_natural_key)
     others = [Skipped(file.name, "no image by its name") for file in files if not _is_image(file)]
     return [file for file in files if _is_image(file)], others
 
 
 def _matching(pattern: Path) -> list[Path]:
-    """Return the files that a pattern means, in a folder that must be there; folders in it that are there have that name, brackets and all."""
+    """Return the files that match a pattern, in an existing folder; existing folders may have brackets in their names."""
     folder, rest = Path(pattern.anchor), list(pattern.relative_to(pattern.anchor).parts)
     while (folder / rest[0]).exists():
         folder /= rest.pop(0)
@@ -158,7 +159,7 @@ def _matching(pattern: Path) -> list[Path]:
 
 
 def _is_image(file: Path) -> bool:
-    """Whether a file is an image by its name."""
+    """Whether a file's name is that of an image."""
     return file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
 
 
@@ -167,19 +168,19 @@ def _is_broken_link(path: Path) -> bool:
 
 
 def _names_of(found: list[Path]) -> str:
-    """Return the end of an error: what is there instead of images, folders with a slash."""
+    """Return the end of an error: what is there instead of images; folders end in a slash."""
     names = sorted(f"{each.name}/" if each.is_dir() else each.name for each in found)
     return f": {cut(', '.join(names))}" if names else ""
 
 
 def _natural_key(path: Path) -> tuple[list[int | str], str]:
-    """Return words and numbers in turn: 2 comes before 10, and `IMG.jpg` before its copy `IMG (1).jpg`."""
+    """Return words and numbers alternately: 2 comes before 10, and `IMG.jpg` before its copy `IMG (1).jpg`."""
     parts = re.split(r"(\d+)", str(path.with_suffix("")))
     return [int(part) if part.isdecimal() else part for part in parts], path.suffix
 
 
 def load_image(path: Path, bits: int | None = None) -> Image.Image:
-    """Return the decoded image, turned upright as its EXIF orientation says; `bits` as in `decoded`."""
+    """Return the decoded image, upright according to its EXIF orientation; `bits` as in `decoded`."""
     try:
         return decoded(path, bits=bits)
     except RecordingError as error:
@@ -189,16 +190,16 @@ def load_image(path: Path, bits: int | None = None) -> Image.Image:
 def decoded(
     file: Path | BytesIO, formats: tuple[str, ...] | None = None, *, bits: int | None = None
 ) -> Image.Image:
-    """Return the image in a file, of all formats or of these, as `load_image`. RecordingError does not name the file.
+    """Return the image in a file of any format, or of one of `formats`, as `load_image`. Errors do not name the file.
 
-    `bits`: how many a camera uses, whose pixels have 16 in the file. A PGM that has another maximum says that itself.
+    `bits`: how many the camera uses of 16-bit pixels. A PGM whose maximum is not 65,535 says that itself.
     """
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of what Pillow could do all the same
+            warnings.simplefilter("ignore")  # of files that Pillow reads all the same
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(file, formats=formats) as image:
-                # A phone may keep a smaller copy of the picture behind it (MPO).
+                # A phone may store a smaller copy behind the picture (MPO).
                 count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
                 has_deep_colours = _DEEP in str(image.tile) and image.mode in _EIGHT_BIT_MODES
                 deep_bits = MOST_BITS if _says_its_maximum(image) else bits
@@ -207,7 +208,7 @@ def decoded(
     except UnidentifiedImageError:
         kinds = " or ".join(formats) if formats else "an image that Pillow reads"
         raise RecordingError(f"file must be {kinds}, not something else") from None
-    # Pillow's decoders report damage with any of these, and stumble over it with those below.
+    # Pillow's decoders report damage with any of these errors, and fail on it with those below.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
         raise RecordingError(f"image must be readable: {error}") from None
     except (LookupError, TypeError, AttributeError, ArithmeticError, struct.error) as error:
@@ -225,7 +226,7 @@ def decoded(
             f"image must have pixels of 8 bits, or grey ones of 16, not the pixel format {upright.mode}"
         )
     if bits is not None and not (has_deep_colours and bits == MOST_BITS):
-        # Of colours of 16 bits Pillow keeps the upper 8.
+        # Pillow keeps the upper 8 of 16 bits of colours.
         raise RecordingError(
             f"image must have grey pixels of 16 bits for `--bits {bits}`, not {'colours' if has_deep_colours else 'pixels of 8'}"
         )
@@ -233,8 +234,8 @@ def decoded(
 
 
 def _says_its_maximum(image: ImageFile.ImageFile) -> bool:
-    """Whether a grey image, not loaded yet, says how bright its pixels can be: of a PGM's maximum above 255 Pillow makes 65,535."""
+    """Whether an unloaded grey image states its maximum: Pillow stretches a PGM's maximum above 255 to 65,535."""
     if image.format != "PPM" or image.mode != "I":
         return False
-    found = image.tile[0].args  # (mode, maximum), or a name where Pillow does not stretch
+    found = image.tile[0].args  # (mode, maximum), or a name if Pillow does not stretch
     return isinstance(found, tuple) and found[-1] != _BRIGHTEST

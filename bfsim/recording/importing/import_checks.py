@@ -1,4 +1,4 @@
-"""What must be true of sources and options before a recording is made of them."""
+"""Checks of sources and options before an import."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def check_options(
     topics: tuple[str, str] | None,
     slop_s: float | None,
 ) -> None:
-    """Raise RecordingError unless options that are for sources of one kind go with such a one; `name` is that of the first source."""
+    """Raise RecordingError if an option for one kind of source has no such source; `name` is that of the first source."""
     is_bag = "rosbag" in formats
     if is_bag and fps is not None:
         raise RecordingError(f"{name}: `--fps` must not be given, for a bag has time stamps")
@@ -89,7 +89,7 @@ def check_options(
 
 
 def _check_sources(names: list[str], *, is_bag: bool, is_single: bool) -> None:
-    """Raise RecordingError unless there are as many sources as cameras, each a file or folder of its own."""
+    """Raise RecordingError unless there is one source for each camera, and no source twice."""
     if is_bag and len(names) > 1:
         raise RecordingError(f"sources must be one bag with the topics of both cameras, not {len(names)}")
     wanted = 1 if is_single or is_bag else 2
@@ -111,13 +111,13 @@ def _check_sources(names: list[str], *, is_bag: bool, is_single: bool) -> None:
 
 
 def _is_one(left: str, right: str) -> bool:
-    """Whether two names are of the same file, folder or pattern."""
+    """Whether two names stand for the same file, folder or pattern."""
     paths = Path(left), Path(right)
     return left == right or (all(each.exists() for each in paths) and paths[0].samefile(paths[1]))
 
 
 def _is_of(source: str, file: Path) -> bool:
-    """Whether a file that is there is the source, or is in it, a bag of ROS 2 that is a folder."""
+    """Whether a source is this existing file, or a folder with it: a bag of ROS 2."""
     path = Path(source)
     if (path / "metadata.yaml").exists():
         return path.samefile(file.parent)
@@ -125,7 +125,7 @@ def _is_of(source: str, file: Path) -> bool:
 
 
 def _both_in(source: str) -> str:
-    """Return a folder's pictures of the left and of the right camera as two sources, if names in it say left and right."""
+    """Return two sources, for a folder's left and right pictures, if names in it say left and right."""
     folder = Path(source)
     inside = sorted(folder.iterdir()) if folder.is_dir() else []
     sources = []
@@ -140,7 +140,7 @@ def _both_in(source: str) -> str:
 
 
 def check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: bool) -> int | None:
-    """Return how many pictures both sources have, if they know; raise where they do not fit each other."""
+    """Return the number of pictures, if the sources know it; raise RecordingError if they do not match."""
     left, right = sources[0], sources[-1]
     if side_by_side:
         check_halves(left.name, left.size)
@@ -158,7 +158,7 @@ def check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: b
 
 
 def camera_size(source: PictureSource, side_by_side: bool) -> tuple[int, int]:
-    """Return the size of one camera's picture, checked, so that the message can name the source."""
+    """Return the size of one camera's picture; raises RecordingError, with the source, if it is not possible."""
     width, height = source.size
     if width % 2:
         raise RecordingError(

@@ -1,4 +1,4 @@
-"""Makes a recording from pictures: a stream for each camera, one with both side by side, or one for both."""
+"""Make a recording from pictures: a stream for each camera, one with both side by side, or one for both."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from bfsim.recording.writer import RecordingWriter
 SAME_PICTURES = "Warning: both cameras have the same pictures, byte for byte, so that nothing has a depth; `--mono` is for one camera"
 
 Progress = Callable[[int, int | None], None]
-"""Called after each stereo frame with the frames done and, where known, the frames there are."""
+"""Called after each stereo frame with the number of frames done and, if known, of all frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImportSummary:
-    """What an import has written, of pictures of which sizes, what it has skipped, and `notes` on what it decided."""
+    """What an import has written: the sizes of the pictures, what was skipped, and `notes` on its decisions."""
 
     path: Path
     width: int
@@ -70,18 +70,19 @@ def import_recording(
 ) -> ImportSummary:
     """Write the recording `output` from pictures; `output` appears when it is complete, or not at all.
 
-    - Two sources are the left and the right camera. One source needs `side_by_side` (left half, right half) or `mono` (one
-      camera feeds both sides). `format` is guessed from the names.
-    - `size` is the (width, height) of raw frames. `bits`: how many of its 16 bits a pixel uses; the upper 8 of them are taken.
-    - `resize` scales every picture by a triangle filter as wide as the scale, and cuts off what sticks out of its aspect
+    - Two sources are the left and the right camera. One source needs `side_by_side` (left half, right half) or `mono`
+      (one camera feeds both sides). `format` is guessed from the names.
+    - `size` is the (width, height) of raw frames. `bits`: how many of its 16 bits a pixel uses; the upper 8 of these
+      are kept.
+    - `resize` scales every picture by a triangle filter as wide as the scale, and cuts off what is outside its aspect
       ratio. `crop` keeps the middle of every picture, and skips smaller ones.
-    - A stereo frame of which one picture cannot be read, or is not there, is skipped: images of two cameras go together by
+    - A stereo frame is skipped if one of its pictures is missing or cannot be read: images of two cameras are paired by
       their names (`pairs_of`).
 
-    A bag of ROS is one source with both cameras' topics, which `topics` names and `slop_s` pairs (see `open_bag`); its
-    time stamps are kept, from the first picture on, and geometry and rectification are those of its camera_info unless
-    they are given. Of other sources the k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own
-    rate counts, or 30, and an uneven video's own times.
+    A bag of ROS is one source with both cameras' topics, which `topics` names and `slop_s` pairs (see `open_bag`). Its
+    time stamps, from the first picture on, are kept, and its camera_info gives geometry and rectification, unless these
+    are given. For other sources, the k-th stereo frame is stamped k / `fps` seconds; without `fps` it gets the source's
+    own rate, or 30, or an uneven video's own times.
 
     An existing `output` needs `force`. Raises RecordingError, with the file and the frame.
     """
@@ -157,7 +158,7 @@ def _write(
     count: int | None,
     progress: Progress | None,
 ) -> bool:
-    """Write pair after pair, which are checked as they pass, and return whether both pictures of each are the same."""
+    """Write all pairs, check them on the way, and return whether both pictures of each pair are the same."""
     are_same = True
     for index, left, right in pairs:
         stamps_ns = stamps.of(index, writer.frame_count)
@@ -171,7 +172,7 @@ def _write(
 
 
 def _size_doubts(opened: list[PictureSource], *, side_by_side: bool) -> tuple[str, ...]:
-    """Return why raw frames may be of another size than was said: the bytes of their pixels first, then the length of their rows."""
+    """Return reasons to doubt the given size of raw frames: first the bytes of a pixel, then the length of a row."""
     return (
         tuple(pixel_bytes_warnings(opened))
         or (() if side_by_side else tuple(row_length_warnings(opened)))
@@ -188,7 +189,7 @@ def _rig(
     *,
     side_by_side: bool,
 ) -> Rig:
-    """Return what is `given`, and for the rest what the camera_info of a bag says of pictures of that size."""
+    """Return what is `given`, completed from the camera_info of a bag for pictures of that size."""
     if side_by_side:
         return replace(
             given, notes=("A camera_info for both cameras' picture says nothing of each: it is not read.",)

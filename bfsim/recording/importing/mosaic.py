@@ -1,7 +1,7 @@
-"""Whether grey pictures are a sensor's, each pixel behind a filter of one colour: nothing in an image file says so.
+"""Detect grey pictures that are raw pixels behind colour filters; an image file does not say so.
 
-In a picture pixels side by side look more alike than every second one. Behind the filters of a Bayer pattern every second pixel has the
-same colour, and looks more alike.
+In an ordinary picture, adjacent pixels are more alike than those two apart. Behind the filters of a Bayer pattern,
+pixels two apart have the same colour and are more alike.
 """
 
 from __future__ import annotations
@@ -15,12 +15,15 @@ from bfsim.recording.importing.sources import PictureSource
 from bfsim.recording.planes import Plane, YuvPlanes
 
 MOSAIC_RATIO = 1.1
-"""Difference of neighbours by that of every second pixel. Of 104 real grey pictures none is told, of 72 mosaics made of real ones 71 are: of the
-former it is 0.78 at most where it was looked at (66), of the latter 1.26 at least (36)."""
+"""The difference of adjacent pixels over that of pixels two apart: the warning begins above this ratio.
+
+It is 0.78 at most in real grey pictures (66 measured), and at least 1.26 in mosaics of real ones (36 measured). There
+is no warning for any of 104 real grey pictures, and one for 71 of 72 mosaics.
+"""
 
 
 def mosaic_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
-    """Yield what to tell the user of each source whose first picture is grey and seems to be a mosaic of colours."""
+    """Yield a warning for each source whose first picture is grey and seems to be a mosaic of colours."""
     for source in sources:
         picture = next(source.pictures(), None)
         if isinstance(picture, YuvPlanes) and _is_grey(picture) and is_mosaic(picture.y):
@@ -35,9 +38,9 @@ def _is_grey(picture: YuvPlanes) -> bool:
 
 
 def is_mosaic(luma: Plane) -> bool:
-    """Whether pixels of shape (height, width) differ more from their neighbours than from those behind these, both across and down.
+    """Whether adjacent pixels, shape (height, width), differ more than those two apart, both across and down.
 
-    Black and white that was dithered does so, too, and what has no pixels behind others says nothing.
+    Dithered black and white does so, too, and is excluded; a picture of less than three pixels is not judged.
     """
     if min(luma.shape) < 3 or ((luma == luma.min()) | (luma == luma.max())).all():
         return False
@@ -46,5 +49,5 @@ def is_mosaic(luma: Plane) -> bool:
 
 
 def _apart(rows: NDArray[np.int16], step: int) -> float:
-    """Return by how much pixels differ in the mean that are so far apart in their row."""
+    """Return the mean difference of pixels that are `step` apart in their row."""
     return float(np.abs(rows[:, step:] - rows[:, :-step]).mean())

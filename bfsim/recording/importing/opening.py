@@ -1,4 +1,4 @@
-"""Which reader opens a source of pictures, by its format or its name."""
+"""Choose the reader for a source of pictures, by its format or its name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _SENSOR_OPENERS: dict[SourceFormat, Callable[[str, tuple[int, int], int | None],
     "grey": open_grey,
     **{each: partial(open_bayer, each) for each in BAYER_PATTERNS},
 }
-"""Of raw frames whose pixels may have 16 bits."""
+"""Raw frames whose pixels may have 16 bits."""
 
 
 def open_sources(
@@ -40,9 +40,9 @@ def open_sources(
     mixed: bool,
     bits: int | None = None,
 ) -> list[PictureSource]:
-    """Open sources by their names; `format` is that of all, and `size` that of raw frames.
+    """Open sources by their names; `format` applies to all, and `size` to raw frames.
 
-    `mixed`: the pictures of a source may have several sizes. `bits`: how many the cameras use of pixels that have 16.
+    `mixed`: the pictures of a source may differ in size. `bits`: how many the cameras use of 16-bit pixels.
     """
     if len(names) == 2 and all(_is_of_images(name, format) for name in names):
         _check_size(names[0], format, size)
@@ -75,18 +75,18 @@ def _open_source(
 
 
 def _is_of_images(name: str, format: SourceFormat | None) -> bool:
-    """Whether a source is of image files; so it may be where its pixels are said to be behind a pattern of colours."""
+    """Whether a source consists of image files; a format with colour filters does not exclude it."""
     said = None if _pattern(format) else format
     return (said or guess_format(name)) == "images"
 
 
 def _pattern(format: SourceFormat | None) -> BayerPattern | None:
-    """Return the pattern of colours that a format says, if it says one."""
+    """Return the filter pattern of a format, if it has one."""
     return next((each for each in BAYER_PATTERNS if each == format), None)
 
 
 def _check_size(name: str, format: SourceFormat | None, size: tuple[int, int] | None) -> None:
-    """Raise RecordingError where image files with a pattern of colours get the size of raw frames."""
+    """Raise RecordingError if image files with a filter pattern get the size of raw frames."""
     if size is not None and _pattern(format):
         raise RecordingError(
             f"{name}: `--size` must go with raw frames, for images have one of their own; `--resize` scales pictures"

@@ -1,4 +1,4 @@
-"""Which pictures of two cameras were taken at once: by what their names have in common, or by their order."""
+"""Pair the pictures of two cameras by their names, or by their order."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from bfsim.recording.importing.sources import Skipped
 SIDES = ("left", "right")
 
 _SIDE = re.compile(r"(?i:left|right|(?<![a-z])[lr](?![a-z]))|(?<=[a-z])[LR](?![A-Za-z])")
-"""What of a name says which camera it is: left, right, l and r by themselves, or L and R behind a word, as in imageL7."""
+"""The part of a name that tells the camera: left, right, l and r alone, or L and R after a word, as in imageL7."""
 
 Pair = tuple[Path, Path]
 
 
 def side_of(name: str) -> str | None:
-    """Return left or right if a name says that it is that camera's, and only that."""
+    """Return left or right if a name says that it is from that camera, and only that."""
     found = {each[0].lower() for each in _SIDE.findall(name)}
     return next((side for side in SIDES if found == {side[0]}), None)
 
@@ -26,9 +26,9 @@ def side_of(name: str) -> str | None:
 def pairs_of(lefts: Sequence[Path], rights: Sequence[Path], what: str) -> tuple[list[Pair], list[Skipped]]:
     """Return the pictures that belong together, and those of one camera alone.
 
-    Names without what says the camera are compared: left_03 goes with right_03. Where no two are alike, the pictures
-    go together by their order, if there are as many. Raises RecordingError that begins with `what` where that would be a
-    guess, also of which of two pictures a third one goes with.
+    Names are compared without the part that tells the camera: left_03 goes with right_03. If no two are alike, pictures
+    are paired in order, if there are equally many. Raises RecordingError, beginning with `what`, if a pairing would be
+    a guess, also if two pictures could go with a third one.
     """
     of_left, of_right = ({_key(path): path for path in paths} for paths in (lefts, rights))
     common = of_left.keys() & of_right.keys()
@@ -49,7 +49,7 @@ def pairs_of(lefts: Sequence[Path], rights: Sequence[Path], what: str) -> tuple[
 def _require_one_each(
     paths: Sequence[Path], last: Mapping[str, Path], others: Mapping[str, Path], what: str
 ) -> None:
-    """Raise RecordingError where two pictures of a camera go with one of the `others`; `last` has the last of each name."""
+    """Raise RecordingError if two pictures of a camera match one of the `others`; `last` has the last of each name."""
     for path in paths:
         key = _key(path)
         if last[key] != path and key in others:
@@ -64,5 +64,5 @@ def _key(path: Path) -> str:
 
 
 def _name(path: Path) -> str:
-    """Return a picture as a list has it: with its folder, since names of both cameras may be the same."""
+    """Return a picture's name for lists: with its folder, since both cameras may use the same names."""
     return f"{path.parent.name}/{path.name}"

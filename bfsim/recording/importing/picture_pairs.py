@@ -1,4 +1,4 @@
-"""The pictures of both cameras as their sources have them, pair by pair, in the size of a recording."""
+"""The pictures of both cameras, pair by pair, in the size of a recording."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from bfsim.recording.planes import YuvPlanes
 
 @dataclass(slots=True)
 class PicturePairs:
-    """Pairs that can be had, and, once they were, what was `skipped` and which `sizes` pictures had.
+    """The pairs that exist; afterwards, what was `skipped`, and the `sizes` of the pictures.
 
-    `sources`: of the left and the right camera, or one for both, whose pictures have both `side_by_side` or are taken for both.
-    `resize`, `crop`: to which (width, height) every picture is scaled or cut.
+    `sources`: one for the left and one for the right camera, or a single one with both halves `side_by_side` or with
+    pictures for both. `resize`, `crop`: the (width, height) to which every picture is scaled or cut.
     """
 
     sources: Sequence[PictureSource]
@@ -31,7 +31,7 @@ class PicturePairs:
         self.skipped = [each for source in self.sources for each in source.skipped]
 
     def __iter__(self) -> Iterator[tuple[int, YuvPlanes, YuvPlanes]]:
-        """Yield number, left and right picture of each pair. Raises RecordingError where one camera has more pictures."""
+        """Yield number, left and right picture of each pair. Raises RecordingError if one camera has more pictures."""
         for index, sides in enumerate(_stereo_pairs(self.sources, self.side_by_side)):
             left, right = fitted = [_fitted(side, index, self.resize, self.crop) for side in sides]
             if isinstance(left, Skipped) or isinstance(right, Skipped):
@@ -66,7 +66,7 @@ def _stereo_pairs(
 def _fitted(
     picture: YuvPlanes | Skipped, index: int, resize: tuple[int, int] | None, crop: tuple[int, int] | None
 ) -> YuvPlanes | Skipped:
-    """Return a picture of one side in the size of the recording, or why it cannot be."""
+    """Return a picture of one side in the size of the recording, or the reason why not."""
     if isinstance(picture, Skipped):
         return picture
     if resize:

@@ -1,6 +1,7 @@
-"""Whether the pixels of raw grey frames, or of a sensor's, have one byte, as is taken where `--bits` is not said.
+"""Detect raw grey or sensor frames with two bytes a pixel, where `--bits` was not given and one byte is assumed.
 
-Of two bytes a pixel, the lower one is like noise, and the other one like a picture: every other byte differs more from the next pixel's.
+With two bytes a pixel, the lower one is like noise and the upper one like a picture, so every other byte differs more
+from the next pixel's.
 """
 
 from __future__ import annotations
@@ -13,15 +14,18 @@ from numpy.typing import NDArray
 from bfsim.recording.importing.sources import PictureSource
 
 NEXT_BYTES = 4
-"""To the next pixel of the same colour behind a sensor's filters, if pixels have two bytes."""
+"""The distance to the next pixel of the same colour behind a sensor's filters, if pixels have two bytes."""
 
 ROUGHER = 2.4
-"""Times that every other byte differs more: 0.8 to 1.1 in 136 real pictures of a byte a pixel, grey and of a sensor; 5.2 and more where the
-same have two, of which 10 to 16 bits are used."""
+"""How many times more every other byte differs before there is a warning.
+
+It is 0.8 to 1.1 in 136 real pictures with one byte a pixel, grey and from sensors, and 5.2 and more in the same
+pictures with two, of which 10 to 16 bits are used.
+"""
 
 
 def pixel_bytes_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
-    """Yield what to tell the user of each raw source with a byte a pixel whose pixels seem to have two."""
+    """Yield a warning for each raw source with one byte a pixel whose pixels seem to have two."""
     for source in sources:
         if source.count:
             octets = np.memmap(source.name, np.uint8, "r")
@@ -32,7 +36,7 @@ def pixel_bytes_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
 
 
 def order_of_two_bytes(frame: NDArray[np.uint8]) -> str:
-    """Return which byte of a pixel comes first, and what to do; empty if each seems to have one."""
+    """Return which byte of a pixel comes first, and what to do; "" if each pixel seems to have one."""
     steps = np.abs(frame[NEXT_BYTES:].astype(np.int16) - frame[:-NEXT_BYTES])
     if len(steps) < 2:
         return ""

@@ -1,7 +1,7 @@
 """Pictures from files without a container: raw frames back to back, as cameras send them, and YUV4MPEG2 (.y4m).
 
-Their bytes are kept as they are. Only a y4m file that says XCOLORRANGE=LIMITED is stretched to full range.
-YUV4MPEG2: the MJPEG Tools' yuv4mpeg(5) manual page, with FFmpeg's X parameters.
+Their bytes are kept as they are, except that a y4m file with XCOLORRANGE=LIMITED is stretched to full range. YUV4MPEG2:
+the MJPEG Tools' yuv4mpeg(5) manual page, with FFmpeg's X parameters.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _Y4M_MAGIC = b"YUV4MPEG2"
 _LONGEST_LINE_BYTES = 1024
 SWAPPED = "; they would with their bytes the other way round: swap them, as `dd conv=swab` does"
 
-# How far the colour planes are divided, in columns and rows; (0, 0): there are none.
+# Divisors of the colour planes, in columns and rows; (0, 0): there are none.
 _Y4M_SUBSAMPLING = {
     "420": (2, 2), "420jpeg": (2, 2), "420mpeg2": (2, 2), "420paldv": (2, 2),
     "422": (2, 1), "444": (1, 1), "mono": (0, 0),
@@ -35,7 +35,7 @@ _Y4M_SUBSAMPLING = {
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """How one frame lies in the file: planes one after the other, colour divided by (columns, rows)."""
+    """The layout of a frame in the file: planes one after the other, colour divided by (columns, rows)."""
 
     width: int
     height: int
@@ -61,19 +61,19 @@ class _Layout:
 
 
 def open_uyvy(source: str, size: tuple[int, int]) -> PictureSource:
-    """Raw UYVY frames of `size` (width, height) in pixels."""
+    """Open raw UYVY frames of `size` (width, height) in pixels."""
     return _open_packed(source, "UYVY", size, YuvPlanes.from_uyvy)
 
 
 def open_yuyv(source: str, size: tuple[int, int]) -> PictureSource:
-    """Raw YUYV frames, also called YUY2, of `size` (width, height) in pixels."""
+    """Open raw YUYV frames, also called YUY2, of `size` (width, height) in pixels."""
     return _open_packed(source, "YUYV", size, YuvPlanes.from_yuyv)
 
 
 def _open_packed(
     source: str, name: str, size: tuple[int, int], planes_of: Callable[[NDArray[np.uint8]], YuvPlanes]
 ) -> PictureSource:
-    """Two bytes a pixel, two pixels with one colour."""
+    """Open frames with two bytes a pixel, where two pixels share a colour."""
     width, height = size
     if width % 2:
         raise RecordingError(f"{source}: width of {name} frames must be even, not {width}")
@@ -85,13 +85,13 @@ def _open_packed(
 
 
 def open_i420(source: str, size: tuple[int, int]) -> PictureSource:
-    """Raw I420 frames (planes Y, U, V; colour halved both ways) of `size` (width, height) in pixels."""
+    """Open raw I420 frames (planes Y, U, V; colour halved both ways) of `size` (width, height) in pixels."""
     frame = _quartered(source, "I420", size)
     return _open_raw(source, "I420", size, frame.frame_bytes, frame.planes)
 
 
 def open_nv12(source: str, size: tuple[int, int]) -> PictureSource:
-    """Raw NV12 frames (a plane Y, one of U and V by turns; colour halved both ways) of `size` (width, height) in pixels."""
+    """Open raw NV12 frames (a plane Y, one of alternating U and V; colour halved both ways) of `size` (width, height)."""
     frame = _quartered(source, "NV12", size)
 
     def planes(data: bytes) -> YuvPlanes:
@@ -104,14 +104,14 @@ def open_nv12(source: str, size: tuple[int, int]) -> PictureSource:
 
 
 def open_grey(source: str, size: tuple[int, int], bits: int | None = None) -> PictureSource:
-    """Raw grey frames of `size` (width, height) in pixels of a byte, or of two of which the camera uses so many `bits`."""
+    """Open raw grey frames of `size` (width, height); pixels have one byte, or two with this many used `bits`."""
     return _open_sensor(source, "grey", size, bits, YuvPlanes.from_grey)
 
 
 def open_bayer(
     pattern: BayerPattern, source: str, size: tuple[int, int], bits: int | None = None
 ) -> PictureSource:
-    """Raw frames of a sensor with filters before its pixels, as `open_grey` has them."""
+    """Open raw frames of a sensor with colour filters on its pixels, like `open_grey`."""
     return _open_sensor(source, pattern, size, bits, partial(planes_of_bayer, pattern=pattern))
 
 
@@ -122,7 +122,7 @@ def _open_sensor(
     bits: int | None,
     planes_of: Callable[[NDArray[np.uint8]], YuvPlanes],
 ) -> PictureSource:
-    """A number a pixel; those of two bytes begin with the lower one."""
+    """Open frames with one number a pixel; numbers of two bytes begin with the lower one."""
     width, height = size
 
     def planes(data: bytes) -> YuvPlanes:
@@ -140,7 +140,7 @@ def _open_sensor(
 
 
 def _quartered(source: str, name: str, size: tuple[int, int]) -> _Layout:
-    """Return the layout of frames whose planes of colour are half as wide and high."""
+    """Return the layout of frames whose colour planes are half as wide and high."""
     width, height = size
     if width % 2 or height % 2:
         raise RecordingError(
@@ -175,7 +175,7 @@ def _open_raw(
 
 
 def open_y4m(source: str) -> PictureSource:
-    """Frames of a YUV4MPEG2 file with 8 bits a sample, 4:2:0, 4:2:2, 4:4:4 or mono."""
+    """Open frames of a YUV4MPEG2 file with 8 bits a sample, 4:2:0, 4:2:2, 4:4:4 or mono."""
     with _open(source) as stream:
         header = _read_line(stream, source, 0).split(" ")
         start = stream.tell()
@@ -226,7 +226,7 @@ def _y4m_layout(source: str, header: list[str]) -> _Layout:
 
 
 def _y4m_fps(source: str, header: list[str]) -> Fraction | None:
-    """Return the frame rate; None for one that is not given or unknown (0:0)."""
+    """Return the frame rate; None if it is missing or unknown (0:0)."""
     for field in header[1:]:
         if field.startswith("F"):
             frames, _, seconds = field[1:].partition(":")

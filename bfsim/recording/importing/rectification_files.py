@@ -1,4 +1,4 @@
-"""Tables that rectify the pictures of two cameras, read from files of numpy."""
+"""Read the rectification tables of two cameras from files of numpy."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from bfsim.recording.frames import RectificationTables
 from bfsim.recording.layout import table_from_npy
 
 LARGEST_TABLE_MB = 256
-"""Of a rectification table: 16 bytes a pixel at most."""
+"""Of a table: at most 16 bytes a pixel."""
 
 
 def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[str]) -> RectificationTables:
-    """Rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing."""
+    """Return rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing."""
     tables = []
     for path in (left, right):
         try:

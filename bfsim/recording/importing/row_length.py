@@ -1,6 +1,6 @@
-"""Whether the rows of raw frames, which have no size of their own, are as long as was said.
+"""Check the length of the rows of raw frames, which do not state their size.
 
-Rows that follow each other look alike: in the pixels of a picture, one after the other, those that are a row apart differ least.
+Adjacent rows are alike: among all pixels in a sequence, those that are one row apart differ least.
 """
 
 from __future__ import annotations
@@ -14,21 +14,27 @@ from bfsim.recording.importing.sources import PictureSource
 from bfsim.recording.planes import Plane, YuvPlanes
 
 MOST_PIXELS = 200_000
-"""Of a picture, that are compared."""
+"""The number of pixels of a picture that are compared."""
 
 SHORTEST_PX, NEAREST_PX = 32, 8
-"""The shortest row that is sought, and how far from the length that was said another one is one."""
+"""The shortest row that is considered, and the least difference from the given length that counts as another length."""
 
 TWO_ROWS_SHARE = 0.9
-"""Rows that follow each other differ by less than this part of what the first and the third do: by 0.70 at most in real pictures."""
+"""The ratio of differences below which a half, third or quarter of the given length is reported.
+
+In real pictures, adjacent rows differ by at most 0.70 of what rows two apart do.
+"""
 
 DOUBTED_SHARE = 0.5
-"""Of the difference of rows of the length that was said. Of 201 real pictures of the right one nothing is told: the best other one has five
-times that difference. Of 1,606 with a wrong one 1,600 are told, 1,482 with the very length."""
+"""The fraction of the difference at the given length below which another length is reported.
+
+With the right length, nothing is reported for 201 real pictures: the best other length has five times the difference.
+With a wrong one, 1,600 of 1,606 are reported, 1,482 of them with the exact length.
+"""
 
 
 def row_length_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
-    """Yield what to tell the user of each source whose first picture seems to have rows of another length."""
+    """Yield a warning for each source whose first picture seems to have rows of another length."""
     for source in sources:
         picture = next(source.pictures(), None)
         if isinstance(picture, YuvPlanes) and (length_px := other_row_length(picture.y)):
@@ -39,7 +45,10 @@ def row_length_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
 
 
 def other_row_length(luma: Plane) -> int | None:
-    """Return the length in pixels that rows of a picture of shape (height, width) seem to have; None for its own, or if nothing tells."""
+    """Return the apparent length in pixels of the rows of a picture of shape (height, width).
+
+    None if it is the given one, or if nothing tells.
+    """
     width: int = luma.shape[1]
     pixels = luma.ravel()[:MOST_PIXELS].astype(np.float64)
     first, end = max(SHORTEST_PX, width // 4), min(4 * width, len(pixels) // 3)
@@ -55,7 +64,7 @@ def other_row_length(luma: Plane) -> int | None:
 
 
 def _differences(pixels: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the mean square of the difference of pixels that are so many apart, by their distance."""
+    """Return the mean square difference of pixels, by their distance."""
     count = len(pixels)
     centred = pixels - pixels.mean()
     spectrum = np.fft.rfft(centred, 2 * count)
@@ -63,6 +72,6 @@ def _differences(pixels: NDArray[np.float64]) -> NDArray[np.float64]:
     sums = np.concatenate([[0], np.cumsum(centred**2)])
     distance = np.arange(count)
     squares = sums[count - distance] + sums[count] - sums[distance] - 2 * products
-    # Of equal rows nothing but rounding is left.
+    # For equal rows, only rounding errors are left.
     differences: NDArray[np.float64] = np.round(squares / (count - distance), 6)
     return differences

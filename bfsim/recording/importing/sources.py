@@ -1,4 +1,4 @@
-"""Where pictures for a recording come from: which reader a path needs, and what every reader gives."""
+"""Sources of pictures for a recording: which reader a path needs, and what every reader provides."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ SourceFormat = Literal[
 ]  # fmt: skip
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
 RAW_FORMATS = tuple(each for each in SOURCE_FORMATS if each not in ("images", "y4m", "video", "rosbag"))
-"""Of these no file says how large its pictures are."""
+"""Formats that do not state the size of their pictures."""
 DEEP_FORMATS = tuple(
     each for each in SOURCE_FORMATS if each in ("images", "grey", "rosbag") or each.startswith("bayer")
 )
-"""Of these pixels may have 16 bits."""
+"""Formats whose pixels may have 16 bits."""
 
 IMAGE_SUFFIXES = frozenset({
     ".bmp", ".gif", ".jfif", ".jpe", ".jpeg", ".jpg", ".pgm", ".png", ".pnm", ".ppm", ".tif", ".tiff", ".webp",
@@ -42,12 +42,12 @@ _FILE_SUFFIXES: dict[str, SourceFormat] = {
 }  # fmt: skip
 
 _OF_BAG = re.compile(r"\.db3$|_\d+\.mcap$")
-"""How the files in a bag of ROS 2 are called."""
+"""Names of the files in a bag of ROS 2."""
 
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """A file that was left out, and why."""
+    """A file that was left out, and the reason."""
 
     name: str
     reason: str
@@ -57,11 +57,11 @@ class Skipped:
 class PictureSource:
     """One stream of pictures. size is that of the first one.
 
-    count is None when only reading to the end tells; fps is None when the source does not say. `pictures`
-    opens the source and yields from the first picture on, one in memory at a time; in the place of one that cannot be
-    read, why not. `skipped` are files beside them that are no pictures. `times_ns` says when each was taken, if the
-    source knows, at least of those that it has yielded. `notes` are for who imports it, `notes_on_times` if it
-    keeps its times.
+    count is None if only reading to the end can tell; fps is None if the source does not say. `pictures` opens the
+    source and yields pictures from the first on, one in memory at a time; in place of an unreadable one it yields the
+    reason. `skipped` are other files beside them. `times_ns` says when each picture was taken, if the source knows, at
+    least for those already yielded. `notes` are for the user who imports the source, `notes_on_times` only if its times
+    are kept.
     """
 
     name: str
@@ -76,7 +76,7 @@ class PictureSource:
 
 
 def guess_format(source: str) -> SourceFormat | None:
-    """Format of a source by its name; None if the name does not tell. A GIF by itself is an animation."""
+    """Return the format of a source by its name; None if the name does not tell. A single GIF is an animation."""
     path = Path(source)
     if (path / "metadata.yaml").is_file() or _is_cut_bag(path):
         return "rosbag"
@@ -87,10 +87,10 @@ def guess_format(source: str) -> SourceFormat | None:
 
 
 def _is_cut_bag(path: Path) -> bool:
-    """Whether a folder holds the files of a bag of ROS 2 whose recorder died before it wrote the metadata, and no pictures."""
+    """Whether a folder holds files of a ROS 2 bag without metadata, since its recorder died, and no pictures."""
     names = [
         each.name.lower() for each in path.glob("*")
-    ]  # none where the folder cannot be read, which its reader tells
+    ]  # empty if the folder cannot be read, which its reader reports
     return any(map(_OF_BAG.search, names)) and not any(each.endswith(tuple(IMAGE_SUFFIXES)) for each in names)
 
 

@@ -1,4 +1,4 @@
-"""When the pictures of a recording were taken: evenly, or as their sources know."""
+"""When the pictures of a recording were taken: evenly, or at the times of their sources."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from bfsim.errors import RecordingError
 from bfsim.recording.importing.sources import PictureSource
 
 DEFAULT_FPS = Fraction(30)
-"""Of sources that do not say: the VGA rate of the OmniVision sensors."""
+"""For sources that do not say: the VGA rate of the OmniVision sensors."""
 
 FPS_PARTS = 1_000_000
-"""Frame rates are fractions with denominators up to this; it is the highest rate, too."""
+"""The largest denominator of a frame rate as a fraction; also the highest rate."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stamps:
-    """The time stamps of stereo frames from `sources`. `is_even`: what the sources know is passed over.
+    """The time stamps of stereo frames from `sources`. `is_even`: the sources' own times are ignored.
 
     `has_pairs`: pictures were paired by their times, however far apart these are.
     """
@@ -28,9 +28,9 @@ class Stamps:
     has_pairs: bool
 
     def of(self, index: int, number: int) -> tuple[int, int]:
-        """Return the times in ns of the pictures `index` of the sources, which become the stereo frame `number`.
+        """Return the times in ns of the pictures `index` of the sources, for the stereo frame `number`.
 
-        Raises RecordingError for pictures that were not taken at once.
+        Raises RecordingError for pictures that were not taken at the same time.
         """
         even_ns = round(number * 1_000_000_000 / self.rate)
         left_ns, right_ns = (
@@ -46,9 +46,9 @@ class Stamps:
 
 
 def frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> Fraction:
-    """Return how many stereo frames a second there are: `fps`, or what the sources say."""
+    """Return the number of stereo frames per second: `fps`, or what the sources say."""
     rates = {source.fps for source in sources if source.fps is not None and source.times_ns is None}
-    rates = rates or {sources[0].fps or DEFAULT_FPS}  # their times say whether pictures belong together
+    rates = rates or {sources[0].fps or DEFAULT_FPS}  # their times decide whether pictures belong together
     if fps is None and len(rates) > 1:
         described = " and ".join(f"{float(rate):g}" for rate in sorted(rates))
         raise RecordingError(f"both cameras must have one frame rate, not {described}; `--fps` sets it")

@@ -17,14 +17,14 @@ from bfsim.recording.importing.sources import PictureSource, Skipped
 from bfsim.recording.planes import YuvPlanes
 
 LARGEST_JITTER_S = Fraction(1, 1000)
-"""Pictures of an even rate may be off by less than this, or than a tick of the video's clock."""
+"""Pictures of an even rate may deviate by less than this, or than a tick of the video's clock."""
 DURATION = re.compile(r"(\d+):(\d+):(\d+(?:\.\d+)?)$")
 
 
 def open_video(source: str) -> PictureSource:
-    """The first video stream of a file, upright as it says, in full-range BT.601 whatever range and matrix it was coded in.
+    """Open the first video stream of a file, upright as it says, in full-range BT.601 whatever its range and matrix.
 
-    Pictures that do not come at the rate that the video has, as those of phones, keep their times.
+    Pictures that do not come at the video's nominal rate, such as those of phones, keep their times.
     """
     with _stream_of(source) as (container, stream):
         rate = Fraction(stream.average_rate) if stream.average_rate else None
@@ -59,7 +59,7 @@ def open_video(source: str) -> PictureSource:
 
 
 def _duration_s(stream: Any) -> Fraction | None:
-    """Return how long a stream says it is; Matroska does so in words, 00:00:02.960000000."""
+    """Return the stated length of a stream; Matroska states it in words, 00:00:02.960000000."""
     if stream.duration:
         return Fraction(stream.duration * stream.time_base)
     found = DURATION.match(stream.metadata.get("DURATION", ""))
@@ -72,7 +72,7 @@ def _duration_s(stream: Any) -> Fraction | None:
 def _break_off(
     source: str, times_s: list[Fraction], duration_s: Fraction | None, rate: Fraction | None
 ) -> tuple[str, ...]:
-    """Return a note where pictures end long before their stream says that it does: FFmpeg takes a file that was cut as one that is over."""
+    """Return a note if the pictures end long before the stated end: FFmpeg takes a cut file for a complete one."""
     if not (times_s and duration_s and rate):
         return ()
     longest_s = max([1 / rate, *(after - before for before, after in pairwise(times_s))])
@@ -87,14 +87,15 @@ def _break_off(
 def _pictures(source: str, times_ns: list[int]) -> Iterator[YuvPlanes | Skipped]:
     """Yield the pictures; `times_ns` then says when each of them was taken, from the first one on.
 
-    Of one that is damaged the decoder makes up a part: where it says so, it is skipped.
+    The decoder makes up parts of a damaged picture; if it says so, the picture is skipped.
     """
     size, ticks = None, list[int]()
     times_ns.clear()
     with _stream_of(source) as (container, stream):
         for index, frame in enumerate(container.decode(stream)):
             full_range = frame.reformat(format="yuv444p", dst_colorspace="ITU601", dst_color_range="JPEG")
-            # A phone stores its pictures as its sensor lies, and beside them by how many degrees to turn them, counterclockwise.
+            # A phone stores pictures in its sensor's orientation, and with them the degrees to turn them
+            # counterclockwise.
             quarters = round(frame.rotation / 90)
             picture = YuvPlanes(*(np.rot90(plane, quarters) for plane in full_range.to_ndarray()))
             size = size or picture.size
@@ -104,7 +105,7 @@ def _pictures(source: str, times_ns: list[int]) -> Iterator[YuvPlanes | Skipped]
                     f"{source}: frame {index} must be {size[0]}x{size[1]} like the first, not {width}x{height}"
                 )
             tick = 0 if frame.pts is None else frame.pts
-            ticks.append(max(tick, ticks[-1] + 1) if ticks else tick)  # time stamps rise
+            ticks.append(max(tick, ticks[-1] + 1) if ticks else tick)  # time stamps must rise
             times_ns.append(round((ticks[-1] - ticks[0]) * stream.time_base * 1_000_000_000))
             yield Skipped(f"{source} {index}", "the video is damaged there") if frame.is_corrupt else picture
 

@@ -1,7 +1,7 @@
 """One bag of ROS 1 or ROS 2 as a file: its topics, and the messages of one, through the optional package rosbags.
 
-Nothing in a bag is executed: its messages are read by ROS's own definitions of them and never by those that the bag brings,
-which rosbags would make Python code of.
+Nothing in a bag is executed: its messages are read by ROS's own definitions, never by those in the bag, of which
+rosbags would make Python code.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from bfsim.recording.container import McapContainer
 from bfsim.recording.layout import IMAGE_SCHEMA
 
 METADATA = "metadata.yaml"
-"""What the folder of a bag of ROS 2 has beside its files."""
+"""The file that is in the folder of a ROS 2 bag besides its data."""
 
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """What a bag has under one name, and how often."""
+    """The type and the number of a topic's messages."""
 
     name: str
     kind: str
@@ -35,7 +35,7 @@ class Topic:
 
 
 class BagFile:
-    """One bag, which is opened anew for each reading. Raises RecordingError for all that is wrong with it."""
+    """One bag, which is opened anew for each reading. Raises RecordingError for anything wrong with it."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -72,7 +72,7 @@ class BagFile:
         return int(seconds) * 1_000_000_000 + int(nanoseconds)
 
     def decode(self, raw: bytes, kind: str) -> Any:
-        """Return the fields of a message. Raises RecordingError, without the bag's name, where it is no such message."""
+        """Return the fields of a message. Raises RecordingError, without the bag's name, if it is not such a message."""
         store = _types(is_ros1=self.is_ros1)
         try:
             return store.deserialize_ros1(raw, kind) if self.is_ros1 else store.deserialize_cdr(raw, kind)
@@ -102,7 +102,7 @@ class BagFile:
             ) from None
 
     def _advice(self) -> str:
-        """Say what the file is, or how it is mended."""
+        """Say what the file is, or how to repair it."""
         if self.is_ros1:
             return "; `rosbag reindex` may mend it"
         if self.path.is_dir() and not (self.path / METADATA).exists():
@@ -114,7 +114,7 @@ class BagFile:
 
 
 def is_recording(path: Path) -> bool:
-    """Whether a file is a recording and no bag: by the schemas of its topics."""
+    """Whether a file is a recording and not a bag, by the schemas of its topics."""
     try:
         file = McapContainer(path)
     except RecordingError:

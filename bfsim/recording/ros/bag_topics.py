@@ -1,4 +1,4 @@
-"""Which topics of a bag of ROS have the pictures of the cameras."""
+"""The topics of a bag of ROS that hold the cameras' pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OTHER_SIDE = {"left": "right", "right": "left"}
 
 
 def single_topic(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
-    """Return the one topic of pictures, which `topics` name twice if they are given. Raises RecordingError."""
+    """Return the only topic of pictures, which `topics`, if given, name twice. Raises RecordingError."""
     _require_images(name, found)
     if topics is not None:
         if topics[0] != topics[1]:
@@ -28,7 +28,10 @@ def single_topic(name: str, found: dict[str, Topic], topics: tuple[str, str] | N
 
 
 def pair_of_topics(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
-    """Return the left and the right camera's topic: `topics`, or the only two whose names differ by that. Raises RecordingError."""
+    """Return the left and right camera's topics: `topics`, or the only two with names for left and right.
+
+    Raises RecordingError if there are none, or several.
+    """
     _require_images(name, found)
     if topics is None:
         lefts = [
@@ -61,7 +64,7 @@ def _count_of_images(found: dict[str, Topic]) -> int:
 
 
 def _other_side(topic: str, side: str) -> str:
-    """Return the name of the other camera's topic, or nothing if the name does not say that it is that side's."""
+    """Return the name of the other camera's topic; "" if the name does not say that it is from `side`."""
     sides = {each.lower() for each in _SIDES.findall(topic)}
     return _SIDES.sub(lambda found: _like(found[0], _OTHER_SIDE[side]), topic) if sides == {side} else ""
 

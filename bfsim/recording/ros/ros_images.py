@@ -20,14 +20,14 @@ IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 IMAGE_TYPES = (IMAGE, COMPRESSED)
 
 _UNORDERED = {"8UC3": "BGR", "8UC4": "BGRA"}
-"""OpenCV's names for bytes of which none says its colour: the order that OpenCV itself, and rviz, take them in."""
+"""OpenCV's names for pixels of unspecified colours, in the order in which OpenCV itself, and rviz, take them."""
 _COLOURS = {"rgb8": "RGB", "bgr8": "BGR", "rgba8": "RGBA", "bgra8": "BGRA", **_UNORDERED}
 """Order of the bytes of a pixel."""
 _YUV = {"yuv422": "UYVY", "uyvy": "UYVY", "yuv422_yuy2": "YUYV", "yuyv": "YUYV"}
 """Order of the bytes of two pixels: sensor_msgs/image_encodings."""
 _GREY = ("mono8", "8UC1")
 _DEEP = {"mono16": "", "16UC1": "", **{f"{each.removesuffix('8')}16": each for each in BAYER_PATTERNS}}
-"""Of pixels of 16 bits: the pattern that they make with 8, or none."""
+"""16-bit pixels: the pattern that their 8-bit version has, if any."""
 ENCODINGS = (*_GREY, *_COLOURS, *_YUV, *BAYER_PATTERNS, *_DEEP)
 _PIXEL_BYTES: dict[str, int] = {**dict.fromkeys(_GREY, 1), **{each: len(order) for each, order in _COLOURS.items()},
                 **dict.fromkeys(_YUV, 2), **dict.fromkeys(BAYER_PATTERNS, 1), **dict.fromkeys(_DEEP, 2)}  # fmt: skip
@@ -36,9 +36,9 @@ _PIXEL_BYTES: dict[str, int] = {**dict.fromkeys(_GREY, 1), **{each: len(order) f
 def planes_of(message: Any, kind: str, bits: int | None = None) -> YuvPlanes:
     """Return the picture in a message of one of IMAGE_TYPES. YUV is taken as it is, in full range.
 
-    `bits`: how many the camera uses of pixels that have 16.
+    `bits`: how many the camera uses of 16-bit pixels.
 
-    Raises RecordingError for other encodings, and where the bytes are no such picture.
+    Raises RecordingError for other encodings, and if the bytes do not form such a picture.
     """
     if kind == COMPRESSED:
         return YuvPlanes.from_image(decoded(BytesIO(message.data), ("JPEG", "PNG"), bits=bits))
@@ -68,13 +68,13 @@ def planes_of(message: Any, kind: str, bits: int | None = None) -> YuvPlanes:
 
 
 def order_note(encoding: str) -> str:
-    """Return what is to be said of an encoding that says no order of colours, or nothing."""
+    """Return a note about an encoding with an unspecified order of colours, else ""."""
     order = _UNORDERED.get(encoding)
     return f"{encoding} says no order of colours: {order} is taken, as OpenCV has it." if order else ""
 
 
 def _pixels(message: Any, pixel_bytes: int) -> NDArray[np.uint8]:
-    """Return the rows (height, width x bytes of a pixel) without what pads them."""
+    """Return the rows (height, width x bytes of a pixel) without their padding."""
     width, height, step = message.width, message.height, message.step
     if min(width, height) < 1 or width * height * pixel_bytes > LARGEST_PICTURE_BYTES:
         raise RecordingError(

@@ -1,4 +1,4 @@
-"""Pictures from bags of ROS 1 and ROS 2: which of them belong together, and what camera_info says."""
+"""Pictures from bags of ROS 1 and ROS 2: which ones belong together, and their camera_info."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from bfsim.recording.ros.bag_topics import pair_of_topics, single_topic
 from bfsim.recording.ros.ros_images import IMAGE, IMAGE_TYPES, order_note, planes_of
 
 DEFAULT_PERIOD_NS = 1e9 / 30
-"""Of bags with a single picture: the rate of the sensors that bfsim knows."""
+"""For bags with a single picture: the rate of the sensors that bfsim knows."""
 _FPS_PARTS = 1_000
 TRANSPORT = "compressed"
-"""The name of a compressed topic below that of the picture, as image_transport has it; drivers may have it without."""
+"""The name of a compressed topic below that of the picture, as in image_transport; some drivers leave it out."""
 
 
 @dataclass(frozen=True, slots=True)
 class BagPictures:
-    """The pictures of one camera or of two, what each camera's camera_info says or None, and what was decided for the user."""
+    """The pictures of one or two cameras, each camera's camera_info or None, and notes on decisions for the user."""
 
     sources: tuple[PictureSource, ...]
     cameras: tuple[CameraInfo | None, ...]
@@ -48,10 +48,10 @@ def open_bag(
 ) -> BagPictures:
     """Open a .bag, .db3 or .mcap file, or the folder of a ROS 2 bag.
 
-    Of `topics`, left and right, pictures are paired that are each other's nearest within `slop_s`, or half a frame
-    period; the others are skipped. Without `topics` there must be one pair of image topics whose names differ by left
-    and right. `single`: there must be one image topic, or `topics` name it twice. Without `mixed` all pictures of a
-    topic must be of one size. `bits`: how many the cameras use of pixels that have 16. Raises RecordingError.
+    Pictures of `topics`, left and right, are paired if they are each other's nearest within `slop_s`, or half a frame
+    period; the others are skipped. Without `topics` there must be exactly one pair of image topics whose names differ
+    by left and right. `single`: there must be one image topic, or `topics` name it twice. Without `mixed`, all pictures
+    of a topic must have one size. `bits`: how many the cameras use of 16-bit pixels. Raises RecordingError.
     """
     bag = BagFile(Path(name))
     found = {each.name: each for each in bag.topics()}
@@ -93,7 +93,7 @@ def open_bag(
 
 
 def _times(bag: BagFile, topics: Sequence[Topic]) -> tuple[list[Times], str]:
-    """Return when the pictures of each topic were taken, and what is to be said about it."""
+    """Return when the pictures of each topic were taken, and a note about it."""
     stamps: list[Times] = []
     logged: list[Times] = []
     for topic in topics:
@@ -180,7 +180,7 @@ def _source(
 
 
 def _encodings(bag: BagFile, topic: Topic) -> Iterator[str]:
-    """Yield the encoding of the first picture of a topic whose pictures have one, if it is one."""
+    """Yield the encoding of a topic's first picture, if its pictures have encodings."""
     if topic.kind == IMAGE:
         with suppress(RecordingError):
             yield from (bag.decode(raw, IMAGE).encoding for _, raw in islice(bag.messages(topic.name), 1))
@@ -192,11 +192,11 @@ def _info_of(base: list[str]) -> str:
 
 
 def _camera_info(bag: BagFile, topic: Topic, found: dict[str, Topic]) -> tuple[CameraInfo | None, str]:
-    """Return what the camera_info beside a topic says first, and a note where it says more than one thing, or nothing."""
+    """Return the first camera_info beside a topic, and a note if there are different ones, or none."""
     *beside, own = parts = topic.name.split("/")
     above = (
         beside[:-1] if topic.kind != IMAGE_TYPES[0] and len(beside) > 1 else beside
-    )  # of image_raw/compressed
+    )  # for image_raw/compressed
     bases = [above, beside] if own == TRANSPORT else [beside, above]
     base = next((each for each in bases if _info_of(each) in found), bases[0])
     name = _info_of(base)

@@ -1,9 +1,9 @@
 """Synthetic stereo scenes: rendered with mitsuba to recordings with exact ground truth.
 
-The optional extra `scenes` installs the renderer; nothing here is needed to run a recording. What is in a scene is data
-that comes from outside: a `Scene`, several by their names, or one that is made for distances.
-World frame of every scene: millimetres, x ahead (towards the far goal), y to the left, z up, origin on the floor.
-Pixels are counted as array indices: (0.0, 0.0) is the centre of the first pixel.
+The optional extra `scenes` installs the renderer; running a recording needs none of this. The content of a scene comes
+from outside as data: a `Scene`, several by name, or one that is made for given distances. The world frame of every
+scene: millimetres, x ahead (towards the far goal), y to the left, z up, origin on the floor. Pixels are counted as
+array indices: (0.0, 0.0) is the centre of the first pixel.
 """
 
 from __future__ import annotations

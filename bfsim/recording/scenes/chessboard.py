@@ -1,6 +1,6 @@
-"""Pairs of pictures of a chessboard, taken by the cameras of a synthetic recording: what calibration needs.
+"""Pairs of pictures of a chessboard, taken by the cameras of a synthetic recording, for calibration.
 
-A flat board needs no renderer: each ray meets its plane in one point.
+A flat board needs no renderer: each ray meets its plane at one point.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from bfsim.recording.scenes.lens import Lens, Light, Misfit, bent_points, mean_o
 from bfsim.recording.scenes.pinhole import Pinhole, Vector, stereo_pair
 from bfsim.recording.scenes.sensor import expose
 
-# Reflectance times light of the board's two colours and of what is behind it. [assumed]
+# Reflectance times light of the board's two colours and of the background. [assumed]
 _BLACK, _WHITE, _BEHIND = 0.03, 0.60, 0.12
 
 # Parts of a pixel along each side. [assumed]
 _FINENESS = 4
 
-# How the board is held: its width in that of the picture, in which part of the picture, and turned this far
+# How the board is held: its width as a part of the picture's, its position in the picture, and how far it is turned
 # either way round right, down and forward. [assumed]
 _WIDTHS = (0.7, 0.6, 0.5)
 _PLACES = tuple(product((-1, 0, 1), repeat=2))
@@ -33,20 +33,20 @@ _MOST_TURN_DEG = (35.0, 35.0, 15.0)
 
 @dataclass(frozen=True, slots=True)
 class Chessboard:
-    """A board of `corners` (across, down) inner corners; round it is a white margin, one square wide."""
+    """A board of `corners` (across, down) inner corners, with a white margin one square wide around it."""
 
     corners: tuple[int, int] = (9, 6)
     square_mm: float = 20.0
 
     @property
     def half_mm(self) -> Vector:
-        """Return the half width and height of its squares together (2,)."""
+        """Return half the width and height of all its squares together (2,)."""
         return (np.array(self.corners) + 1) * self.square_mm / 2
 
     def seen_by(self, camera: Pinhole, lens: Lens, held: Pinhole) -> Light:
         """Return the light (height, width, 1) of a board whose right, down and normal are the axes of `held`."""
         points = bent_points(lens, camera.focal_px, camera.width_px, camera.height_px, _FINENESS)
-        # Rays and place in the board's own axes: where depth along its normal is 0, there it is.
+        # In the board's own axes, a ray meets the board where its depth along the normal is 0.
         axes = camera.rotation @ held.rotation.T
         rays = (points @ axes[:2] + axes[2]).astype(np.float32)
         start_mm = held.from_world(camera.position_mm).astype(np.float32)
@@ -92,7 +92,7 @@ def _held(
     place: Vector,
     rng: np.random.Generator,
 ) -> Pinhole:
-    """Return the axes of a board held so that both cameras see all of it, turned by chance."""
+    """Return the axes of a board that both cameras see completely, turned at random."""
     picture_px = np.array([left.width_px, left.height_px])
     board_mm = 2 * (board.half_mm + board.square_mm)
     depth_mm = left.focal_px * board_mm[0] / (width * picture_px[0])

@@ -1,4 +1,4 @@
-"""Where the cameras stand and look, and their way over the floor."""
+"""The position and direction of the cameras, and their way over the floor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.recording.scenes.pinhole import Pinhole, stereo_pair
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pose:
-    """The middle between the cameras over the floor, and where they look; 0 degrees is along x."""
+    """The point on the floor midway between the cameras, and where they look; 0 degrees is along x."""
 
     x_mm: float
     y_mm: float
@@ -31,7 +31,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """A drive at constant speed and turning rate, from a first pose."""
+    """A drive at constant speed and turning rate, from an initial pose."""
 
     x_mm: float
     y_mm: float

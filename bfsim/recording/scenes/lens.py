@@ -1,7 +1,7 @@
-"""A real pair of cameras: lenses that bend straight lines, and a right camera out of line.
+"""A real pair of cameras: lenses that bend straight lines, and a misaligned right camera.
 
-The lens is that of Brown and Conrady with two radial and two tangential terms, as OpenCV has it. The scene is
-rendered ideally, finer and with a wider view, and then looked up along the bent rays.
+The lens is that of Brown and Conrady with two radial and two tangential terms, as in OpenCV. The scene is rendered
+ideally, finer and with a wider view, and then sampled along the bent rays.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from bfsim.recording.scenes.pinhole import Pinhole, Vector
 Light = NDArray[np.float32]
 """Radiance of each colour that reaches each pixel: shape (height, width, colours)."""
 
-# Parts of a pixel along each side, each looked up in the ideal picture by itself. [assumed]
+# Parts of a pixel along each side, each sampled separately in the ideal picture. [assumed]
 FINENESS = 3
 _STEPS = 60
 _TOLERANCE = 1e-8
@@ -63,10 +63,10 @@ class Lens:
 
 @dataclass(frozen=True, slots=True)
 class Misfit:
-    """How a real pair differs from the ideal one: its lenses, and the right camera's turn and shift.
+    """How a real pair differs from the ideal one: its lenses, and the right camera's rotation and shift.
 
-    Turn (degrees, right-handed, in the order given) and shift (mm) are round and along the camera's right, down
-    and forward.
+    The turn (degrees, right-handed, in the order given) is round, and the shift (mm) along, the camera's right, down
+    and forward axes.
     """
 
     lens: Lens = Lens()
@@ -79,7 +79,7 @@ class Misfit:
                 raise RecordingError(f"{name} of the right camera must be finite numbers, not {value}")
 
     def misplaced(self, ideal: Pinhole) -> Pinhole:
-        """Return the right camera where it really is."""
+        """Return the right camera in its real position."""
         rotation = ideal.rotation
         for axis, angle_deg in enumerate(self.turn_deg):
             rotation = turned(rotation, axis, angle_deg)
@@ -91,7 +91,7 @@ class Misfit:
 
 
 def rectified(cameras: dict[str, Pinhole]) -> dict[str, Pinhole]:
-    """Return the ideal pair that rectification makes of a real one: at the same places, looking one way."""
+    """Return the ideal pair that rectification makes of a real one: at the same places, with parallel axes."""
     left, right = cameras["left"], cameras["right"]
     rotation = rectified_rotation(right.position_mm - left.position_mm, left.rotation[2])
     return {side: replace(camera, rotation=rotation) for side, camera in cameras.items()}
@@ -100,7 +100,7 @@ def rectified(cameras: dict[str, Pinhole]) -> dict[str, Pinhole]:
 def through(lens: Lens, camera: Pinhole, look: Callable[[Pinhole], Light]) -> Light:
     """Return the light (height, width, colours) that a camera gets through a lens.
 
-    `look` gives the light that reaches an ideal camera; it is asked for one with a finer and wider picture.
+    `look` returns the light that reaches an ideal camera; it is called for a finer and wider picture.
     """
     bent = bent_points(lens, camera.focal_px, camera.width_px, camera.height_px, FINENESS)
     view = _wide_view(camera, bent)

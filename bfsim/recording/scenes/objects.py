@@ -1,4 +1,4 @@
-"""The things of a robot-soccer scene: plain data and where their corners are in the world."""
+"""The things of a robot-soccer scene: plain data, and the positions of their corners in the world."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from bfsim.recording.scenes.pinhole import Vector
 
 Colour = tuple[float, float, float]  # linear reflectance of red, green and blue light, 0..1
 
-# Height of painted lines over the floor: paint and floor in one plane would hide each other at random.
+# Height of painted lines above the floor: in one plane, paint and floor would hide each other at random.
 PAINT_MM = 0.3
 
-# A chord of a circle of 250 mm then leaves it by 0.1 mm, less than the camera can see.
+# A chord of a circle of 250 mm then deviates by 0.1 mm, less than the camera can see.
 ARC_STEP_DEG = 3.0
 
 
@@ -33,7 +33,7 @@ def placed(centre_mm: Vector, half_size_mm: Vector, heading_deg: float = 0.0) ->
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ball:
-    """A ball that rests on the floor at (x, y), with the seam of a tennis ball if that has a colour."""
+    """A ball that rests on the floor at (x, y), with the seam of a tennis ball if the seam has a colour."""
 
     x_mm: float
     y_mm: float
@@ -59,13 +59,13 @@ class Box:
 
     @property
     def matrix(self) -> Vector:
-        """Return the 4x4 matrix that carries the cube -1..1 to this box in the world."""
+        """Return the 4x4 matrix that maps the cube -1..1 to this box in the world."""
         half_mm = np.array(self.size_mm) / 2
         return placed(np.add(self.foot_mm, (0, 0, half_mm[2])), half_mm, self.heading_deg)
 
     @property
     def corners_mm(self) -> Vector:
-        """Return the world corners (8, 3): four of the bottom, then those over them."""
+        """Return the world corners (8, 3): the four at the bottom, then those above them."""
         cube = np.array([(x, y, z, 1) for z in (-1, 1) for x, y in ((-1, 1), (-1, -1), (1, -1), (1, 1))])
         corners: Vector = (cube @ self.matrix.T)[:, :3]
         return corners
@@ -105,7 +105,7 @@ class Robot:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Goal:
-    """Three panels round a mouth that opens towards -x, in the middle of the goal line; no top."""
+    """Three panels round a mouth that opens towards -x, in the middle of the goal line, without a top."""
 
     line_x_mm: float
     width_mm: float
@@ -138,7 +138,7 @@ class Goal:
 
 @dataclass(frozen=True, slots=True)
 class FieldLine:
-    """A straight painted line; its end points are those of the middle of the stroke."""
+    """A straight painted line; its ends are in the middle of the stroke."""
 
     name: str
     start_mm: tuple[float, float]
@@ -153,7 +153,7 @@ class FieldLine:
 
 @dataclass(frozen=True, slots=True)
 class FieldArc:
-    """A painted arc of a circle; its radius is that of the middle of the stroke."""
+    """A painted arc of a circle; its radius is to the middle of the stroke."""
 
     centre_mm: tuple[float, float]
     radius_mm: float
@@ -177,7 +177,7 @@ Thing = Ball | Box | Robot | Goal
 
 @dataclass(frozen=True, slots=True)
 class Lamp:
-    """A white panel under the ceiling that shines straight down; its size is along x and along y."""
+    """A white panel under the ceiling that shines straight down; its size is along x and y."""
 
     centre_mm: tuple[float, float, float]
     size_mm: tuple[float, float]

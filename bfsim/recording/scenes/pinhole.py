@@ -1,7 +1,7 @@
-"""The ideal pinhole camera of the synthetic scenes: where a world point lands in the picture, exactly.
+"""The ideal pinhole camera of the synthetic scenes: exactly where a world point lies in the picture.
 
-Ground truth is that of ideal cameras. A recording that is rendered without a lens is rectified by construction;
-one that is rendered through a lens, or with cameras out of line, is so after rectification.
+Ground truth refers to ideal cameras. A recording that is rendered without a lens is rectified by construction; one that
+is rendered through a lens, or with misaligned cameras, is so after rectification.
 """
 
 from __future__ import annotations
@@ -45,24 +45,24 @@ class Pinhole:
         return inside
 
     def project(self, points_mm: Vector) -> Vector:
-        """Project world points (..., 3), all of them before the camera, to pixels (..., 2)."""
+        """Project world points (..., 3), all of them in front of the camera, to pixels (..., 2)."""
         inside = self.from_world(points_mm)
         projected: Vector = self.centre_px + self.focal_px * inside[..., :2] / inside[..., 2:]
         return projected
 
     def faces(self, points_mm: Vector) -> bool:
-        """Tell if all world points (..., 3) are before the camera."""
+        """Whether all world points (..., 3) are in front of the camera."""
         return bool((self.from_world(points_mm)[..., 2] > 0).all())
 
     def rays(self) -> Vector:
-        """Return the world directions (height, width, 3) of all pixel centres, each one long in depth."""
+        """Return the world directions (height, width, 3) of all pixel centres, with unit depth."""
         columns, rows = np.meshgrid(np.arange(self.width_px), np.arange(self.height_px))
         slopes = (np.stack([columns, rows], axis=-1) - self.centre_px) / self.focal_px
         rays: Vector = slopes @ self.rotation[:2] + self.rotation[2]
         return rays
 
     def clip(self, ends_mm: Vector) -> Vector | None:
-        """Cut a world segment (2, 3) to what the picture holds; None if it holds nothing of it."""
+        """Cut a world segment (2, 3) to the part inside the picture; None if there is none."""
         start, end = self.from_world(ends_mm)
         first, last = 0.0, 1.0
         for normal in self._borders():
@@ -95,7 +95,7 @@ class Pinhole:
 def stereo_pair(
     middle_mm: Vector, *, heading_deg: float, geometry: StereoGeometry
 ) -> tuple[Pinhole, Pinhole]:
-    """Return the left and the right camera, parallel, round `middle_mm` (3,)."""
+    """Return the left and the right camera, parallel, around `middle_mm` (3,)."""
     heading, tilt = math.radians(heading_deg), math.radians(geometry.stance[1])
     forward = np.array(
         [math.cos(tilt) * math.cos(heading), math.cos(tilt) * math.sin(heading), -math.sin(tilt)]

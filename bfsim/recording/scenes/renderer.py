@@ -1,4 +1,4 @@
-"""Mitsuba behind a small door: shapes in, linear pictures out. Loaded only when a scene is really rendered.
+"""A small interface to Mitsuba: shapes in, linear pictures out. Loaded only when a scene is rendered.
 
 The renderer integrates each pixel over its own square: no lens blur and no motion blur.
 """
@@ -17,19 +17,19 @@ from bfsim.process.signals import cancellable, held_back, uninterrupted
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
 from bfsim.recording.scenes.shapes import Shape
 
-# Light that went from a lamp over at most three surfaces: enough for colours mirrored in the floor.
+# Light that came from a lamp over at most three surfaces: enough for colours mirrored in the floor.
 MAX_DEPTH = 4
 
 
 class Renderer:
-    """A loaded scene that can be looked at from any camera."""
+    """A loaded scene that can be viewed from any camera."""
 
     def __init__(self, shapes: Mapping[str, Shape]) -> None:
         self._mitsuba = _load_mitsuba()
         scene = {name: self._loaded(shape) for name, shape in shapes.items()}
         integrator = {"type": "path", "max_depth": MAX_DEPTH}
         whole = {"type": "scene", "integrator": integrator, **scene}
-        # The optimiser merges equal lamps in an order that varies: one rendering in twenty would be another picture.
+        # The optimiser merges equal lamps in a varying order: one rendering in twenty would differ.
         self._scene = self._mitsuba.load_dict(whole, optimize=False)
 
     @property
@@ -46,16 +46,16 @@ class Renderer:
         return np.asarray(picture, dtype=np.float32)
 
     def sees(self, camera: Pinhole, point_mm: Vector) -> bool:
-        """Tell if nothing stands between the camera and a world point (3,)."""
+        """Whether nothing stands between the camera and a world point (3,)."""
         way_mm = point_mm - camera.position_mm
         distance_mm = float(np.linalg.norm(way_mm))
         origin, direction = camera.position_mm.tolist(), (way_mm / distance_mm).tolist()
-        # Stop a millimetre short, or the surface that holds the point would hide it.
+        # Stop a millimetre short, else the surface with the point would hide it.
         ray = self._mitsuba.Ray3f(origin, direction, distance_mm - 1.0, 0.0, [])
         return not self._scene.ray_test(ray)
 
     def depths_mm(self, camera: Pinhole) -> Vector:
-        """Return how far before the camera each pixel's centre meets something (height, width); inf for nothing."""
+        """Return the depth at which each pixel's centre meets something (height, width); inf for nothing."""
         origin, rays = camera.position_mm.tolist(), camera.rays()
         lengths = np.linalg.norm(rays, axis=-1, keepdims=True)
         directions = (rays / lengths).reshape(-1, 3).tolist()
@@ -90,7 +90,7 @@ class Renderer:
         )
 
     def _loaded(self, shape: Shape) -> Shape:
-        """Return the shape with the renderer's own objects in the place of numpy arrays."""
+        """Return the shape with the renderer's own objects in place of numpy arrays."""
         makers = {"to_world": self._mitsuba.ScalarTransform4f, "bitmap": self._mitsuba.Bitmap}
         return {
             key: makers[key](value)
@@ -111,6 +111,6 @@ def _load_mitsuba() -> Any:
             raise RecordingError(
                 'the renderer mitsuba must be installed to render a scene: pip install "bfsim[scenes]"'
             ) from error
-        # The scalar variant needs no LLVM of the system and gives the same picture on every machine.
+        # The scalar variant needs no system LLVM and gives the same picture on every machine.
         mitsuba.set_variant("scalar_rgb")
     return mitsuba

@@ -32,9 +32,9 @@ def render(
 ) -> list[Path]:
     """Render a scene to the recording `output`, or several, each to a recording of its name in the folder `output`.
 
-    frames and samples (light paths a pixel) are the scene's own by default, distances_mm and geometry too. With a
-    misfit the cameras are real ones; the folder `chessboards` takes pictures of a chessboard by the same cameras.
-    An existing recording needs `force`. Returns the recordings. Raises RecordingError.
+    frames and samples (light paths a pixel) default to the scene's own, as do distances_mm and geometry. With a misfit
+    the cameras are real ones; pictures of a chessboard by these cameras go to the folder `chessboards`. An existing
+    recording needs `force`. Returns the recordings. Raises RecordingError.
     """
     chosen = _by_path(scenes, Path(output), distances_mm, geometry)
     for path in chosen:
@@ -61,7 +61,7 @@ def render(
 def _by_path(
     scenes: Scenes, output: Path, distances_mm: Sequence[float] | None, geometry: StereoGeometry | None
 ) -> dict[Path, Scene]:
-    """Return the scenes to render by the files that they are rendered to."""
+    """Return the scenes to render, by their output files."""
     if isinstance(scenes, SceneAtDistances):
         return {output: scenes.scene(distances_mm, geometry)}
     if distances_mm is not None:

@@ -1,4 +1,4 @@
-"""A scene as data: what stands where, how it is lit, and from where each frame is taken."""
+"""A scene as data: its things, its light, and the pose of the cameras in each frame."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Light:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Floor:
-    """The floor, its middle at the origin, and the paint on it."""
+    """The floor, with its middle at the origin, and the paint on it."""
 
     size_mm: tuple[float, float]
     colour: Colour
@@ -36,10 +36,10 @@ class Floor:
 class Scene:
     """A scene that does not change while the cameras take its frames, one from each pose.
 
-    `things` have the names that they have in the ground truth; `roughness` is that of their coats. Frame k is
-    taken `k * period_ns` after the first, its red, green and blue light multiplied by `gains[k]`; without gains
-    the camera's white balance is right. The right camera's time stamps come `right_phase_ns` later, but both
-    pictures are rendered at the pose of the left, so that each pair is exact.
+    `things` have their names in the ground truth; `roughness` is that of their coats. Frame k is taken `k * period_ns`
+    after the first, its red, green and blue light multiplied by `gains[k]`; without gains the camera's white balance is
+    right. The right camera's time stamps come `right_phase_ns` later, but both pictures are rendered at the pose of the
+    left, so that each pair is exact.
     """
 
     description: str
@@ -58,7 +58,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneAtDistances:
-    """A scene that is made for distances, a frame for each: `at` makes it, the others are what it is made for by default."""
+    """A scene with a frame for each of some distances: `at` makes it, the other fields are its defaults."""
 
     at: Callable[[Sequence[float], StereoGeometry], Scene]
     distances_mm: tuple[float, ...]
@@ -67,7 +67,7 @@ class SceneAtDistances:
     def scene(
         self, distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None
     ) -> Scene:
-        """Return the scene for these distances and this geometry. Raises RecordingError if they cannot be."""
+        """Return the scene for these distances and this geometry. Raises RecordingError if they are impossible."""
         distances_mm = self.distances_mm if distances_mm is None else distances_mm
         if not all(0 < distance < math.inf for distance in distances_mm or (0,)):
             listed = ", ".join(f"{distance:g}" for distance in distances_mm) or "none"
@@ -76,4 +76,4 @@ class SceneAtDistances:
 
 
 Scenes = Scene | SceneAtDistances | Mapping[str, Scene]
-"""What can be rendered: to a recording, or each of several to one of its name."""
+"""What can be rendered: a single recording, or one for each name."""

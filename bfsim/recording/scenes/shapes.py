@@ -1,7 +1,7 @@
 """The shape that the renderer draws for each thing of a scene.
 
-A shape is a dictionary in mitsuba's scene format with 4x4 numpy matrices in the place of its transforms:
-building a scene needs no renderer.
+A shape is a dictionary in mitsuba's scene format, with 4x4 numpy matrices in place of its transforms, so building a
+scene needs no renderer.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from bfsim.recording.scenes.scene import Floor, Scene
 
 Shape = dict[str, Any]
 
-# The seam of a tennis ball on the unit sphere: a cos t + b cos 3t, a sin t - b sin 3t, 2 sqrt(ab) sin 2t with
-# a + b = 1. [assumed: the shape that looks right; width as a part of the radius]
+# The seam of a tennis ball on the unit sphere: a cos t + b cos 3t, a sin t - b sin 3t, 2 sqrt(ab) sin 2t with a + b =
+# 1. [assumed: the shape that looks right; width as a part of the radius]
 _SEAM_A = 0.75
 _SEAM_HALF_WIDTH = 0.06
 _SEAM_POINTS = 720
@@ -75,7 +75,7 @@ def _ball(thing: Ball, roughness: float) -> Shape:
 
 
 def _seam(thing: Ball, colour: Colour) -> Shape:
-    """Return the texture of a ball with a seam: columns are angles round z, rows those from the upper pole."""
+    """Return the texture of a ball with a seam: columns are angles round z, rows are angles from the upper pole."""
     heights, widths = _SEAM_TEXTURE
     polar = ((np.arange(heights) + 0.5) / heights * math.pi)[:, None]
     azimuth = ((np.arange(widths) + 0.5) / widths * 2 * math.pi)[None, :] - math.radians(thing.seam_turn_deg)
@@ -108,7 +108,7 @@ def _floor(floor: Floor) -> Shape:
 
 
 def _line(thing: FieldLine, colour: Colour) -> Shape:
-    """Return a matt stroke, half its width longer at both ends so that corners close."""
+    """Return a matt stroke, extended by half its width at both ends so that corners close."""
     start_mm, end_mm = thing.ends_mm
     along = end_mm - start_mm
     half_mm = np.array([(np.linalg.norm(along) + thing.width_mm) / 2, thing.width_mm / 2, 1.0])
@@ -117,7 +117,7 @@ def _line(thing: FieldLine, colour: Colour) -> Shape:
 
 
 def _lamp(thing: Lamp) -> Shape:
-    """Return a panel of light."""
+    """Return a panel that shines."""
     facing_down = np.diag([1.0, -1.0, -1.0, 1.0])
     half_mm = np.array([thing.size_mm[0] / 2, thing.size_mm[1] / 2, 1.0])
     emitter = {"type": "area", "radiance": _rgb((thing.radiance,) * 3)}
@@ -129,7 +129,7 @@ def _lamp(thing: Lamp) -> Shape:
 
 
 def _room(radiance: float) -> Shape:
-    """Return the dim light that comes from everywhere, and that the camera sees behind all things."""
+    """Return the dim light that comes from everywhere, which the camera sees behind all things."""
     return {"type": "constant", "radiance": _rgb((radiance,) * 3)}
 
 

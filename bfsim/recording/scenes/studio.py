@@ -1,4 +1,4 @@
-"""Renders a scene to a recording: exact ground truth, then light, lens and sensor."""
+"""Render a scene to a recording: exact ground truth, then light, lens and sensor."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ def record_scene(
     misfit: Misfit | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> None:
-    """Render a scene to the recording `path`: its first `frames` frames or all, `samples` a pixel or its own.
+    """Render a scene to the recording `path`: its first `frames` frames or all, with `samples` a pixel or its own.
 
-    With a misfit the pictures are those of a real pair of cameras; the ground truth is what rectification
-    brings back. `progress` is told the frames done. Raises RecordingError.
+    With a misfit the pictures are those of a real pair of cameras; the ground truth is for the rectified pictures.
+    `progress` gets the number of frames done. Raises RecordingError.
     """
     renderer = Renderer(scene_shapes(scene))
     poses, samples = scene.poses[:frames], samples or scene.samples
@@ -59,7 +59,7 @@ def record_scene(
     ) as recording:
         for index, pose in enumerate(poses):
             seeds = scene.seed + 2 * index, scene.seed + 2 * index + 1
-            if index == 0 or pose != poses[index - 1]:  # from the same place the light is the same
+            if index == 0 or pose != poses[index - 1]:  # from the same pose the light is the same
                 cameras = ideal = pose.cameras(scene.geometry)
                 if misfit is not None:
                     cameras = {**cameras, "right": misfit.misplaced(cameras["right"])}
@@ -87,6 +87,6 @@ def _light(renderer: Renderer, camera: Pinhole, misfit: Misfit | None, *, sample
 
 
 def _sent(light: Light, gains: Colour, seed: int) -> UyvyImage:
-    """Return what the camera makes of the light and sends."""
+    """Return the picture that the camera makes of the light and sends."""
     picture = expose(light * np.array(gains, np.float32), np.random.default_rng(seed))
     return YuvPlanes.from_image(Image.fromarray(picture)).to_uyvy()

@@ -1,9 +1,8 @@
 """Ground truth of one stereo frame as plain JSON data: poses and sizes in mm, picture positions in pixels.
 
-One object a frame: "cameras" and "lines", and each thing of the scene under its own name with its "kind".
-Corners and centres are those of the ideal projection, whether or not something stands before them or they are
-outside the picture. The ends of field lines and of the edges of boxes are cut to the picture and say if they
-are visible.
+Each frame has one object: "cameras" and "lines", and each thing of the scene under its own name with its "kind".
+Corners and centres are those of the ideal projection, even if they are hidden or outside the picture. The ends of field
+lines and of the edges of boxes are cut to the picture and say whether they are visible.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from bfsim.recording.scenes.scene import Scene
 Cameras = dict[str, Pinhole]
 
 Sight = Callable[[Pinhole, Vector], bool]
-"""Tells if nothing stands between a camera and a world point."""
+"""Whether nothing stands between a camera and a world point."""
 
 # The edges of a box seen from its front (-x), as indices of `Box.corners_mm`.
 EDGES = {
@@ -33,7 +32,7 @@ EDGES = {
 
 
 def frame_truth(scene: Scene, cameras: Cameras, sight: Sight) -> dict[str, Any]:
-    """Return what is where in a scene, in the world and in the pictures of the "left" and "right" camera."""
+    """Return where everything in a scene is, in the world and in the pictures of the "left" and "right" camera."""
     return {
         "cameras": {side: camera_truth(camera) for side, camera in cameras.items()},
         **{name: _thing_truth(thing, cameras, sight) for name, thing in scene.things.items()},
@@ -58,7 +57,7 @@ def _thing_truth(thing: Thing, cameras: Cameras, sight: Sight) -> dict[str, Any]
 
 
 def camera_truth(camera: Pinhole) -> dict[str, Any]:
-    """Return where a camera is; the rows of its rotation are its right, down and forward in the world."""
+    """Return the position of a camera; the rows of its rotation are its right, down and forward in the world."""
     return {
         "position_mm": camera.position_mm.tolist(),
         "rotation": camera.rotation.tolist(),
@@ -68,7 +67,7 @@ def camera_truth(camera: Pinhole) -> dict[str, Any]:
 
 
 def ball_truth(ball: Ball, cameras: Cameras) -> dict[str, Any]:
-    """Return the ball in the world, and for each camera its place before it and its exact outline."""
+    """Return the ball in the world, and for each camera its position in camera axes and its exact outline."""
     views = {side: _outline(ball, camera) for side, camera in cameras.items()}
     disparity_px = views["left"]["centre_px"][0] - views["right"]["centre_px"][0]
     return {
@@ -102,7 +101,7 @@ def _outline(ball: Ball, camera: Pinhole) -> dict[str, Any]:
 
 
 def robot_truth(robot: Robot, cameras: Cameras, sight: Sight) -> dict[str, Any]:
-    """Return the other robot's pose and its mark: corners (four below, then the four over them) and edges."""
+    """Return the other robot's pose and its mark: corners (four below, then the four above them) and edges."""
     corners_mm = robot.mark.corners_mm
     return {
         "position_mm": [robot.x_mm, robot.y_mm],
@@ -147,7 +146,7 @@ def _edges(box: Box, cameras: Cameras, sight: Sight) -> dict[str, Any]:
 
 
 def segment_truth(ends_mm: Vector, cameras: Cameras, sight: Sight) -> dict[str, Any]:
-    """Return a world segment (2, 3), and for each camera the ends of what the picture holds of it, or null."""
+    """Return a world segment (2, 3), and for each camera the ends of its part in the picture, or null."""
     return {
         "ends_mm": ends_mm.tolist(),
         **{side: _segment_view(ends_mm, camera, sight) for side, camera in cameras.items()},
@@ -167,7 +166,7 @@ def _segment_view(ends_mm: Vector, camera: Pinhole, sight: Sight) -> dict[str, A
 def disparity(depths_mm: Vector, cameras: Cameras) -> NDArray[np.float32]:
     """Return the disparity in px of each pixel of the left camera from its depth: 0 where there is nothing.
 
-    It is where the right picture would show the same point, whether or not something hides it there.
+    It tells where the right picture would show the same point, whether or not something hides it there.
     """
     left, right = cameras["left"], cameras["right"]
     baseline_mm = float(np.linalg.norm(right.position_mm - left.position_mm))

@@ -1,1 +1,1 @@
-"""Whether stereo frames are what the matching of edges needs: in the right order, and row beside row."""
+"""Whether stereo frames suit the matching of edges: left and right in order, and in the same rows."""

@@ -1,6 +1,7 @@
-"""Whether left and right pictures are exchanged: then what both show lies further right in the right one, which nothing can.
+"""Detect exchanged left and right pictures: things then lie further right in the right one, which is impossible.
 
-Bands of rows are compared along their columns. Places count where the pictures have contrast and agree at one shift alone.
+Bands of rows are compared along their columns. Places count if the pictures have contrast there, and agree at one shift
+only.
 """
 
 from __future__ import annotations
@@ -21,18 +22,18 @@ EXCHANGED = (
 )
 
 Signals = NDArray[np.float32]
-"""Rise of the luma from column to column in bands of rows, (bands, columns)."""
+"""Increase of the luma from column to column in bands of rows, (bands, columns)."""
 
 COLUMNS, ROWS_OF_BAND = 160, 4
-"""Pictures are shrunk to some so many columns; a band may be a pixel or two higher in one picture. [assumed]"""
+"""Pictures are shrunk to about this many columns; a band may be a pixel or two higher in one picture. [assumed]"""
 
 WINDOW = 9
 LEAST_CONTRAST = 24  # grey levels, up and down, in a window [assumed]
-SAME_PEAK = 2  # columns to each side of the best shift that are one with it
+SAME_PEAK = 2  # columns on each side of the best shift that count as part of it
 
 
 def exchanged_places(left: Plane, right: Plane) -> NDArray[np.bool_]:
-    """Return of each place that is certain whether things stand further right there in the right picture."""
+    """Return for each certain place whether things there lie further right in the right picture."""
     return np.asarray(_shifts(*map(_signals, (left, right))) < 0)
 
 
@@ -46,7 +47,7 @@ def _signals(luma: Plane) -> Signals:
 
 
 def _shifts(left: Signals, right: Signals) -> NDArray[np.int64]:
-    """Return by how many columns things lie further left in the right picture, at the places where that is certain."""
+    """Return by how many columns things lie further left in the right picture, at the places where this is certain."""
     columns = left.shape[1]
     reach = columns // 4
     starts = np.arange(reach, columns - reach - WINDOW, WINDOW // 2)

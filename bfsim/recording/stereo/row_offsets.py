@@ -1,7 +1,8 @@
-"""Whether things stand in other rows of the right picture than of the left one, where the cameras are not parallel or lenses bend.
+"""Detect pictures that show things in different rows, because the cameras are not parallel or lenses bend.
 
-Patches with contrast across and along are sought in the other picture, some rows and many columns around. They count where they
-agree well, and nowhere else nearly as well; and where they agree with nothing, as if a camera were turned far, or saw something else.
+Patches with contrast in both directions are sought in the other picture, some rows and many columns around. A patch
+counts if it matches one place well and no other nearly as well, or if it matches nothing, as when a camera is turned
+far or sees something else.
 """
 
 from __future__ import annotations
@@ -32,30 +33,36 @@ NOWHERE = (
 Cells = NDArray[np.float32]
 
 COLUMNS = 160
-"""Pictures are shrunk to some so many columns: rows of these are two or more of the pictures of 320x240. [assumed]"""
+"""Pictures are shrunk to about this many columns: a row is two or more rows of a picture of 320x240. [assumed]"""
 
 PATCH, STEP, REACH_ROWS = 9, 5, 8
 REACH_LEFT, REACH_RIGHT = 3 / 8, 1 / 8
-"""Parts of the width: what is near stands far further left in the right picture, and further right only if cameras squint.
-What is nearer is not found where it is, and of boards of squares then taken for its neighbour. [assumed]"""
-LEAST_CONTRAST = 3  # grey levels from cell to cell in the mean of a patch, both ways [assumed]
+"""Parts of the width: near things lie far further left in the right picture, and further right only if cameras squint.
+
+With a larger reach, still nearer things would be found, but squares of boards would be mistaken for their neighbours.
+[assumed]
+"""
+LEAST_CONTRAST = 3  # mean difference of adjacent cells of a patch in grey levels, both ways [assumed]
 MOST_PATCHES = 64
-"""Of a frame, evenly spread."""
-SAME_PEAK = 2  # rows and columns to each side of the best place that are one with it
+"""The most patches of a frame, evenly spread."""
+SAME_PEAK = 2  # rows and columns on each side of the best place that count as part of it
 
 
 def in_other_rows(offsets: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return of each patch whose place in the right picture is certain whether it stands in another row there."""
+    """Return for each patch with a certain place in the right picture whether it lies in another row there."""
     return np.asarray(offsets[np.isfinite(offsets)] != 0)
 
 
 def are_nowhere(offsets: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return of each patch whether nothing around its place in the right picture is like it."""
+    """Return for each patch whether nothing around its place in the right picture resembles it."""
     return np.isinf(offsets)
 
 
 def row_offsets(left: Plane, right: Plane) -> NDArray[np.float64]:
-    """Return of each patch how many rows further down it is in the right picture: not a number where that is uncertain, infinite if it is nowhere."""
+    """Return for each patch how many rows further down it is in the right picture.
+
+    NaN if that is uncertain, infinite if it is nowhere.
+    """
     lefts, rights = _cells(left), _cells(right)
     height, width = lefts.shape
     leftwards, rightwards = (int(part * width) for part in (REACH_LEFT, REACH_RIGHT))
@@ -81,7 +88,7 @@ def _cells(luma: Plane) -> Cells:
 
 
 def _corners(cells: Cells, leftwards: int, rightwards: int) -> NDArray[np.int64]:
-    """Return where patches with contrast both ways begin, (count, 2), some evenly spread ones of them."""
+    """Return where patches with contrast both ways begin, (count, 2); of many, an evenly spread selection."""
     inside = cells[REACH_ROWS:-REACH_ROWS, leftwards:-rightwards]
     across, along = (
         sliding_window_view(np.abs(np.diff(inside, axis=axis)), (PATCH - 1, PATCH - 1))[::STEP, ::STEP].mean(
@@ -96,7 +103,7 @@ def _corners(cells: Cells, leftwards: int, rightwards: int) -> NDArray[np.int64]
 
 
 def _sums(cells: Cells) -> NDArray[np.float64]:
-    """Return the sums of all patches."""
+    """Return the sums over all patches."""
     sums = np.pad(cells.cumsum(axis=0, dtype=np.float64).cumsum(axis=1), ((1, 0), (1, 0)))
     return np.asarray(
         sums[PATCH:, PATCH:] - sums[:-PATCH, PATCH:] - sums[PATCH:, :-PATCH] + sums[:-PATCH, :-PATCH]
@@ -104,12 +111,12 @@ def _sums(cells: Cells) -> NDArray[np.float64]:
 
 
 def _row_offset(patch: Cells, windows: Cells, energies: NDArray[np.float64]) -> float:
-    """Return how many rows further down a patch without its mean is best found, as `row_offsets` does.
+    """Return how many rows further down the best match of a patch is, as `row_offsets`; the patch has no mean.
 
-    `windows`: where it may be; `energies`: the sums of their squares, without their means.
+    `windows`: the possible matches; `energies`: the sums of their squares, without their means.
     """
     energy = float(np.square(patch).sum())
-    costs = energies + energy - 2 * np.tensordot(windows, patch, axes=2)  # squares of the differences, summed
+    costs = energies + energy - 2 * np.tensordot(windows, patch, axes=2)  # sum of squared differences
     row, column = np.unravel_index(costs.argmin(), costs.shape)
     least = float(costs[row, column])
     if 4 * least >= energy:

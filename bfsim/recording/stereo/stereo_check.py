@@ -1,7 +1,7 @@
-"""Whether stereo frames are what the matching of edges needs: left and right in this order, and the same things, in the same row of both.
+"""Check that stereo frames suit the matching of edges: left and right in order, with the same things in each row.
 
-Places that both pictures surely show are compared, and those where they disagree with that are counted. That is no stereo matching:
-it says nothing of depths.
+Only places that both pictures surely show are compared, and those that contradict are counted. This is no stereo
+matching: it says nothing of depths.
 """
 
 from __future__ import annotations
@@ -17,20 +17,24 @@ from bfsim.recording.stereo.exchange import EXCHANGED, exchanged_places
 from bfsim.recording.stereo.row_offsets import NOWHERE, OTHER_ROWS, are_nowhere, in_other_rows, row_offsets
 
 ENOUGH_PLACES, MOST_FRAMES = 40, 8
-"""As many frames are looked at as it takes."""
+"""Frames are compared until there are enough places."""
 
 FEWEST_PLACES, DOUBTED_SHARE = 16, 0.75
-"""Of fewer places nothing is said. Of right pairs up to 24 % of the places of a frame disagree, of chessboards, that look alike, 68 %.
-Nowhere are up to 25 % of a right pair's places, 54 of a plant's; 91 to 100 where a camera is turned by 30 degrees, 69 to 100 of other things."""
+"""With fewer places nothing is reported. In a frame of a correct pair up to 24 % of the places contradict, 68 % on
+chessboards, whose squares look alike.
+
+Up to 25 % of a correct pair's places are found nowhere, 54 % for a plant; 91 to 100 % if a camera is turned by 30
+degrees, 69 to 100 % if it sees other things.
+"""
 
 
 Counts = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
-"""Of each doubt: at how many places it was looked into, and at how many of these something is wrong."""
+"""For each doubt: the number of places compared, and how many of these were wrong."""
 
 
 @dataclass(slots=True)
 class _Doubt:
-    """What may be wrong at so many of the places that were compared; `text` tells the user."""
+    """A possible fault, the number of compared places, and how many are wrong; `text` is the warning."""
 
     text: str
     places: int = 0
@@ -52,7 +56,7 @@ class _Doubt:
 
 
 class StereoCheck:
-    """Looks at the first stereo frames that pass, as rectified by `tables`."""
+    """Checks the first stereo frames that pass, as rectified by `tables`."""
 
     def __init__(self, tables: RectificationTables | None = None) -> None:
         self._tables = tables
@@ -64,13 +68,13 @@ class StereoCheck:
         )
 
     def watch(self, frames: Iterable[StereoFrame]) -> Iterator[StereoFrame]:
-        """Pass frames on."""
+        """Yield the frames, and check them on the way."""
         for frame in frames:
             self.look_at(frame.left, frame.right)
             yield frame
 
     def look_at(self, left: UyvyImage, right: UyvyImage) -> None:
-        """Compare the pictures of a frame, unless they are one camera's, or enough was compared."""
+        """Compare the pictures of a frame, unless they are from one camera, or enough was compared."""
         is_done = self._frames == MOST_FRAMES or not any(each.is_open for each in self._doubts)
         if is_done or np.array_equal(left, right):
             return
@@ -91,19 +95,19 @@ class StereoCheck:
 
     @property
     def counts(self) -> Counts:
-        """What was found so far."""
+        """The results so far."""
         exchanged, other_rows, nowhere = ((each.places, each.wrong) for each in self._doubts)
         return exchanged, other_rows, nowhere
 
     def take_counts(self, counts: Counts) -> None:
-        """Take what another check has found in the same frames: none is looked at any more."""
+        """Take the results of another check of the same frames; no more frames are compared."""
         for doubt, (places, wrong) in zip(self._doubts, counts, strict=True):
             doubt.places, doubt.wrong = places, wrong
         self._frames = MOST_FRAMES
 
     @property
     def warnings(self) -> Iterator[str]:
-        """What to tell the user; nothing where the pictures seem to be right."""
+        """Warnings for the user; none if the pictures seem to be right."""
         for each in self._doubts:
             if each.is_told:
                 yield each.text.format(percent=100 * each.wrong // each.places)
