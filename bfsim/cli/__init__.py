@@ -1,1 +1,1 @@
-"""The command line: one file a command, and the options that several of them take."""
+"""The command line: one file for each command, and the options that several commands share."""

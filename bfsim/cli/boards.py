@@ -54,7 +54,7 @@ def boards(name: str | None, settings: dict[str, str]) -> None:
 
 
 def _changes(before: BoardSpec, after: BoardSpec) -> Rows:
-    """Return what differs, by path; what only one of the two has is none in the other."""
+    """Return the differences, by path; a missing record counts as none."""
     was, now = ({each.path: each for each in leaves(board)} for board in (before, after))
     rows = []
     for path in dict.fromkeys((*was, *now)):
@@ -83,7 +83,7 @@ def _mhz(hz: Fraction) -> str:
 
 
 def _blocks(path: str, record: Any) -> list[tuple[str, Rows]]:
-    """Return the numbers of a record, and after them those of each record in it, by their path."""
+    """Return the numbers of a record, followed by those of each record in it, by path."""
     own = []
     inner: list[tuple[str, Rows]] = []
     for field in fields(record):
@@ -110,7 +110,7 @@ def _interrupt(interrupt: SicInterrupt) -> dict[str, str]:
 
 
 def _text(name: str, value: object) -> str:
-    """Return a value as people read it: addresses in hexadecimal, other numbers with thousands apart."""
+    """Return a value for people: addresses in hexadecimal, other numbers with thousands separated."""
     if name == "start":
         return f"0x{value:08X}"
     if value is None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from bfsim.report.results.result import Result
 
 LOOSENED_LISTED = 6
-"""So many limits of a run that loosen are listed where a reason is asked for."""
+"""The number of loosened limits of a run that are listed when a reason is needed."""
 
 OUTPUTS = {
     "junit": "JUnit XML, a test case for each run",
@@ -147,7 +147,7 @@ def _cases(path: Path, given: Configuration | None, name: str | None, *, update:
 
 
 def _run(case: Case, folder: Path, stack: ExitStack, *, sanitize: bool) -> Result:
-    """Run what a case says; what was seen is kept as long as the stack is."""
+    """Run a case; what was seen is kept until the stack closes."""
     from bfsim.checking import arguments_of
 
     return run_and_seen(stack, sanitize=sanitize, **arguments_of(case.configuration, folder))
@@ -156,7 +156,7 @@ def _run(case: Case, folder: Path, stack: ExitStack, *, sanitize: bool) -> Resul
 def _update(
     runs: Sequence[tuple[Case, Result]], path: Path, reason: str | None, *, on_stderr: bool
 ) -> list[tuple[Case, Result]]:
-    """Return the runs with what was measured as their limits, and write those into the file."""
+    """Return the runs with what was measured as their limits, and write these into the file."""
     from bfsim.report.check.update import loosened, updated, write_cases
 
     loose = {case.name: loosened(case, result, path, in_short=True) for case, result in runs}
@@ -182,14 +182,14 @@ def _in_short(limits: Sequence[str]) -> str:
 
 
 def _judged(runs: Sequence[tuple[Case, Result]], path: Path) -> list[Outcome]:
-    """Hold each run against its limits."""
+    """Compare each run with its limits."""
     from bfsim.report.check.judge import judge
 
     return [judge(case, result, path) for case, result in runs]
 
 
 def _print(outcomes: Sequence[Outcome], path: Path, *, just_measured: bool) -> None:
-    """Print what came out."""
+    """Print the outcomes."""
     from bfsim.report.check.tables import check_report
 
     for each in outcomes:
@@ -232,7 +232,7 @@ def _write(
 
 
 def _commit() -> str:
-    """Return the commit of the current folder, with -dirty where it was changed; empty outside of git."""
+    """Return the commit of the current folder, with -dirty if there are changes; "" outside of git."""
     import subprocess
 
     command = ["git", "describe", "--always", "--dirty", "--abbrev=40", "--match="]

@@ -82,7 +82,7 @@ def diff(
             "--json must have a FILE.json beside --markdown: without one, each is all of the output"
         )
     with ExitStack() as stack:
-        sides = [_asked(text) for text in (before, after)]  # a slip in either is told before anything runs
+        sides = [_asked(text) for text in (before, after)]  # a mistake in either is reported before anything runs
         read = [*chain(*map(_read, (before, after), sides))]
         require_json_place(json_path, (*read, html))
         if html:
@@ -144,7 +144,7 @@ def _asked(text: str) -> Result | Case | dict[str, Any]:
 
 
 def _named(text: str) -> tuple[Path, str]:
-    """Return the file that a side names, if it names one, and which run of a baseline."""
+    """Return the file in a side's text, if it is one, and the name of a run of a baseline."""
     file, suffix, name = text.partition(f"{BASELINE}:")
     return (Path(file + BASELINE), name) if suffix else (Path(text), "")
 
@@ -160,7 +160,7 @@ def _read(text: str, side: Result | Case | dict[str, Any]) -> Iterator[Path | No
 
 
 def _undrawn(stack: ExitStack) -> UndrawnFrames:
-    """Return what keeps the frames of a side, to be drawn for a page that shows some of both."""
+    """Return a store for the frames of a side, for a page that shows some frames of both."""
     from bfsim.report.html.diff_page import FRAMES
     from bfsim.report.html.undrawn import UndrawnFrames
 
@@ -170,7 +170,7 @@ def _undrawn(stack: ExitStack) -> UndrawnFrames:
 def _result(
     stack: ExitStack, side: Result | Case | dict[str, Any], frames: UndrawnFrames | None
 ) -> Result | Case:
-    """Return what was read, or the result of a run, of which the `frames` are kept."""
+    """Return what was read, or the result of a run, whose frames are kept in `frames`."""
     if not isinstance(side, dict):
         return side
     return run_and_seen(stack, Watchers(seen=[frames.add] if frames else []), **side)

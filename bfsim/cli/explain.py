@@ -64,7 +64,7 @@ def _explain_lines(kernel: str, *, runs: bool, json_path: Path | None, **what: A
     from bfsim.report.profile.library import in_callers
 
     named = kernel, what["firmware"], what["profile"]
-    explanation = explain_named(*named)  # a slip in a name is told before the run
+    explanation = explain_named(*named)  # a mistake in a name is reported before the run
     done = simulated(**what) if runs else None
     if done:
         explanation = explain_named(*named, replace(done, kernels=in_callers(done.kernels)))

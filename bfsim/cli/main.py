@@ -1,4 +1,4 @@
-"""The command line: parses, calls, prints. Everything that takes time to import is imported by the command."""
+"""The command line: parse, call, print. Commands import slow modules themselves."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from bfsim.process.endings import exit_code_of
 
 
 class _Bfsim(click.Group):
-    """Ends every command with an exit code, and one that goes wrong for a known reason with one paragraph."""
+    """Ends every command with an exit code; known errors print one paragraph."""
 
     def main(self, *arguments: Any, standalone_mode: bool = True, **options: Any) -> Any:
         call = partial(super().main, *arguments, standalone_mode=False, **options)
@@ -34,7 +34,7 @@ class _Bfsim(click.Group):
         return call()
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        if any("\0" in each for each in args):  # no system gives them, but callers in Python may
+        if any("\0" in each for each in args):  # no shell passes these, but Python callers may
             raise click.UsageError("arguments must be without NUL characters")
         return super().parse_args(ctx, args)
 

@@ -86,7 +86,7 @@ def place(output: Path | None, force: bool, top: int, json_path: Path | None, **
 
 
 def has_others(what: Iterable[str]) -> bool:
-    """Whether the command line says more than an LDF of `what` is run."""
+    """Whether the command line gives more than the LDF to run."""
     ctx = click.get_current_context()
     said = {each for each in what if ctx.get_parameter_source(each) is ParameterSource.COMMANDLINE}
     return bool(said - {"ldf"})

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 SUFFIX = ".sweep"
 PLOTTERS = ("altair", "vl_convert")
 NOTE_S = 60.0
-"""Where standard error is no terminal, a line says so often how far it is."""
+"""How often a line tells the progress if standard error is no terminal."""
 TRIED_FRAMES = 3
 TRIED_POINTS = 4
-"""So many frames are run, of points of so many kinds, to know how long points will take."""
+"""Frames to run, for points of so many kinds, to know how long points will take."""
 
 
 def _axes(_ctx: click.Context, _param: click.Parameter, given: str | None) -> Axes | None:
@@ -152,13 +152,13 @@ def sweep(
 
 
 def _require_no_error(sweep: Sweep) -> None:
-    """End with exit code 2 if a point failed, or can never work: why has been told."""
+    """End with exit code 2 if a point failed, or is impossible; the reason has been printed."""
     if any(map(sweep.error_of, sweep.planned)):
         raise SystemExit(MISTAKE)
 
 
 def _tell_impossible(sweep: Sweep, *, strict: bool) -> None:
-    """Tell which points can never work, before any runs."""
+    """Print the points that are impossible, before any runs."""
     from bfsim.report.sweep.screen import failures
 
     errors = [(each.point.name, each.error) for each in sweep.planned if each.error]
@@ -180,7 +180,7 @@ def _pace(sweep: Sweep) -> Pace:
 
 
 def _list(sweep: Sweep, workers: Workers, checked_s: float) -> None:
-    """Print all points, and how long those take that are to be run: first processes start, and check them once more."""
+    """Print all points, and how long the rest will take, including the start of processes and their checks."""
     from bfsim.report.sweep.screen import point_list
     from bfsim.sweeping.pace import in_words
 
@@ -199,7 +199,7 @@ def _list(sweep: Sweep, workers: Workers, checked_s: float) -> None:
 
 
 def _run(sweep: Sweep, workers: Workers) -> bool:
-    """Run the points that are to be run; return whether all were, or a signal ended it."""
+    """Run the unfinished points; return whether all ran, or a signal ended the sweep."""
     from bfsim.sweeping.pace import in_words
 
     left, pace, noted = {each.key: each for each in sweep.todo}, _pace(sweep), time.monotonic()
@@ -229,7 +229,7 @@ def _run(sweep: Sweep, workers: Workers) -> bool:
 
 
 def _report(sweep: Sweep, before: AbstractSet[str], axes: Axes | None, top: int) -> None:
-    """Write table and plot, and print what came out; `before` are the keys of what had been done."""
+    """Write table and plot, and print the results; `before` are the keys of earlier ones."""
     from bfsim.files.save import write_text
     from bfsim.report.sweep.figures import FRAME_RATE
     from bfsim.report.sweep.lines import Shown
@@ -248,7 +248,7 @@ def _report(sweep: Sweep, before: AbstractSet[str], axes: Axes | None, top: int)
         sweep.store.folder / f"{sweep.file.stem}{end}" for end in (".csv", ".parquet", ".svg")
     )
     kept, files = sum(each.key in before for each in sweep.planned), list[Path]()
-    with ExitStack() as last:  # what cannot be written is an error behind the report
+    with ExitStack() as last:  # errors of writing come after the report
         last.callback(lambda: print_report(sweep_report(shown, files, kept, top)))
         write_text(csv, csv_of(rows))
         files.append(csv)

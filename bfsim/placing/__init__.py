@@ -1,1 +1,1 @@
-"""`bfsim place`: measure a run, solve an integer programme for where everything lies, write it as an LDF, and run that."""
+"""`bfsim place`: measure a run, find the best placement by an integer programme, write it as an LDF, and run it."""

@@ -1,6 +1,7 @@
-"""What an access of each memory stalls a core, by the board's numbers: what a placement costs that no run has measured yet.
+"""The stalls of an access to each memory, from the board's numbers: the cost of placements that no run has measured.
 
-Rough where cores and DMA meet: then it depends on the rest. The next run measures it, and what is measured counts.
+They are rough where cores and DMA meet, since the rest matters there. The next run measures the stalls, and then these
+count.
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.placing.stretches import Level
 
 CONFLICTS = 0.5
-"""Share of a core's accesses of SDRAM that find another page open. [assumed] The built-in firmware, all in SDRAM: 0.25 to 0.8."""
+"""Share of a core's SDRAM accesses that find another page open. [assumed] Built-in firmware, all in SDRAM: 0.25 to 0.8."""
 FULL = 0.5
-"""Share of the time that a store holds its bus for which the core waits. [assumed] The same: 0.2 to 1.0."""
+"""Share of a store's time on its bus that the core waits. [assumed] The same firmware: 0.2 to 1.0."""
 CODE_BYTES_A_CCLK = 1.3
-"""Code that an issue cycle fetches: that of the built-in firmware, measured with all of its code in L2."""
+"""Bytes of code that an issue cycle fetches: measured for the built-in firmware with all of its code in L2."""
 FETCH_BYTES = 8  # what the core fetches at a time
-WORD_BYTES = 4  # what a cached line serves at a time
+WORD_BYTES = 4  # what an access of a cached line uses
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +28,7 @@ class Latencies:
     board: BoardSpec
 
     def data_cclk(self, level: Level, reads: float, writes: float, *, is_cached: bool = False) -> float:
-        """Return what reads and writes of a memory stall. `is_cached`: through a data cache, in order."""
+        """Return how long reads and writes of a memory stall. `is_cached`: through a data cache, in sequence."""
         match level:
             case Level.L2:
                 assert self.board.chip.l2, "it has a segment"
@@ -42,14 +43,14 @@ class Latencies:
         return 0.0
 
     def code_cclk(self, level: Level, issue_cclk: float, *, is_cached: bool) -> float:
-        """Return what fetching code from a memory stalls a kernel with so many issue cycles."""
+        """Return how long fetching code from a memory stalls a kernel with this many issue cycles."""
         if is_cached:
             return 0.0
         return self.data_cclk(level, issue_cclk * CODE_BYTES_A_CCLK / FETCH_BYTES, 0)
 
     @property
     def _sdram_read_cclk(self) -> float:
-        """A read that waits for its data, beside its own cycle."""
+        """A read that waits for its data, without its own cycle."""
         sclk = self.board.chip.external.core_sync_sclk + self.board.sdram.nCL + self._conflict_sclk
         return self._sclk(sclk) - 1
 

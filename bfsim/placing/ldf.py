@@ -1,4 +1,7 @@
-"""A placement as an LDF that one can read: the memories, reserves and switches of the LDF it began with, and a line for each buffer."""
+"""A placement as a readable LDF, with a line for each buffer.
+
+Memories, reserves and switches are those of the original LDF.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ FILE = re.compile(r"[\w.][\w.-]*", re.ASCII)
 
 
 class LdfWriter:
-    """Writes placements of one firmware into the memories of one LDF. `script`: that LDF."""
+    """Writes placements of one firmware into the memories of one LDF, `script`."""
 
     def __init__(self, script: LinkerScript, stretches: Sequence[Stretch]) -> None:
         self._script = script
@@ -36,7 +39,11 @@ class LdfWriter:
     def text(
         self, parts: Sequence[Part], places: Sequence[int], why: Mapping[str, str], about: Iterable[str]
     ) -> str:
-        """Return the LDF. `places`: the stretch of each part; `why`: by the label of a part, a few words; `about`: the paragraphs at its top."""
+        """Return the LDF.
+
+        `places`: the stretch of each part; `why`: a few words by the label of a part; `about`: the paragraphs at the
+        top.
+        """
         placed = sorted(zip(places, parts, strict=True), key=lambda each: each[0])
         lines = [
             *_comment(about),
@@ -97,7 +104,7 @@ class LdfWriter:
     def _sections(
         self, block: Block, placed: Sequence[tuple[int, Part]], why: Mapping[str, str]
     ) -> Iterator[str]:
-        """Yield an output section for each segment with something in it, its reserves first."""
+        """Yield an output section for each segment that holds something, its reserves first."""
         by_segment: dict[int, list[tuple[int, Part]]] = {}
         for number, part in placed:
             by_segment.setdefault(self._stretches[number].segment.start, []).append((number, part))
@@ -117,7 +124,7 @@ class LdfWriter:
             yield f"      }} > {_plain(segment)}"
 
     def _segment_at(self, start: int, block: Block) -> Segment:
-        """Return the segment at an address as a block calls it."""
+        """Return the segment at an address, by the name that a block has for it."""
         found = [each for each in self._script.segments if each.start == start]
         return next((each for each in found if each.processor == block.processor), found[0])
 
@@ -146,7 +153,7 @@ def _comment(paragraphs: Iterable[str]) -> Iterator[str]:
 
 
 def _remark(text: str) -> str:
-    """Return a text that ends no comment and begins none."""
+    """Return text that neither ends a comment nor begins one."""
     return re.sub(r"/\*|\*/|\\$", " ", " ".join(text.split()))
 
 
@@ -165,7 +172,7 @@ def _memory(segments: Sequence[Segment], indent: str) -> Iterator[str]:
 
 
 def _plain(segment: Segment) -> str:
-    """Return the name of a segment as the block of its processor calls it."""
+    """Return the name of a segment in the block of its processor."""
     return segment.name.removeprefix(f"{segment.processor}.") if segment.processor else segment.name
 
 
@@ -186,7 +193,7 @@ def _reserve(reserve: Reserve) -> str:
 
 
 def _reserves_of(block: Block, script: LinkerScript) -> dict[int, list[Reserve]]:
-    """Return the reserves without an address of a block, by the start of their segment."""
+    """Return the reserves of a block without an address, by the start of their segment."""
     found: dict[int, list[Reserve]] = {}
     for output in block.output_sections:
         reserves = [each for each in output.statements if isinstance(each, Reserve)]
@@ -196,7 +203,7 @@ def _reserves_of(block: Block, script: LinkerScript) -> dict[int, list[Reserve]]
 
 
 def _rest(block: Block, script: LinkerScript) -> Iterator[str]:
-    """Yield the output sections of the LDF as they were, for what has no line of its own."""
+    """Yield the original output sections of the LDF, for everything without a line of its own."""
     yield ""
     yield "      /* What has no line above, such as a buffer that is new, goes where its section says. */"
     for output in block.output_sections:

@@ -1,4 +1,4 @@
-"""What runs have measured: how often each core accesses each buffer, and what it waited for that where the buffer lay."""
+"""Measurements of runs: how often each core accesses each buffer, and how long it waits for it there."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.report.budget.waits import busy_cclk
 from bfsim.trace import RunRecord
 
 CODE = ""
-"""Stands for the buffer where a kernel waited for its own code."""
+"""Stands for the buffer when a kernel waits for its own code."""
 
 
 @dataclass(slots=True)
@@ -30,10 +30,10 @@ Use = tuple[str, str]
 
 @dataclass(slots=True)
 class Measured:
-    """Of the last run: `accesses`, issue cycles of kernels, `streamed` buffers, cycles of each core without those stalls.
+    """Of the last run: `accesses`, issue cycles of kernels, `streamed` buffers, each core's cycles without stalls.
 
-    `stalls`: cycles a frame that a core waited for a buffer in a memory, from the last run that had it there; `fetches`: the
-    same of a kernel's code.
+    `stalls`: cycles a frame that a core waited for a buffer in a memory, from the last run that had the buffer there;
+    `fetches`: the same for a kernel's code.
     """
 
     accesses: dict[Use, Accesses] = field(default_factory=dict)
@@ -44,7 +44,7 @@ class Measured:
     fetches: dict[tuple[Use, Level], float] = field(default_factory=dict)
 
     def add(self, run: RunRecord, code_levels: Mapping[Use, Level]) -> None:
-        """Take over what a run has measured. `code_levels`: where the code of each kernel lay."""
+        """Add the measurements of a run. `code_levels`: where the code of each kernel lay."""
         frames = len(run.frames)
         level_of = {each.buffer: _level(each.memory) for each in run.buffers}
         accesses: dict[Use, Accesses] = defaultdict(Accesses)
@@ -70,15 +70,15 @@ class Measured:
 
 
 def busy_of(run: RunRecord) -> dict[str, float]:
-    """Return the cycles a frame of each core without its waits for pictures and for the other core."""
+    """Return each core's cycles a frame without its waits for pictures and for the other core."""
     return {each.core: busy_cclk([each.frame]) / len(run.frames) for each in budget_of(run).cores}
 
 
 def frame_cclk(run: RunRecord) -> float:
-    """Return the cycles from the end of one frame to that of the next, on average."""
+    """Return the mean number of cycles from the end of one frame to the end of the next."""
     return run.identity.cclk_hz / frame_rate_hz(run.frames, run.identity.cclk_hz)
 
 
 def _level(memory: str) -> Level:
-    """Return the level of a memory by its name on the whole chip, such as COREA_L1_DATA_A."""
+    """Return the level of a memory by its full name, such as COREA_L1_DATA_A."""
     return LEVELS[memory if memory in LEVELS else memory.partition("_")[2]]

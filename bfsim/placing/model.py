@@ -1,4 +1,4 @@
-"""What has to be placed, where each part of it can lie, and what it costs there: the items of the integer programme."""
+"""The parts to place, their possible places, and their cost in each: the items of the integer programme."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ CORES = {core: processor for processor, core in CORE_OF_PROCESSOR.items()}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """A buffer, or the code of a kernel. `name` is that in the records; `owner` a core or "shared".
+    """A buffer, or the code of a kernel. `name` is as in the records; `owner` is a core or "shared".
 
-    It lies in `segment` and in stretch number `home` of the memories. Where the LDF has no room for the firmware, it is in no
+    It lies in `segment`, in stretch number `home` of the memories. If the LDF has no room for the firmware, it is in no
     segment, and `home` is in the first one that takes its section.
     """
 
@@ -39,7 +39,7 @@ class Part:
 
     @property
     def label(self) -> str:
-        """Its own name and whose it is."""
+        """Its name and its owner."""
         return f"{self.symbol.name} ({self.owner if self.owner == SHARED else f'core {self.owner}'})"
 
 
@@ -71,20 +71,20 @@ class Model:
         return tuple(each.stretch for each in solve(items, [each.nbytes for each in self.stretches], busy))
 
     def cclk(self, part: Part, stretch: int, measured: Measured) -> dict[str, float]:
-        """Return what a part stalls each core in a frame, in a stretch."""
+        """Return how long a part in a stretch stalls each core in a frame."""
         return {
             core: self._stall_cclk((core, part.name), part, stretch, measured) for core in self._users(part)
         }
 
     def busy_cclk(self, places: Sequence[int], measured: Measured) -> dict[str, float]:
-        """Return the cycles a frame of each core in a placement, without its waits for pictures and for the other core."""
+        """Return each core's cycles a frame in a placement, without its waits for pictures and for the other core."""
         busy = Counter(measured.busy_cclk)
         for part, stretch in zip(self.parts, places, strict=True):
             busy.update(self.cclk(part, stretch, measured))
         return dict(busy)
 
     def code_levels(self, places: Sequence[int | None]) -> Mapping[Use, Level]:
-        """Return where the code of each kernel that is a part lies in a placement."""
+        """Return where the code of each movable kernel lies in a placement."""
         return {
             (part.owner, part.name): self.stretches[stretch].level
             for part, stretch in zip(self.parts, places, strict=True)
@@ -112,14 +112,14 @@ class Model:
                 yield part
 
     def _starts(self, processor: str | None) -> Iterator[int]:
-        """Yield where the segments begin that the LDF fills in the blocks of a processor; None: of both."""
+        """Yield the starts of the segments that the LDF fills in the blocks of a processor; None: of both."""
         for block in self.script.blocks:
             for output in block.output_sections if block.processor == processor else ():
                 if output.segment:
                     yield self.script.segment_by_name[output.segment].start
 
     def _with_code_outside(self, placements: Sequence[Placement]) -> set[str]:
-        """Return the cores with code outside L1: that of the others stays as it is."""
+        """Return the cores with code outside L1: the code of other cores stays where it is."""
         if not self.is_linked:
             return {*self.board.chip.cores}
         return {
@@ -131,7 +131,7 @@ class Model:
         }
 
     def _stretch_in(self, segment: str, address: int) -> int | None:
-        """Return the stretch of a segment with an address, or before it: reserves lie elsewhere once the LDF is written anew."""
+        """Return the stretch of a segment at an address or before it: in the new LDF, reserves lie elsewhere."""
         start = self.script.segment_by_name[segment].start
         found = [number for number, each in enumerate(self.stretches) if each.segment.start == start]
         return max(
@@ -160,10 +160,10 @@ class Model:
         return Item(name=part.label, nbytes=part.symbol.nbytes, choices=choices)
 
     def possible(self, part: Part, measured: Measured) -> list[int]:
-        """Return where a part can lie: first where it does, then from the slowest memory on, so that fast ones stay free.
+        """Return the possible stretches of a part: its present one, then others, those in slow memories first.
 
-        Of memories as slow, those come first that the LDF uses for the part's core. Code goes to L1 first: nothing else can,
-        and other pictures may need what did not run on these.
+        This leaves fast memories free. Among equally slow ones, those that the LDF uses for the part's core come first.
+        Code goes to L1 first: nothing else can, and code that did not run on these pictures may run on others.
         """
         own = self._segments_of[part.symbol.processor]
 
@@ -177,18 +177,18 @@ class Model:
         )
 
     def _can_lie(self, part: Part, number: int, measured: Measured) -> bool:
-        """Say whether a stretch is reached by all who use a part, and whether they see the same bytes there."""
+        """Whether everything that uses a part reaches a stretch, and sees the same bytes there."""
         stretch, users = self.stretches[number], self._users(part)
         if number == part.home:
             return True
         if not stretch.takes(owner=part.owner, is_code=part.is_code):
             return False
-        if stretch.level is Level.SCRATCH:  # no DMA reaches it
+        if stretch.level is Level.SCRATCH:  # DMA does not reach it
             is_used = any((core, part.name) in measured.accesses for core in users)
             return is_used and part.name not in measured.streamed
         if stretch.level is Level.SDRAM and any(
             self._caches[core].data for core in users
-        ):  # there is no coherence
+        ):  # caches are not coherent
             was_cached = part.home is not None and self.stretches[part.home].level is Level.SDRAM
             return was_cached or not (part.owner == SHARED or part.name in measured.streamed)
         return True

@@ -1,4 +1,4 @@
-"""What `bfsim place` has found, as records: what moved, what each memory holds, and every placement that was run."""
+"""The result of `bfsim place` as records: what moved, how full each memory is, and every placement that was run."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from bfsim.trace import Identity
 
 NEAR_CAMERA = 1.01
-"""The cameras bound a frame that takes up to so many times the time between two pictures."""
+"""The cameras bound frames that take at most this many times the time between two pictures."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """A placement that was run: the frame time that the model predicted for it, and the simulated one.
+    """A placement that was run: the frame time predicted by the model, and the simulated one.
 
-    `busy_ms`: the part of it that the busiest core does not wait for pictures or the other core.
+    `busy_ms`: the part in which the busiest core does not wait for pictures or the other core.
     """
 
     predicted_ms: float
@@ -26,8 +26,8 @@ class Trial:
 class PlacedPart:
     """A buffer, or the code of a kernel. `before` and `after` are segments of the LDF.
 
-    `core` is that which it belongs to, or "shared". Accesses are those of all cores a frame; `streamed`: DMA moves it, too.
-    `saved_ms`: what the cores wait less for it in a frame.
+    `core` is its owner, or "shared". Accesses are those of all cores in a frame; `streamed`: DMA moves it, too.
+    `saved_ms`: by how much the cores wait less for it in a frame.
     """
 
     name: str
@@ -60,12 +60,12 @@ class Fill:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placed:
-    """The best placement that was run. `identity` is that of the first run; `start` names the LDF whose memories they are.
+    """The best placement that was run. `identity` is that of the first run; `start` names the LDF with the memories.
 
-    `linked`: whether that LDF had room for the firmware; else the first run had what it had no room for elsewhere.
-    `camera_ms`: the time between two pictures, below which no placement comes; `..._busy_ms` as in a trial. `best`:
-    number of the trial, None if the first run was not beaten. `ldf` is the text of the placement, empty where nothing
-    is better than what was given.
+    `linked`: whether that LDF had room for the firmware; if not, the first run had some parts elsewhere. `camera_ms`:
+    the time between two pictures, below which no placement can get; `..._busy_ms` as in a trial. `best`: the number of
+    the trial, None if the first run was not beaten. `ldf` is the text of the placement, empty if nothing is better than
+    the given one.
     """
 
     identity: Identity

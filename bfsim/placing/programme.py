@@ -1,11 +1,11 @@
-"""The integer programme: which stretch of memory each item goes to, so that the frame of the slower core is shortest.
+"""The integer programme: choose a stretch of memory for each item, so that the slower core's frame is shortest.
 
     minimise   T + TOTAL_WEIGHT · (stalls of all cores) + a cycle a step down each item's order of choices
     such that  each item has one place,
                the items in a stretch take no more bytes than it has,
                T ≥ a core's cycles a frame + the stalls of what it accesses,   for each core.
 
-Items, stretches and cycles are all that it knows; HiGHS solves it.
+It knows only items, stretches and cycles; HiGHS solves it.
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ from scipy.sparse import coo_array
 from bfsim.errors import LinkError
 
 TOTAL_WEIGHT = 0.01
-"""What a cycle of any core counts beside one of the slower core: cores wait for each other, too."""
+"""The weight of a cycle of any core, where one of the slower core weighs 1: cores wait for each other, too."""
 STEP_CCLK = 1.0
-"""A move down an item's order of choices must save as many cycles a frame; so equals are decided in a fixed way."""
+"""The cycles a frame that each step down an item's order of choices must save; so ties have a fixed outcome."""
 GAP = 1e-4
 """The solver stops when no solution can be better by more than this share of the stalls."""
 NODES = 200
-"""It stops after so many nodes of its search, too: a limit that is the same on every machine."""
+"""It also stops after this many nodes of its search, a limit that is the same on every machine."""
 STDOUT = 1
 """File descriptor of standard output."""
 INFEASIBLE = 2
-"""`milp` says so where no solution is."""
+"""Status of `milp` if there is no solution."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choice:
-    """An item in stretch number `stretch`, where it takes `nbytes` and stalls each core some cycles a frame."""
+    """An item in stretch number `stretch`, where it takes `nbytes` and stalls each core by some cycles a frame."""
 
     stretch: int
     nbytes: int
@@ -50,7 +50,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Item:
-    """Something that needs a place. Of two choices that cost the same, the first one is taken."""
+    """Something that needs a place. Of two choices with the same cost, the first is taken."""
 
     name: str
     nbytes: int
@@ -58,7 +58,7 @@ class Item:
 
 
 class NoRoomError(LinkError):
-    """Raised when the items do not fit. `left` have no place, when as many bytes as can have one do."""
+    """Raised when the items do not fit. `left` have no place if as many bytes as possible get one."""
 
     def __init__(self, left: Sequence[Item], why: str) -> None:
         super().__init__(why)
@@ -68,9 +68,9 @@ class NoRoomError(LinkError):
 def solve(
     items: Sequence[Item], stretches: Sequence[int], busy_cclk: Mapping[str, float]
 ) -> tuple[Choice, ...]:
-    """Return the best choice of each item. `stretches`: bytes of each; `busy_cclk`: what each core takes a frame without stalls.
+    """Return the best choice of each item. `stretches`: their bytes; `busy_cclk`: each core's frame without stalls.
 
-    Raises NoRoomError, with what lacks how many bytes.
+    Raises NoRoomError with the items that lack room, and how many bytes.
     """
     for each in items:
         if not any(choice.nbytes <= stretches[choice.stretch] for choice in each.choices):
@@ -94,7 +94,7 @@ def solve(
 
 
 class _Rows:
-    """One variable for each choice of each item that has room, and one more behind them: the frame beyond the cycles of the busiest core."""
+    """A variable for each possible choice of each item, and last the frame's excess over the busiest core's cycles."""
 
     def __init__(self, items: Sequence[Item], stretches: Sequence[int]) -> None:
         found = [
@@ -109,7 +109,7 @@ class _Rows:
         self.steps = np.array([step for _, step, _ in found])
 
     def fits(self, stretches: Sequence[int], *, exactly: bool) -> list[LinearConstraint]:
-        """Return that each item has one place, or at most one, and that no stretch is too full."""
+        """Return the constraints that each item has one place, or at most one, and that no stretch is overfull."""
         count = len(self.choices)
         places = coo_array(
             (np.ones(count), (self.owners, np.arange(count))), shape=(len(self.items), count + 1)
@@ -130,12 +130,12 @@ class _Rows:
 
 
 def _below_frame(stalls: NDArray[np.float64], slack_cclk: float) -> LinearConstraint:
-    """Return that the frame is no shorter than a core's, which has `slack_cclk` less to do than the busiest one."""
+    """Return the constraint that the frame is no shorter than a core's, with `slack_cclk` less work than the busiest."""
     return LinearConstraint(np.append(stalls, -1.0)[np.newaxis], -np.inf, slack_cclk)
 
 
 def _milp(cost: NDArray[np.float64], constraints: Sequence[LinearConstraint]) -> NDArray[np.float64] | None:
-    """Return the variables at the least cost: places are 0 or 1, the frame is anything. None if there are none."""
+    """Return the variables of least cost: places are 0 or 1, the frame is continuous. None if there is no solution."""
     whole = np.append(np.ones(len(cost) - 1), 0)
     with _silent():
         result = milp(
@@ -154,14 +154,14 @@ def _milp(cost: NDArray[np.float64], constraints: Sequence[LinearConstraint]) ->
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Keep compiled code from standard output: HiGHS 1.12 prints lines of its debugging there (its issue 2783)."""
+    """Keep compiled code from standard output: HiGHS 1.12 prints debugging lines there (its issue 2783)."""
     buffers = ctypes.CDLL(None)
     sys.stdout.flush()
     buffers.fflush(None)
     with ExitStack() as stack:
         try:
             kept = os.dup(STDOUT)
-        except OSError:  # there is none
+        except OSError:  # there is no standard output
             yield
             return
         stack.callback(os.close, kept)
@@ -181,7 +181,7 @@ def _too_large(item: Item, stretches: Sequence[int]) -> str:
 
 
 def _no_room(rows: _Rows, stretches: Sequence[int]) -> NoRoomError:
-    """Return what lacks room when as many bytes as possible have a place."""
+    """Return the error with the items that have no place when as many bytes as possible have one."""
     cost = np.append(-np.array([each.nbytes for each in rows.choices], float), 0.0)
     found = _milp(cost, rows.fits(stretches, exactly=False))
     assert found is not None, "nothing has to have a place"

@@ -1,4 +1,4 @@
-"""Why each part lies where it does, in a few words: the remarks of the LDF."""
+"""Why each part lies where it does, in a few words, for the comments of the LDF."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from bfsim.placing.stretches import Level
 from bfsim.report.wording.units import mhz
 
 LEAST_MS = 0.0005
-"""A shorter time is not worth telling."""
+"""Shorter times are not mentioned."""
 
 
 def reason(model: Model, part: Part, stretch: int, measured: Measured) -> str:
-    """Return how large a part is, who uses it how often, and what it would cost in other memories."""
+    """Return how large a part is, how often it is used and by whom, and its cost in other memories."""
     words = [
         f"{part.symbol.nbytes:,} B",
         *_uses(model, part, measured),
@@ -25,18 +25,18 @@ def reason(model: Model, part: Part, stretch: int, measured: Measured) -> str:
 
 
 def accesses_of(model: Model, part: Part, measured: Measured) -> Accesses:
-    """Return the accesses of a part in a frame, of all cores."""
+    """Return the accesses of all cores to a part in a frame."""
     found = [measured.accesses.get((core, part.name), Accesses()) for core in model.board.chip.cores]
     return Accesses(sum(each.reads for each in found), sum(each.writes for each in found))
 
 
 def cost_ms(model: Model, part: Part, stretch: int, measured: Measured) -> float:
-    """Return what all cores together wait for a part in a frame, in a stretch."""
+    """Return how long all cores together wait for a part in a stretch in a frame."""
     return sum(model.cclk(part, stretch, measured).values()) * 1000 / float(model.board.clocks.cclk_hz)
 
 
 def _uses(model: Model, part: Part, measured: Measured) -> list[str]:
-    """Say who uses a part how often."""
+    """Say how a part is used, and how often."""
     if part.is_code:
         issue_cclk = measured.issue_cclk.get((part.owner, part.name), 0.0)
         return [f"{issue_cclk:,.0f} issue cycles" if issue_cclk else "not run in the frames measured"]
@@ -50,7 +50,7 @@ def _uses(model: Model, part: Part, measured: Measured) -> list[str]:
 
 
 def _elsewhere(model: Model, part: Part, stretch: int, measured: Measured) -> list[str]:
-    """Say what the cores wait here and in the next slower memory, and why it is in no faster one."""
+    """Say how long the cores wait here and in the next slower memory, and why the part is in no faster one."""
     here, level = cost_ms(model, part, stretch, measured), model.stretches[stretch].level
     slower = [
         (cost_ms(model, part, number, measured), each.level)
@@ -65,7 +65,7 @@ def _elsewhere(model: Model, part: Part, stretch: int, measured: Measured) -> li
 
 
 def about(placed: Placed) -> Iterator[str]:
-    """Yield the paragraphs at the top of the LDF: what it is for, how fast it is, and how to read it."""
+    """Yield the paragraphs at the top of the LDF: its purpose, its speed, and how to read it."""
     identity = placed.identity
     yield (
         f"Written by `bfsim place` for {identity.firmware}, pictures of {identity.width_px}x{identity.height_px}, "

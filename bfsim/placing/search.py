@@ -1,4 +1,4 @@
-"""Measure, solve, write, run; and again from what that run measured, as long as the model finds something better."""
+"""Measure, solve, write, run; and again with that run's measurements, as long as the model finds something better."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ from bfsim.shipped import RECORDING
 from bfsim.trace import RunRecord
 
 ROUNDS = 4
-"""Placements that are run at most, beside the first."""
+"""The most placements that are run after the first."""
 WORTH = 0.001
-"""Another placement is run if the model says that it saves more than this share of the frame."""
+"""Another placement is run only if the model predicts that it saves more than this share of the frame."""
 LEAST = 0.0001
 """A placement that saves less than this share is no better."""
 
 BUSY_WEIGHT = 0.01
-"""What a cycle of the busiest core counts beside one of the frame: where the cameras bound the frame, less work is better."""
+"""The weight of a cycle of the busiest core, where one of the frame is 1: if cameras bound it, less work is better."""
 
 Places = tuple[int, ...]
 Homes = tuple[int | None, ...]
-"""The stretch of each part; as the LDF had it, some may be in none."""
+"""The stretch of each part; parts of the original LDF may be in none."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Try:
-    """A placement that was run, and the cycles of a frame that the model had predicted."""
+    """A placement that was run, and the frame's cycles that the model predicted."""
 
     places: Places
     predicted_cclk: float
@@ -63,10 +63,10 @@ def place(
     simulate: Callable[..., RunRecord],
     **how: Any,
 ) -> Placed:
-    """Return the fastest placement of `firmware` into the memories of an LDF that was found and run.
+    """Return the fastest placement found for `firmware` in the memories of an LDF; it has been run.
 
-    The arguments are those of `bfsim.run.simulate`, which `simulate` is, or stands for. Raises NoRoomError, with what lacks
-    how many bytes, where no placement has room, and a BfsimError as a run does.
+    The arguments are those of `bfsim.run.simulate`, which is `simulate` itself, or its substitute. Raises NoRoomError,
+    with the items that lack room and how many bytes, if no placement fits, and any BfsimError of a run.
     """
     spec, compiler = find_board(board, settings).value, find_profile(profile).value
     loaded = load_firmware(firmware)
@@ -89,7 +89,7 @@ def place(
 
         moved_in = (
             None if model.is_linked else model.best(measured)
-        )  # with nothing measured: the fewest moves
+        )  # nothing has been measured: the fewest moves
         if moved_in:
             first = run(moved_in)
         else:
@@ -109,7 +109,7 @@ def _tries(
     camera_cclk: float,
     run: Callable[[Places], RunRecord],
 ) -> Iterator[_Try]:
-    """Run the best placement by what was measured until then, and yield it, as long as it is new and worth it."""
+    """Run the best placement by the measurements so far, and yield it, as long as it is new and promising."""
     last, best_cclk, seen = first, math.inf, {homes}
     for _ in range(ROUNDS):
         places = model.best(measured)
@@ -126,7 +126,7 @@ def _tries(
 
 
 def _score_cclk(run: RunRecord, camera_cclk: float) -> float:
-    """Return what makes one placement better than another. Frames that the cameras bound are equally long."""
+    """Return the score of a placement, lower is better. Frames that the cameras bound are equally long."""
     frame = float(frame_cclk(run))
     bounded = camera_cclk if frame <= NEAR_CAMERA * camera_cclk else frame
     return bounded + BUSY_WEIGHT * max(busy_of(run).values())
@@ -141,7 +141,7 @@ def _placed(
     writer: LdfWriter,
     camera_cclk: float,
 ) -> Placed:
-    """Return the records of the best placement that was run. `moved_in`: the first one, where the LDF had no room."""
+    """Return the records of the best placement that was run. `moved_in`: the first one if the LDF had no room."""
     hz = first.identity.cclk_hz
     enough = (1 - LEAST) * _score_cclk(first, camera_cclk)
     better = [each for each in tries if _score_cclk(each.run, camera_cclk) < enough]

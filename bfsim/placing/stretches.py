@@ -1,4 +1,4 @@
-"""The memories of an LDF as the integer programme sees them: stretches without a break, each with what it has room for."""
+"""The memories of an LDF for the integer programme: contiguous stretches with their sizes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.linker.script import Reserve, Segment
 
 
 class Level(StrEnum):
-    """How far a memory is from the core; the slowest one is the first, and the one that no DMA reaches is the last."""
+    """How far a memory is from the core; the slowest comes first, and the one without DMA last."""
 
     SDRAM = "SDRAM"
     L2 = "L2"
@@ -37,12 +37,12 @@ LEVELS = {
     "L1_CODE": Level.L1_CODE,
     "L1_CODE_CACHE": Level.L1_CODE,
 }
-"""The level of each memory of a chip; banks of asynchronous memory have none, nothing is placed there."""
+"""The level of each memory of a chip; banks of asynchronous memory have none, and nothing is placed there."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stretch:
-    """Bytes of a segment between two of its reserves. `owner`: the core that reaches it, or "shared". Starts are aligned."""
+    """A part of a segment between two reserves. `owner`: the core that reaches it, or "shared". `start` is aligned."""
 
     segment: Segment
     level: Level
@@ -52,7 +52,7 @@ class Stretch:
     align: int
 
     def takes(self, *, owner: str, is_code: bool) -> bool:
-        """Say whether code, or a buffer, of a core or of both can lie here."""
+        """Whether code, or a buffer, of a core or of both can lie here."""
         is_reached = self.owner in ("shared", owner)
         return (
             is_reached
@@ -62,7 +62,7 @@ class Stretch:
 
 
 def stretches_of(script: LinkerScript, regions: Sequence[Region], line_bytes: int) -> tuple[Stretch, ...]:
-    """Return what is free in each segment that an LDF fills, by address. Memory outside of the chip is on lines of `line_bytes`."""
+    """Return the free stretches of each segment that an LDF fills, by address. In SDRAM they begin on cache lines."""
     filled = {output.segment for block in script.blocks for output in block.output_sections}
     segments = [each for each in script.segments if each.name in filled]
     by_start = {each.start: each for each in reversed(segments)}  # several cores may name one memory

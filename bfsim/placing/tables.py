@@ -1,4 +1,4 @@
-"""A placement that was found as rich tables of 80 columns, and as JSON."""
+"""The result of a placement as rich tables of 80 columns, and as JSON."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from bfsim.report.tables.table import new_table, percent, stacked
 from bfsim.report.wording.units import size
 
 SCHEMA = "bfsim.place/1"
-"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+"""Name and version of the layout; the version rises when the meaning of a key changes or a key goes away."""
 
 LONGEST_NAME = 20
 
 
 def placed_report(placed: Placed, top: int) -> RenderableType:
-    """Return what was found: the gain, the placements that were run, the `top` moves, and how full the memories are."""
+    """Return the result: the gain, the placements that were run, the `top` moves, and how full the memories are."""
     return stacked(
         Text("\n".join(_verdict(placed))), _trials(placed), *_moves(placed, top), *_memories(placed)
     )
 
 
 def placed_json(placed: Placed) -> str:
-    """Return all of it but the LDF's text as indented text. Keys are the field names of `placed`, so each carries its unit."""
+    """Return everything but the LDF's text as indented JSON. Keys are the field names of `placed`, with units."""
     plain = jsonable(replace(placed, ldf=""))
     del plain["ldf"]
     more = {"predicted_ms": placed.predicted_ms, "after_ms": placed.after_ms}
@@ -95,7 +95,7 @@ def _moves(placed: Placed, top: int) -> Iterator[Table]:
 
 
 def _ending(name: str) -> str:
-    """Return a name, of a long one its end: kernels begin with their module."""
+    """Return a name, or the end of a long one: kernels begin with their module."""
     return name if len(name) <= LONGEST_NAME else f"…{name[1 - LONGEST_NAME :]}"
 
 

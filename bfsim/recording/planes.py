@@ -54,9 +54,7 @@ class YuvPlanes:
         )
 
     def cropped(self, width: int, height: int) -> YuvPlanes:
-        """Return the middle width x height of the picture, which must be as large; one pixel left or up for the
-        colours.
-        """
+        """Return the middle width x height of the picture, which must be as large; a pixel left or up for colours."""
         left, top = ((have - want) // 4 * 2 for have, want in zip(self.size, (width, height), strict=True))
         own_width, own_height = self.size
 

@@ -1,4 +1,4 @@
-"""Who runs the points: the workers of a Dask scheduler, on any number of machines."""
+"""Workers of a Dask scheduler that run points, on any number of machines."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from bfsim.sweeping.running import Outcome, Work, code_digest, run_point_there
 
 CONNECT_S = 10
 QUEUED = 2
-"""Calls on their way for each thread of the workers: one that runs, and one that waits so that it need not."""
+"""Calls under way for each thread of the workers: one that runs, and one that is ready when it ends."""
 
 
 def _arrive(there: Future[tuple[Outcome, bytes]], here: Future[Outcome], work: Work | None) -> None:
-    """Hand on what became of a point, behind what it recorded; where that finds no room, others run."""
+    """Pass on the outcome of a point, after what it recorded; if that has no room, other points run in full."""
     if there.cancelled():
         here.cancel()
-        here.set_running_or_notify_cancel()  # those who wait for it hear of it
+        here.set_running_or_notify_cancel()  # whoever waits for it is notified
     elif error := there.exception():
         here.set_exception(error)
     else:
@@ -34,14 +34,17 @@ def _arrive(there: Future[tuple[Outcome, bytes]], here: Future[Outcome], work: W
 
 
 class Cluster(AbstractContextManager["Cluster"]):
-    """The workers that a scheduler has, and those that it gets while the sweep runs.
+    """The workers of a scheduler, including those that join while the sweep runs.
 
-    Every worker must have this bfsim, and must find the files under the paths that they have here. If one dies, the
-    scheduler gives its points to others.
+    Every worker must have this bfsim, and find the files under the same paths. If one dies, the scheduler gives its
+    points to others.
     """
 
     def __init__(self, address: str, code: str) -> None:
-        """Connect to workers whose bfsim has the digest `code`. Raises ConfigError where nobody answers, or a worker has another bfsim."""
+        """Connect to workers whose bfsim has the digest `code`.
+
+        Raises ConfigError if nobody answers, or if a worker has another bfsim.
+        """
         try:
             from distributed import Client, KilledWorker
         except ImportError:
@@ -50,7 +53,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             ) from None
         self.deaths: tuple[type[Exception], ...] = (KilledWorker,)
         self.tries = 1
-        """The scheduler has tried often enough."""
+        """The scheduler itself tries often enough."""
         try:
             self._client = Client(address, timeout=CONNECT_S, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
@@ -67,19 +70,19 @@ class Cluster(AbstractContextManager["Cluster"]):
             raise
 
     def room(self) -> int:
-        """Return how many calls may be on their way at a time: one also where there is no worker yet."""
+        """Return how many calls may be under way at a time: one even if there is no worker yet."""
         threads: dict[str, int] = self._client.nthreads()
         return max(QUEUED * sum(threads.values()), 1)
 
     def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
-        """Call a function somewhere."""
+        """Call a function on a worker."""
         future: Future[Any] = self._executor.submit(fn, *args)
         return future
 
     def run_point(
         self, configuration: Configuration, folder: Path, code: str, work: Work | None
     ) -> Future[Outcome]:
-        """Call `running.run_point` somewhere; a recorded run travels between there and here."""
+        """Call `running.run_point` on a worker; a recorded run is sent there or back."""
         played = self._sent(work.path) if work and work.seen is not None else None
         there = self.submit(run_point_there, configuration, folder, code, work, played)
         here: Future[Outcome] = Future()
@@ -87,19 +90,19 @@ class Cluster(AbstractContextManager["Cluster"]):
         return here
 
     def _sent(self, path: Path) -> Any:
-        """Send a recorded run to all workers there are, once; return what stands for its content."""
+        """Send a recorded run once to all present workers; return a reference to its content."""
         if path not in self._works:
             self._works = {known: content for known, content in self._works.items() if known.exists()}
             self._works[path] = self._client.scatter(path.read_bytes(), broadcast=True, hash=False)
         return self._works[path]
 
     def __exit__(self, *_: object) -> None:
-        """Let go of the workers; a point that one of them is at is finished there, for nobody."""
+        """Release the workers; one that is busy finishes its point, whose outcome is lost."""
         self._executor.shutdown(wait=False)
         self._client.close()
 
     def _require_code(self, code: str) -> None:
-        """Raise ConfigError unless every worker has this bfsim; one that dies meanwhile has none, and its points go to others."""
+        """Raise ConfigError unless every worker has this bfsim; one that dies meanwhile does not matter."""
         answers = self._client.run(code_digest, on_error="return")
         for error in answers.values():
             if isinstance(error, Exception) and not isinstance(error, OSError):

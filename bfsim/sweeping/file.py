@@ -1,4 +1,4 @@
-"""The file of a sweep: TOML with `[base]`, `[axes]` and `[[point]]`, read as points. Each is a run with options."""
+"""The file of a sweep: TOML with `[base]`, `[axes]` and `[[point]]`, read as points: runs with options."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ MOST_POINTS = 100_000
 
 BASE, AXES, POINT = "base", "axes", "point"
 BASELINE_KEY = "run"
-"""At the top of a baseline of `bfsim check`, which is TOML, too."""
+"""A key at the top of a baseline of `bfsim check`, which is TOML, too."""
 RECORDING, CONFIGURATION, NAME = "recording", "configuration", "name"
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One run of a sweep: `options` are what the file says of it.
+    """One run of a sweep: `options` are its options in the file.
 
-    `setting` tells it from the others with the same recording, in words, and `recording` from the others in the same
-    setting; either is empty where there is one only.
+    `setting` distinguishes it in words from others with the same recording, and `recording` from others with the same
+    setting; either is empty if there is only one.
     """
 
     configuration: Configuration
@@ -41,22 +41,22 @@ class Point:
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Its name in words."""
         return " ".join(filter(None, [self.recording, self.setting])) or BASE
 
 
 @dataclass(frozen=True, slots=True)
 class _Choice:
-    """A value of an axis, or a point of its own: what it adds to the base, and its words."""
+    """A value of an axis, or a point of its own: the options that it adds to the base, and its words."""
 
     options: Options
     words: str
 
 
 def read_sweep(path: Path, scripts: Path) -> list[Point]:
-    """Return the points of a file: those of the axes, the last axis turning fastest, and then each `[[point]]`.
+    """Return the points of a file: those of the axes, the last axis varying fastest, and then each `[[point]]`.
 
-    Paths in it are relative to it. A script that stands in the file itself is written to the folder `scripts`. Raises
+    Paths in the file are relative to it. A script inside the file is written to the folder `scripts`. Raises
     ConfigError that names file and key.
     """
     try:
@@ -74,7 +74,7 @@ def read_sweep(path: Path, scripts: Path) -> list[Point]:
 
 
 def _require_apart(points: Sequence[Point]) -> None:
-    """Raise ConfigError where two points are the same, or are called the same and differ in more than the recording."""
+    """Raise ConfigError if two points are the same, or have the same name but differ in more than the recording."""
     settings, known = dict[str, Options](), set[tuple[str, object]]()
     for point in points:
         setting = {key: value for key, value in point.options.items() if key != RECORDING}
@@ -148,7 +148,7 @@ def _axes(table: object, folder: Path) -> Iterator[tuple[str, list[_Choice]]]:
 
 
 def _one(path: str, value: object) -> Options:
-    """Return the options that one value of an axis stands for; a table below `script` is as good as its entries."""
+    """Return the options for one value of an axis; a table under `script` may stand for its entries."""
     if isinstance(value, dict) and path == SCRIPT:
         return {f"{SCRIPT}.{key}": each for key, each in value.items()}
     return {path: value}
@@ -159,7 +159,7 @@ def _words(path: str, short: str, value: object) -> str:
 
 
 def _short(paths: Sequence[str]) -> Iterator[str]:
-    """Yield of each path its end, with as many names as tell it from the others."""
+    """Yield the end of each path, with as many names as distinguish it from the others."""
     for path in paths:
         names = path.split(".")
         ends = [".".join(names[-count:]) for count in range(1, len(names) + 1)]
@@ -171,7 +171,7 @@ def _short(paths: Sequence[str]) -> Iterator[str]:
 
 
 def _tables(tables: object, where: str) -> Iterator[_Choice]:
-    """Yield what a list of tables says; each may have a name."""
+    """Yield the choices in a list of tables; each may have a name."""
     if not isinstance(tables, list):
         raise ConfigError(f"{where} must be a list of tables, [[{where}]], not {shown(tables)}")
     for number, table in enumerate(tables, 1):
@@ -187,7 +187,7 @@ def _tables(tables: object, where: str) -> Iterator[_Choice]:
 
 
 def _files(patterns: Sequence[object], folder: Path) -> list[object]:
-    """Return files for patterns such as drives/*.mcap, sorted, each once by any way to it; what is no pattern stays as it is."""
+    """Return the files for patterns such as drives/*.mcap, sorted and without duplicates; plain names stay as they are."""
     files: list[object] = []
     for each in patterns:
         if not isinstance(each, str) or not glob.has_magic(each) or (folder / each).exists():

@@ -1,7 +1,7 @@
-"""The options of a point: by paths as a sweep's file has them, and as the configuration that runs.
+"""The options of a point: by paths as in a sweep's file, and as the configuration to run.
 
-They are those of `bfsim run`, called as `bfsim check` calls them. Below `set`, `define` and `script` they are named by a
-path, such as set.sdram.nRP or script.send.0.mode.area.
+They are those of `bfsim run`, with their names in `bfsim check`. Options under `set`, `define` and `script` have paths,
+such as set.sdram.nRP or script.send.0.mode.area.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from bfsim.report.check.settings import leaves, text_of
 from bfsim.running.device_script import read_script
 
 Options = Mapping[str, Any]
-"""Values by their paths. Of two that lead to the same place the later one holds."""
+"""Values by their paths. If two lead to the same place, the later one counts."""
 
 SCRIPT = "script"
 TREES = ("set", "define", SCRIPT)
-"""What holds tables."""
+"""Options that hold tables."""
 
 LONGEST_INDEX = 6
-"""Digits of the number of an entry in a list."""
+"""The most digits of a list index."""
 
 
 def flattened(table: Any, where: str) -> dict[str, Any]:
-    """Return a table of options by their paths. Raises ConfigError for a key that is no option."""
+    """Return a table of options by their paths. Raises ConfigError for an unknown option."""
     if not isinstance(table, dict):
         raise ConfigError(f"{where} must be a table of options, not {shown(table)}")
     for key, value in table.items():
@@ -45,7 +45,7 @@ def flattened(table: Any, where: str) -> dict[str, Any]:
 
 
 def _advice(key: str, value: Any) -> str:
-    """Say what keys there are, or, where a path of the board may be meant, how that is written: quoted it is one key."""
+    """Name the keys that exist or, for a likely path of the board, how to write it: a quoted path is a single key."""
     if key.partition(".")[0] in TREES:
         return f"it is written without quotes: {cut(key)}"
     if isinstance(value, dict) and value:
@@ -60,7 +60,7 @@ def _by_path(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def merged(first: Options, second: Options) -> Options:
-    """Return the options of both; what the second one sets takes the place of all that the first one has there and below."""
+    """Return the options of both; a value of the second replaces everything of the first at its path and below."""
     kept = {
         path: value
         for path, value in first.items()
@@ -70,9 +70,9 @@ def merged(first: Options, second: Options) -> Options:
 
 
 def configured(options: Options, folder: Path, scripts: Path) -> Configuration:
-    """Return what runs. A script that is not a file alone is written to the folder `scripts`; paths are relative to `folder`.
+    """Return the configuration to run; paths are relative to `folder`.
 
-    Raises ConfigError with the key.
+    A script that is not just a file is written to the folder `scripts`. Raises ConfigError with the key.
     """
     plain: dict[str, Any] = {}
     orders: dict[str, Any] = {}
@@ -102,7 +102,7 @@ def _text(value: object, path: str) -> str:
 
 
 def _script_file(base: object, orders: Options, folder: Path, scripts: Path) -> Path:
-    """Write a script with other values at some paths, under a name that its content has, and return where."""
+    """Write a script with other values at some paths, under a name made from its content; return its path."""
     if base is not None and not isinstance(base, str):
         raise ConfigError(f"{SCRIPT} must be a file or a table, not {shown(base)}")
     tree: Any = dict(read_script(folder / base)[0]) if base else {}
@@ -120,7 +120,7 @@ def _script_file(base: object, orders: Options, folder: Path, scripts: Path) -> 
 
 
 def _put(tree: Any, names: list[str], value: object, where: str) -> None:
-    """Set what a path leads to, through tables, which are made if they are not there, and through lists by number."""
+    """Set the value at a path through tables, which are made if missing, and lists, by index."""
     *way, last = names
     for name, after in zip(way, names[1:], strict=True):
         key, below = _key(tree, name, where), list[Any]() if _is_index(after) else dict[str, Any]()
@@ -137,7 +137,7 @@ def _put(tree: Any, names: list[str], value: object, where: str) -> None:
 
 
 def _key(tree: object, name: str, where: str) -> Any:
-    """Return the key of a table, or the index of a list, that a name of a path stands for."""
+    """Return the key of a table, or the index of a list, for a name in a path."""
     if isinstance(tree, dict):
         return name
     if not isinstance(tree, list):

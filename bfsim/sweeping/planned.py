@@ -1,4 +1,4 @@
-"""A point of a sweep as it is known before it runs."""
+"""A point of a sweep before it runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bfsim.trace import Identity
 
 @dataclass(frozen=True, slots=True)
 class Planned:
-    """A point as it is known before it runs: all that its result depends on, and the `key` of that; or the `error` that it is."""
+    """A point before it runs: everything that its result depends on, and the `key` of that; or an `error`."""
 
     point: Point
     identity: Identity | None = None
@@ -23,12 +23,12 @@ class Planned:
 
     @property
     def work(self) -> int:
-        """How much there is to simulate: pixels."""
+        """The amount to simulate, in pixels."""
         return self.frames * self.identity.width_px * self.identity.height_px if self.identity else 0
 
     @property
     def kind(self) -> tuple[str, ...]:
-        """What decides how long a pixel takes: firmware, LDF and compiler."""
+        """What determines how long a pixel takes: firmware, LDF and compiler."""
         it = self.identity
         return (it.firmware_digest, it.ldf_digest, it.compiler_digest) if it else ()
 
@@ -36,7 +36,7 @@ class Planned:
 def planned_point(
     point: Point, known: tuple[Identity, int] | str, digests: dict[tuple[Path, int], str], recording: Path
 ) -> Planned:
-    """Return a point as it is planned: what is `known` of its run, or why there is none, and the digests of recordings."""
+    """Return a planned point from what is `known` of its run, or why there is none, and the digests of recordings."""
     if isinstance(known, str):
         return Planned(point, error=known)
     identity, frames = known

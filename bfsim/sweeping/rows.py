@@ -16,14 +16,14 @@ from bfsim.sweeping.running import Outcome
 from bfsim.sweeping.sweep import Sweep
 
 NAMES = ("recording", "firmware", "board", "ldf")
-"""Options that are also in the identity of a run, by the same name."""
+"""Options that are also in the identity of a run, under the same name."""
 OF_IDENTITY = (*NAMES, "compiler", "feed", "cclk_hz", "sclk_hz", "width_px", "height_px")
 NOT_SHOWN = {*OF_IDENTITY, "profile", "frames"}
-"""Options that the other columns tell."""
+"""Options that other columns show."""
 
 
 def rows_of(sweep: Sweep) -> list[Row]:
-    """Return a row for each point. Where something was seen in one point, the others that are done have 0 of it."""
+    """Return a row for each point. What was seen in one point is 0 in other finished points without it."""
     rows = [_row(each, sweep.outcomes.get(each.key)) for each in sweep.planned]
     seen = {name: 0 for row in rows for name in row if name.startswith(SEEN)}
     return [
@@ -32,7 +32,7 @@ def rows_of(sweep: Sweep) -> list[Row]:
 
 
 def _row(planned: Planned, outcome: Outcome | None) -> Row:
-    """Return what a point is, and what became of it: its figures, or why there are none."""
+    """Return the options of a point, and its outcome: figures, or why there are none."""
     point, identity = planned.point, planned.identity
     row: dict[str, Cell] = {"point": point.name}
     if identity:
@@ -51,7 +51,7 @@ def _row(planned: Planned, outcome: Outcome | None) -> Row:
 
 
 def _cell(path: str, value: object) -> Cell:
-    """Return an option as a number where it is one."""
+    """Return an option, as a number if it is one."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return value
     text = written(value)

@@ -1,4 +1,4 @@
-"""What becomes of one point, wherever it runs. These functions are called in worker processes, here and on other machines."""
+"""Run one point of a sweep. These functions are called in worker processes, here and on other machines."""
 
 from __future__ import annotations
 
@@ -32,31 +32,31 @@ PACKAGE = Path(__file__).parent.parent
 """The folder of bfsim."""
 
 TRIED_FRAMES = 2
-"""Of a trial."""
+"""Frames of a trial."""
 
 MOST_WAITS = 0.02
-"""Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
+"""The greatest share of time waiting for memory outside L1, whose accesses are written, read and played word by word.
 
 At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames, when runs were slower)
-a frame more took 1.6 times as long to record, and 0.6 times as long to play, as to run: that gains little, if anything.
-What lies between is not measured [assumed]: where it is wrong a sweep takes longer. Its figures are the same.
+recording another frame took 1.6 times as long as running it, and playing it 0.6 times, which gains little, if anything.
+Values between are not measured [assumed]: a wrong guess makes a sweep slower, but does not change its figures.
 """
 
 Figures = Mapping[str, int | float]
 
 _plans: dict[str, Known] = {}
-"""What the points of a plan have in common, by the name of the plan: the last one that this process was asked for."""
+"""What the points of a plan have in common, by the plan's name: only the latest plan in this process."""
 
 _one_run = Lock()
-"""Firmware is imported under names of the process: of a process's threads only one may run it."""
+"""Firmware is imported under names of the process, so only one of its threads may run firmware."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """What became of a point: the figures of its run by name, or in words why there are none.
+    """The outcome of a point: the figures of its run by name, or an error in words.
 
-    `is_final`: it would become the same again. `frames` are those that were done, and `seconds` what that took.
-    `waits`: the part of the time that kernels waited for memory outside of L1.
+    `is_final`: a new run would give the same. `frames` were done, and took `seconds`. `waits`: the share of time that
+    kernels waited for memory outside L1.
     """
 
     identity: Identity | None = None
@@ -71,9 +71,9 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """The place of a recorded run: to be played where it is known what was `seen` in it, and else to be recorded.
+    """The place of a recorded run: it is played if it is known what was `seen` in it, and recorded otherwise.
 
-    `is_tried`: only if it pays, by a trial of the first frames.
+    `is_tried`: record it only if that pays, according to a trial of the first frames.
     """
 
     path: Path
@@ -82,9 +82,9 @@ class Work:
 
 
 def run_point(configuration: Configuration, folder: Path, code: str, work: Work | None = None) -> Outcome:
-    """Simulate a point whose paths are relative to `folder`, by a bfsim whose `code_digest` is `code`. Raises nothing.
+    """Simulate a point with paths relative to `folder`, if this bfsim's `code_digest` is `code`. Raises nothing.
 
-    `work` is that of a run of the same on another board. Where it cannot be recorded or played, the point is run.
+    `work` comes from the same run on another board. If it can be neither recorded nor played, the point is run.
     """
     if code != code_digest():
         return Outcome(
@@ -99,7 +99,7 @@ def run_point(configuration: Configuration, folder: Path, code: str, work: Work 
     except BfsimError as error:
         is_final = has_begun.is_set() and not isinstance(
             error, RecordingError
-        )  # else it is this machine's files
+        )  # else the reason is in this machine's files
         return Outcome(error=str(error), seconds=perf_counter() - began, is_final=is_final)
     except Exception as error:  # noqa: BLE001 - one point must not end the sweep
         return Outcome(error=f"{type(error).__name__}: {error}", is_final=False)
@@ -120,7 +120,7 @@ def run_point(configuration: Configuration, folder: Path, code: str, work: Work 
 def run_point_there(
     configuration: Configuration, folder: Path, code: str, work: Work | None, played: bytes | None
 ) -> tuple[Outcome, bytes]:
-    """Do as `run_point` on a machine that does not see the path of `work`: take its content, or return what was recorded."""
+    """Do the same as `run_point` on a machine without the path of `work`: get its content, or return the recorded one."""
     with TemporaryDirectory() as own:
         if work:
             work = replace(work, path=Path(own) / "run.work")
@@ -135,7 +135,7 @@ Arguments = Mapping[str, Any]
 
 
 def _played(arguments: Arguments, work: Work | None) -> tuple[Run, Figures] | None:
-    """Play a recorded run; None if there is none, or it cannot be played. What was seen is what the recorded run saw."""
+    """Play a recorded run; None if there is none, or if it cannot be played. It saw the same as the recorded run."""
     if work and work.seen is not None:
         with suppress(WorkError):
             run = simulate(**arguments, work=work.path)
@@ -144,7 +144,7 @@ def _played(arguments: Arguments, work: Work | None) -> tuple[Run, Figures] | No
 
 
 def _recorded(arguments: Arguments, work: Work | None) -> tuple[Run, Figures] | None:
-    """Run the firmware and record it; None if that is not wanted, or does not go: the disk may be full."""
+    """Run the firmware and record it; None if that is not wanted, or fails, for example because the disk is full."""
     if work and work.seen is None:
         trial = simulate(**{**arguments, "frames": TRIED_FRAMES}) if work.is_tried else None
         if trial and trial.interrupted:
@@ -172,11 +172,11 @@ OF_MEMORY = frozenset(StallReason) - {
     StallReason.SEMAPHORE,
     StallReason.INTERLOCK,
 }
-"""What kernels wait for outside of L1."""
+"""The memories outside L1 that kernels wait for."""
 
 
 def _waits(run: Run) -> float:
-    """Return the part of the time that kernels waited for memory outside of L1."""
+    """Return the share of time that kernels waited for memory outside L1."""
     costs = [cost for frame in run.frames for core in frame.cores for cost in core.stages]
     waits = sum(cclk for cost in costs for reason, cclk in cost.stall_cclk.items() if reason in OF_MEMORY)
     elapsed = sum(each.elapsed_cclk for each in costs)
@@ -184,9 +184,9 @@ def _waits(run: Run) -> float:
 
 
 def plan_point(configuration: Configuration, folder: Path, plan: str) -> tuple[Identity, int] | str:
-    """Return what a point will run, without the digest of its recording, and how many frames; or in words why it cannot.
+    """Return what a point will run, without its recording's digest, and the number of frames; or why it cannot run.
 
-    What points of the same `plan` have in common is read once in a process: files must not change until all are planned.
+    What points of the same `plan` have in common is read once per process: files must not change until all are planned.
     """
     try:
         with _one_run:
@@ -201,7 +201,7 @@ def plan_point(configuration: Configuration, folder: Path, plan: str) -> tuple[I
 
 
 def digest_recording(recording: Path | None, frames: int) -> str:
-    """Return the digest of a recording, as in the identity of a run; empty where it cannot be read."""
+    """Return the digest of a recording, as in the identity of a run; "" if it cannot be read."""
     try:
         return recording_digest(recording, frames)
     except (BfsimError, OSError):
@@ -210,7 +210,7 @@ def digest_recording(recording: Path | None, frames: int) -> str:
 
 @cache
 def code_digest(package: Path = PACKAGE) -> str:
-    """Return the digest of bfsim's own code, without that of its commands: cycles and figures depend on it."""
+    """Return the digest of bfsim's own code without its commands: cycles and figures depend on it."""
     digest = hashlib.sha256()
     for path in sorted(package.rglob("*")):
         if path.suffix in {".py", ".lark"} and not path.is_relative_to(package / "cli"):

@@ -35,16 +35,16 @@ CHECK = "sha256"
 
 LOCK = "lock"
 CLAIM_DIGITS = 15
-"""Hex digits of a key that are the place of its claim in the lock file: places have 63 bits."""
+"""Hex digits of a key that give the position of its claim in the lock file: positions have 63 bits."""
 
 
 def key_of(identity: Identity, code: str) -> str:
-    """Return the name of a result: a digest of the identity of its run and of the `code` of bfsim."""
+    """Return the name of a result: a digest of the identity of its run and of bfsim's `code`."""
     return hashlib.sha256(f"{SCHEMA} {identity_digest(identity)} {code}".encode()).hexdigest()
 
 
 class Store:
-    """The folder of results. Its folders are made as they are needed."""
+    """The folder of results. Folders in it are made when they are needed."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -54,7 +54,7 @@ class Store:
         self._lock = -1
 
     def open(self) -> None:
-        """Make the folder. Raises ConfigError where that cannot be."""
+        """Make the folder. Raises ConfigError if that fails."""
         try:
             with writing(self.folder):
                 self.folder.mkdir(parents=True, exist_ok=True)
@@ -63,7 +63,7 @@ class Store:
             raise ConfigError(f"{error}; --store DIR keeps results elsewhere") from error
 
     def claim(self, key: str) -> bool:
-        """Take a point for this process alone; False if another process has it. A process that dies has none any more."""
+        """Claim a point for this process; False if another process has it. A process that dies loses its claims."""
         if sys.platform != "win32":
             try:
                 fcntl.lockf(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, int(key[:CLAIM_DIGITS], 16))
@@ -72,12 +72,12 @@ class Store:
         return True
 
     def release(self, key: str) -> None:
-        """Give a point back."""
+        """Give up a claim."""
         if sys.platform != "win32":
             fcntl.lockf(self._lock, fcntl.LOCK_UN, 1, int(key[:CLAIM_DIGITS], 16))
 
     def outcome(self, key: str) -> Outcome | None:
-        """Return what became of a point; None if nothing is known, or if the file is damaged."""
+        """Return the outcome of a point; None if there is none, or if the file is damaged."""
         plain = _read(self._file(self._points, key))
         if plain.get("schema") != SCHEMA or plain.get("key") != key:
             return None
@@ -86,11 +86,11 @@ class Store:
         return None
 
     def keep(self, key: str, outcome: Outcome) -> None:
-        """Keep what became of a point, also if the machine loses its power afterwards."""
+        """Keep the outcome of a point, even through a loss of power."""
         self._write(self._points, key, {"schema": SCHEMA, "key": key, "outcome": jsonable(outcome)})
 
     def recording_digest(self, recording: Path, frames: int) -> str:
-        """Return the digest of a recording that was read before and is the same file since; otherwise nothing."""
+        """Return the digest of a recording that was read before and has not changed since; else ""."""
         with suppress(OSError):
             return str(_read(self._file(self._recordings, _file_key(recording, frames))).get("digest", ""))
         return ""
@@ -118,7 +118,7 @@ class Store:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """Return a file of this store; nothing if it is not there, is none, or is not what was written."""
+    """Return the content of a file of this store; nothing if it is missing, not one, or not as written."""
     try:
         plain = json.loads(path.read_text(encoding="utf-8"))
         is_whole = isinstance(plain, dict) and plain.pop(CHECK, None) == _digest(plain)

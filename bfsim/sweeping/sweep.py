@@ -1,4 +1,4 @@
-"""A sweep: what is known of its points before one runs, what ran before, and how the rest runs."""
+"""A sweep: planning its points, finding results of earlier runs, and running the rest."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from bfsim.sweeping.works import Works
 from bfsim.trace import Identity
 
 POLL_S = 1.0
-"""So often is asked whether another sweep has done a point that it has taken."""
+"""How often to ask whether another sweep has finished a point that it claimed."""
 
 NOT_KEPT = (
     "not kept: the recording, or a file of the firmware, the board or the compiler, was changed while it ran, or the firmware "
@@ -41,28 +41,28 @@ Task = TypeVar("Task")
 
 
 class Workers(Protocol):
-    """Who runs points. `deaths` are what a future raises whose process died; so many `tries` has a point."""
+    """What runs points. `deaths` are errors of a future whose process died; each point has this many `tries`."""
 
     deaths: tuple[type[Exception], ...]
     tries: int
 
     def room(self) -> int:
-        """Return how many calls may be on their way at a time."""
+        """Return how many calls may be under way at a time."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
-        """Call a function elsewhere."""
+        """Call a function in a worker."""
 
     def run_point(
         self, configuration: Configuration, folder: Path, code: str, work: Work | None
     ) -> Future[Outcome]:
-        """Call `running.run_point` elsewhere. What it records is at the path of `work`, here, when it is done."""
+        """Call `running.run_point` in a worker. What it records is at the path of `work` on this machine afterwards."""
 
 
 class Sweep:
-    """The points of a file, what is `planned` of them, and the `outcomes` of those that are done, by their keys."""
+    """The points of a file, what is `planned` of them, and the `outcomes` of finished ones, by their keys."""
 
     def __init__(self, file: Path, store: Store) -> None:
-        """Read the file, and what it says alone. Raises ConfigError."""
+        """Read the file, and check it by itself. Raises ConfigError."""
         self.file = file
         self.store = store
         self.points = read_sweep(file, store.scripts)
@@ -73,19 +73,19 @@ class Sweep:
 
     @property
     def todo(self) -> list[Planned]:
-        """Points that can run and are not done; of several that are the same, one."""
+        """Points that can run and are not finished, without duplicates."""
         points = {each.key: each for each in self.planned if each.key and each.key not in self.outcomes}
         return [*points.values()]
 
     def error_of(self, planned: Planned) -> str:
-        """Return why a point cannot run, or failed; nothing if it did neither."""
+        """Return why a point cannot run, or failed; "" if neither."""
         outcome = self.outcomes.get(planned.key)
         return planned.error or (outcome.error if outcome else "")
 
     def plan(self, workers: Workers, tell: Callable[[int, int], None]) -> None:
-        """Read and check all that the points need, and find what was done before. Nothing is simulated.
+        """Read and check everything that the points need, and find earlier results. Nothing is simulated.
 
-        `tell` gets how many are checked, and of how many.
+        `tell` gets the number of points checked, and that of all.
         """
         found: dict[int, tuple[Identity, int] | str] = {}
         name = uuid.uuid4().hex
@@ -110,9 +110,9 @@ class Sweep:
         self.outcomes = {key: known for key in keys if (known := self.store.outcome(key))}
 
     def run(self, workers: Workers, tell: Callable[[Planned, Outcome], None]) -> None:
-        """Run the points that are not done; each is kept, and then told, as soon as it is.
+        """Run the unfinished points; each is stored, and then reported, as soon as it is finished.
 
-        What another sweep is at in the same store is waited for, and told as if it had been done here.
+        Points that another sweep is running in the same store are awaited, and reported as if they had run here.
         """
         waiting, tries = deque(self.todo), Counter[str]()
         running: dict[Future[Any], Planned] = {}
@@ -137,7 +137,7 @@ class Sweep:
                         self._done(each, outcome, works, tell)
 
     def _claimed(self, waiting: deque[Planned], room: int) -> Iterator[Planned]:
-        """Yield up to so many points that are this sweep's alone now; those that another one has go to the end."""
+        """Yield at most `room` points that this sweep can claim now; those of another sweep go to the end."""
         for _ in range(len(waiting)):
             if room <= 0:
                 return
@@ -151,7 +151,7 @@ class Sweep:
     def _done(
         self, planned: Planned, outcome: Outcome, works: Works, tell: Callable[[Planned, Outcome], None]
     ) -> None:
-        with uninterrupted():  # what is kept is in the table, too
+        with uninterrupted():  # a stored result must be in the table, too
             if outcome.is_final:
                 self.store.keep(planned.key, outcome)
             works.done(planned.key, outcome)
@@ -160,7 +160,10 @@ class Sweep:
             tell(planned, outcome)
 
     def try_out(self, planned: Planned, frames: int, workers: Workers) -> Outcome:
-        """Run the first frames of a point, twice, so that its kernels are compiled; nothing is kept, nor known if its process dies."""
+        """Run the first frames of a point, twice, so that its kernels are compiled. Nothing is kept.
+
+        If its process dies, nothing is learnt.
+        """
         trial = replace(
             planned.point, configuration=planned.point.configuration.model_copy(update={"frames": frames})
         )
@@ -178,7 +181,7 @@ class Sweep:
         return Path(arguments_of(*self._call(point)).get("recording", RECORDING))
 
     def _digests(self, recordings: set[tuple[Path, int]], workers: Workers) -> dict[tuple[Path, int], str]:
-        """Return the digests of the first frames of recordings; those that were read before are in the store."""
+        """Return the digests of the first frames of recordings; those known from before are in the store."""
         digests = {each: self.store.recording_digest(*each) for each in sorted(recordings)}
         unread = [each for each, digest in digests.items() if not digest]
         for each, future in _results(((each, digest_recording, each) for each in unread), workers):
@@ -191,7 +194,7 @@ class Sweep:
 def _results(
     calls: Iterable[tuple[Task, Callable[..., Any], tuple[Any, ...]]], workers: Workers
 ) -> Iterator[tuple[Task, Future[Any]]]:
-    """Make the calls, and yield their futures as they are done."""
+    """Make the calls, and yield their futures as they finish."""
     running: dict[Future[Any], Task] = {}
     calls = iter(calls)
     while True:
@@ -204,7 +207,7 @@ def _results(
 
 
 def _outcome(future: Future[Any], planned: Planned, workers: Workers, tries: Counter[str]) -> Outcome | None:
-    """Return what became of a point; None if its process died and it is to be tried once more."""
+    """Return the outcome of a point; None if its process died and it is to be tried once more."""
     if future.cancelled():
         raise ConfigError(GONE)
     if isinstance(future.exception(), workers.deaths):

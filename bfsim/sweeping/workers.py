@@ -1,4 +1,4 @@
-"""Who runs the points: processes of this machine."""
+"""Processes of this machine that run points."""
 
 from __future__ import annotations
 
@@ -24,34 +24,34 @@ from bfsim.sweeping.running import Outcome, Work, run_point
 
 
 class Pool(Executor):
-    """Worker processes, each with a pool of its own: one that dies takes nothing with it but the point that it ran.
+    """Worker processes, each in a pool of its own: one that dies only takes the point with it that it ran.
 
-    They end with this process, however that ends.
+    They end with this process, however it ends.
     """
 
     deaths: tuple[type[Exception], ...] = (BrokenProcessPool,)
-    """What a future raises whose process died."""
+    """Errors of a future whose process died."""
     tries = 2
-    """A process may have been killed for reasons of its own, such as want of memory: so often is a point tried."""
+    """How often a point is tried: its process may have been killed for reasons of its own, such as lack of memory."""
 
     def __init__(self, processes: int) -> None:
         self._processes = processes
         self._context = get_context("spawn")
         with _deaf():
-            ensure_running()  # a helper of Python's: it lets SIGINT through again, and to who is started behind it in the same block
+            ensure_running()  # unblocks SIGINT, also for processes started later in the same block
         self._leash, self._hand = self._context.Pipe(duplex=False)
         self._all: list[Executor] = []
         self._free: list[Executor] = []
-        can_keep()  # warns of a cache that is not used: here, once for all processes
+        can_keep()  # warns once, for all processes, if the cache is not used
 
     def room(self) -> int:
-        """Return how many calls may be on their way at a time."""
+        """Return how many calls may be under way at a time."""
         return self._processes
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Call a function in a process that has nothing to do, or in a new one."""
+        """Call a function in an idle process, or in a new one."""
         while True:
-            with _deaf(), suppress(BrokenProcessPool):  # it died of boredom
+            with _deaf(), suppress(BrokenProcessPool):  # it died while idle
                 process = self._free.pop() if self._free else self._new()
                 future = process.submit(fn, *args, **kwargs)
                 future.add_done_callback(partial(self._done, process))
@@ -64,7 +64,7 @@ class Pool(Executor):
         return self.submit(run_point, configuration, folder, code, work)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: FBT002 - as Executor has it
-        """End all processes, whatever they are at."""
+        """End all processes, even busy ones."""
         self._hand.close()
         self._leash.close()
         for each in self._all:
@@ -82,7 +82,7 @@ class Pool(Executor):
 
 @contextmanager
 def _deaf() -> Iterator[None]:
-    """Let processes that are started in the `with` block hear no Ctrl-C, nor that the terminal is closed: their parent hears it, and ends them."""
+    """Shield processes started in the `with` block from Ctrl-C and SIGHUP: their parent gets these, and ends them."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
         yield
@@ -91,9 +91,9 @@ def _deaf() -> Iterator[None]:
 
 
 def _begin(leash: Connection) -> None:
-    """Make this process a worker: what it prints goes nowhere, its parent warns, and it ends when that one lets go.
+    """Make this process a worker: its output is discarded, its parent warns, and it ends when the parent lets go of it.
 
-    Python would print that the parent is gone, if it noticed before.
+    If Python noticed first that the parent is gone, it would print that.
     """
     warnings.simplefilter("ignore", BfsimWarning)
     nowhere = os.open(os.devnull, os.O_WRONLY)

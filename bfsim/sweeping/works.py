@@ -1,4 +1,4 @@
-"""Recorded work in a sweep: which point records its run, so that others that differ in the board alone are played and not run."""
+"""Recorded work in a sweep: one point records its run, so that others which differ only in the board can be played."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ if TYPE_CHECKING:
     from bfsim.sweeping.store import Store
 
 WORKS = "works"
-"""Folder of the store: in it each sweep that runs has one of its own."""
+"""The folder in the store where each sweep has a folder of its own while it runs."""
 
 LEAST_LEFT = 2
-"""The least points that are left for the first of them to be recorded.
+"""The least number of remaining points for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 23 ms to run, 35 ms to record and 8 ms to play (20 and 200
-frames, whole commands, the least of three): n points that are left gain from n = (35 - 8) / (23 - 8), 1.8, on.
+With all data of kernels in L1, another frame takes 23 ms to run, 35 ms to record and 8 ms to play (20 and 200 frames,
+whole commands, the least of three): n remaining points gain from n = (35 - 8) / (23 - 8), 1.8, on.
 """
 
 MANY_LEFT = 6
-"""So many points are worth a trial of the first one: it tells whether that had better be recorded at once."""
+"""With at least this many points, a trial of the first one tells whether to record it at once."""
 
 LEAST_FRAMES = 10 * TRIED_FRAMES
-"""Of a point, for a trial of it to take little beside it."""
+"""The least frames of a point for which a trial is short in comparison."""
 
 
 @dataclass(slots=True)
 class _Group:
-    """Points with the same work: those that have not begun, and those that are not done."""
+    """Points with the same work: those that have not begun (`waiting`), and those that are not finished (`left`)."""
 
     path: Path
     frames: int
@@ -50,7 +50,7 @@ class _Group:
     is_recorded: bool = False
 
     def learn(self, key: str, outcome: Outcome) -> None:
-        """Note what became of a point."""
+        """Note the outcome of a point."""
         if self.pays is None and outcome.figures:
             self.pays = outcome.waits <= MOST_WAITS
             self.seen = {name: value for name, value in outcome.figures.items() if name.startswith(SEEN)}
@@ -59,7 +59,7 @@ class _Group:
 
 
 class Works(AbstractContextManager["Works"]):
-    """The recorded work of one sweep. It is gone at the end, as is that of sweeps that were killed."""
+    """The recorded work of one sweep. It is deleted at the end, as is the work of sweeps that were killed."""
 
     def __init__(self, store: Store, points: Iterable[Planned]) -> None:
         self._store = store
@@ -89,7 +89,7 @@ class Works(AbstractContextManager["Works"]):
         self._store.release(self._own)
 
     def order(self, key: str) -> Work | None:
-        """Return what a point that begins now is to record or to play; None if it shall just run."""
+        """Return what a point that begins now is to record or to play; None if it just runs."""
         group = self._groups.get(key)
         if group is None:
             return None
@@ -107,14 +107,14 @@ class Works(AbstractContextManager["Works"]):
         return None
 
     def is_expected(self, key: str) -> bool:
-        """Whether what a point can be played from may be there soon: others had better run before it."""
+        """Whether a recording for a point may exist soon: others had better run before it."""
         group = self._groups.get(key)
         if group is None or group.is_recorded or group.left == group.waiting:
             return False
         return group.pays is None or group.recorder in group.left
 
     def done(self, key: str, outcome: Outcome) -> None:
-        """Learn from a point, and forget what no point needs any more."""
+        """Learn from a point, and delete work that no point needs any more."""
         if group := self._groups.get(key):
             group.learn(key, outcome)
             group.waiting.discard(key)
@@ -124,7 +124,7 @@ class Works(AbstractContextManager["Works"]):
 
 
 def work_of(planned: Planned) -> str:
-    """Return a digest of all that the work of a run depends on: the identity but for the board, and bfsim's code."""
+    """Return a digest of all that the work of a run depends on: its identity without the board, and bfsim's code."""
     identity = planned.identity
     assert identity
     parts = (
@@ -135,7 +135,7 @@ def work_of(planned: Planned) -> str:
         identity.compiler_digest,
         identity.code_digest,
         identity.script_digest,
-        identity.ldf_digest,  # what lies outside of L1 is another work
+        identity.ldf_digest,  # other buffers outside L1 mean other work
         identity.feed,
         identity.llvm_version,
         code_digest(),

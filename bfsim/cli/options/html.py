@@ -25,7 +25,7 @@ class _TargetType(click.ParamType["Target"]):
     def convert(
         self, value: str | Target, param: click.Parameter | None, ctx: click.Context | None
     ) -> Target:
-        """Return the target that is meant."""
+        """Return the target for a frame rate or frame time."""
         from bfsim.report.budget.target import target_of
 
         if not isinstance(value, str):
@@ -57,7 +57,7 @@ takes_html = takes(_PARAMETERS)
 
 
 def require_told(target: Target | None, html: Path | None, *, is_json_only: bool) -> None:
-    """Raise ConfigError for a target that nothing would be said of."""
+    """Raise ConfigError for a target that no output would show."""
     if target and is_json_only and not html:
         raise ConfigError(
             "--target must come with the tables or --html FILE, and --json alone prints neither"
@@ -74,7 +74,7 @@ def writing_page(
 ) -> Iterator[None]:
     """Have `watchers` write a page to `path`, if there is one, of the run that `what` describes.
 
-    Raises ConfigError for a place that cannot be written, one of the `others` included, and where a package is missing.
+    Raises ConfigError if the place cannot be written or is one of the `others`, or if a package is missing.
     """
     if path is None:
         yield

@@ -1,4 +1,4 @@
-"""The option `--json` of all commands that have it: what it takes, and what is printed or written."""
+"""The option `--json`, and printing or writing the JSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bfsim.errors import shown
 STDOUT = Path("-")
 """The file that stands for standard output: it gets the JSON in place of the report."""
 SUFFIX = ".json"
-"""How other files must end: what stands behind `--json` by a slip, as a recording, is never written over."""
+"""How other files must end, so that a recording after `--json` by mistake is never overwritten."""
 
 
 class _JsonFile(click.ParamType[Path]):
@@ -34,7 +34,7 @@ class _JsonFile(click.ParamType[Path]):
 
 
 class _JsonOption(click.Option):
-    """Says so where it has taken the file that the command lacks."""
+    """Gives a hint if it has taken the file that the command lacks."""
 
     def handle_parse_result(
         self, ctx: click.Context, opts: Mapping[str, Any], args: list[str]
@@ -59,7 +59,7 @@ class _JsonOption(click.Option):
 def json_option(what: str) -> Callable[[Any], Any]:
     """Return the option `--json [FILE.json]`, which is `json_path` to the command; `what` stands in its help.
 
-    It is `STDOUT` without a file, and None where the option is not given.
+    It is `STDOUT` without a file, and None if the option is not given.
     """
     return click.option(
         "--json",
@@ -74,7 +74,7 @@ def json_option(what: str) -> Callable[[Any], Any]:
 
 
 def require_json_place(path: Path | None, others: Iterable[Path | None] = ()) -> None:
-    """Raise ConfigError unless the JSON can be written at `path`, if there is one, and it is none of the `others`."""
+    """Raise ConfigError unless JSON can be written to `path`, if given, and `path` is none of the `others`."""
     from bfsim.files.outputs import JSON, require_own
     from bfsim.files.save import require_apart, require_place
 
@@ -92,11 +92,12 @@ def tell(
 ) -> None:
     """Print the `chunks` of the JSON, if `path` is `STDOUT`; or write them to `path`, if there is one, and `show` the report.
 
-    Other files are written by `write`. What cannot be written is an error behind the report, which took longer to find.
+    `write` writes other files. If something cannot be written, the error comes after the report, which took longer to
+    make.
     """
     from bfsim.files.save import write_text
 
-    with ExitStack() as last:  # who reads may go away
+    with ExitStack() as last:  # the reader may go away
         last.callback(show if path != STDOUT else lambda: _print(chunks()))
         write()
         if path and path != STDOUT:

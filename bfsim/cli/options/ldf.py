@@ -1,4 +1,4 @@
-"""The options of commands that take an LDF: what its preprocessor is told."""
+"""Options of commands that take an LDF, for its preprocessor."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bfsim.errors import shown
 
 
 def _macros(_ctx: click.Context, _param: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
-    """Return the macros by their names; one without a value is 1, as compilers have it."""
+    """Return the macros by name; one without a value is 1, as with compilers."""
     macros = {}
     for each in given:
         name, has_value, value = each.partition("=")
@@ -39,4 +39,4 @@ PREPROCESSOR_OPTIONS = (
         help="Also search this folder for files that the LDF includes.",
     ),
 )
-"""What every command takes that takes an LDF."""
+"""Options of every command that takes an LDF."""

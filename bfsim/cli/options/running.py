@@ -1,4 +1,4 @@
-"""What the commands that run firmware share: the options that say what to run, and the run behind its progress bar."""
+"""Common parts of the commands that run firmware: the options for what to run, and the run with its progress bar."""
 
 from __future__ import annotations
 
@@ -123,9 +123,9 @@ def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
 
 
 def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any) -> Result:
-    """Run the simulation and return the run with what was seen in each frame, which is kept until the `stack` ends.
+    """Return a run with what was seen in each frame, which is kept until the `stack` closes.
 
-    Ends the command if something interrupts it.
+    Ends the command if the run is interrupted.
     """
     from bfsim.loading.firmware import load_firmware
     from bfsim.report.results.result import result_of
@@ -141,7 +141,7 @@ def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any
 
 
 def warn(done: RunRecord) -> None:
-    """Tell the warnings of a run beside an output that has no place for them."""
+    """Print the warnings of a run on standard error, for outputs without a place for them."""
     from bfsim.report.run.warnings import warnings_of
 
     for each in warnings_of(done):
@@ -149,7 +149,7 @@ def warn(done: RunRecord) -> None:
 
 
 def exit_if_interrupted(done: RunRecord) -> None:
-    """End the command with the exit code of what interrupted the run, if something did."""
+    """If the run was interrupted, end the command with the exit code for the cause."""
     if done.interrupted:
         click.echo(f"bfsim: interrupted after {len(done.frames)} frames{done.interrupted_at}", err=True)
         raise SystemExit(interrupted_code())

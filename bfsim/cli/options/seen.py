@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 ALL_STAGES = ""
-"""What `--heat` stands for without a stage."""
+"""The value of `--heat` without a stage."""
 
 
 class _Layers(click.ParamType[tuple[str, ...]]):
@@ -91,9 +91,10 @@ def watching(
     layers: tuple[str, ...] | None,
     heat: tuple[str, ...] | None,
 ) -> Iterator[None]:
-    """Have `watchers` write the files; these are there on a clean exit, or not at all.
+    """Have `watchers` write the files, which appear on a clean exit, or not at all.
 
-    Raises a BfsimError for a place that cannot be written, for two files in one place, and for layers of which nothing is drawn.
+    Raises a BfsimError if a place cannot be written, if two files have one place, or if layers are given but nothing is
+    drawn.
     """
     if layers and not (show or overlay):
         raise ConfigError("--layers must come with --overlay DIR|FILE or --show, which draw them")
@@ -127,7 +128,7 @@ def watching(
 
 
 def _heat_up(watchers: Watchers, stages: Sequence[str], tell: Sequence[Callable[[SeenFrame], None]]) -> None:
-    """Have `watchers` tell of each frame with its heat."""
+    """Have `watchers` pass on each frame with its heat."""
     from bfsim.report.heat.frames import HeatedFrames
 
     frames = HeatedFrames(stages, tell)
@@ -139,7 +140,7 @@ def _heat_up(watchers: Watchers, stages: Sequence[str], tell: Sequence[Callable[
 def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
     """Return the stages that `--heat` asks for, all with ALL_STAGES; None without the option.
 
-    Raises ConfigError where the firmware has no such stage.
+    Raises ConfigError if the firmware has no such stage.
     """
     if heat is None:
         return None
@@ -168,7 +169,7 @@ def _seen_writer(path: Path) -> SeenWriter:
 
 
 def _add_series(writer: SeenWriter, run: RunRecord) -> None:
-    """Add what each frame cost and warned of to its pictures."""
+    """Add the cost and the warnings of each frame to its pictures."""
     from bfsim.report.viewers.frame_series import notes_of, samples_of
 
     for sample in samples_of(run):
@@ -191,7 +192,7 @@ def _lasting_folder() -> Iterator[Path]:
 
 
 def _show(path: Path) -> None:
-    """Say where a picture is and, if there is a display, open it with the program that the system has for it."""
+    """Print where a picture is and, if there is a display, open it with the system's program for it."""
     click.echo(f"bfsim: what was seen is drawn in {path}", err=True)
     if sys.platform in {"darwin", "win32"} or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
         click.launch(str(path))

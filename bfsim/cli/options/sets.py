@@ -1,4 +1,4 @@
-"""A set of options, given to a command at once."""
+"""Sets of options for commands."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def takes(parameters: Iterable[Callable[[Any], Any]]) -> Callable[[Command], Command]:
-    """Return the decorator that gives a command these options and arguments of click's, in their order."""
+    """Return the decorator that adds these click options and arguments to a command, in order."""
 
     def give(command: Command) -> Command:
         for parameter in reversed([*parameters]):

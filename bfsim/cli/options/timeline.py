@@ -42,9 +42,9 @@ takes_timelines = takes(_PARAMETERS)
 def timelines(
     watchers: Watchers, trace: Path | None, flame: Path | None, others: Sequence[Path | None]
 ) -> Iterator[None]:
-    """Have `watchers` write the files; each is there on a clean exit, or not at all.
+    """Have `watchers` write the files; each appears on a clean exit, or not at all.
 
-    Raises ConfigError for a place that cannot be written, one of the `others` included.
+    Raises ConfigError if a place cannot be written or is one of the `others`.
     """
     from bfsim.files.outputs import FLAME, TRACE, require_own
     from bfsim.files.save import require_apart, require_place

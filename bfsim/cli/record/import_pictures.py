@@ -18,7 +18,7 @@ SOURCE_FORMATS = (
     "images", "uyvy", "i420", "yuyv", "nv12", "grey", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8",
     "y4m", "video", "rosbag",
 )  # fmt: skip
-"""Those of bfsim.recording, which takes its time to import."""
+"""Choices from bfsim.recording, which takes long to import."""
 
 
 @click.command(name="import", short_help="Make a recording from pictures.")

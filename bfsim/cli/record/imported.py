@@ -1,4 +1,4 @@
-"""What `bfsim record import` says of the pictures that it took: how they were fitted, and which were skipped."""
+"""The report of `bfsim record import`: how the pictures were fitted, and which were skipped."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from bfsim.recording.importing.sources import Skipped
 
 MOST_LISTED = 10
-"""Sizes and names in a list; the others are counted."""
+"""The most sizes and names in a list; the others are counted."""
 
 LEAST_TOLD_CUT = 0.05
-"""Part of a picture that may be cut off without a word."""
+"""The part of a picture that may be cut off without mention."""
 
 
 def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
-    """Return from which sizes pictures were scaled or cut, how much of them was cut off, and what would keep all."""
+    """Return the sizes from which pictures were scaled or cut, how much was cut off, and which size keeps everything."""
     sizes = [f"{width}x{height}" for width, height in summary.source_sizes]
     text = f"{'Scaled by a triangle filter' if is_scaled else 'Cut'} from {listed(sizes, MOST_LISTED)}"
     cuts = [_part_cut_off(size, (summary.width, summary.height), is_scaled) for size in summary.source_sizes]
@@ -31,7 +31,7 @@ def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
     width, height = summary.source_sizes[0]
     kept = summary.width, max(2 * round(summary.width * height / width / 2), 2)
     if is_scaled and kept == (summary.width, summary.height):
-        return text  # a few pixels, whose shape no other even height is nearer to
+        return text  # a few pixels; no other even height is nearer to the shape
     return f"{text}, `--resize {kept[0]}x{kept[1]}` keeps all"
 
 

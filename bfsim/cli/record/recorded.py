@@ -1,4 +1,4 @@
-"""What `bfsim record info` and `calibrate` say of a recording, in words."""
+"""The descriptions of a recording by `bfsim record info` and `calibrate`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def info_table(info: RecordingInfo) -> Table:
-    """Return what is in a recording as a table."""
+    """Return the content of a recording as a table."""
     table = Table(title=str(info.path), show_header=False, title_justify="left")
     table.add_row("Images", f"{info.width}x{info.height} UYVY, left and right")
     table.add_row("Stereo frames", f"{info.frame_count} in {info.duration_ns / 1e9:.3f} s")
@@ -65,7 +65,7 @@ def _calibration_text(report: CalibrationReport | None) -> str:
 
 
 def views_text(report: CalibrationReport) -> str:
-    """Return how many views a calibration used, and what it did without."""
+    """Return how many views a calibration used, and what it left out."""
     what = "chessboard pairs" if len(report.cameras) > 1 else "chessboard pictures"
     return f"{len(report.used)} {what}, {len(report.outliers)} left out, {len(report.skipped)} skipped"
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-# Electrons of a saturated pixel, and the read noise, for the pixels (3.6 to 6 um) of VGA sensors of 2005 to 2007.
-# [assumed]
+# Electrons of a saturated pixel, and the read noise, for the pixels (3.6 to 6 um) of VGA sensors of
+# 2005 to 2007. [assumed]
 FULL_WELL_ELECTRONS = 8000.0
 READ_NOISE_ELECTRONS = 12.0
 
