@@ -1,4 +1,4 @@
-"""The pytest plugin: a fixture `bfsim` that runs firmware, `@pytest.mark.frame_budget` that limits what a frame costs, and `bfsim_check`.
+"""The pytest plugin: the fixtures `bfsim`, which runs firmware, and `bfsim_check`; the marker `frame_budget`.
 
 Nothing is imported until a test asks for the fixture.
 """
@@ -24,11 +24,11 @@ MARK = "frame_budget"
 
 _RUNS = pytest.StashKey[dict[str, "Result"]]()
 _IS_HELD = pytest.StashKey[bool]()
-"""Whether a run of the test was held against its marker."""
+"""Whether a run of the test was compared with its marker."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Tell of the marker."""
+    """Register the marker."""
     config.addinivalue_line(
         "markers",
         f"{MARK}(*require, min_hz=None, stages={{}}): limits for the runs of the fixture `bfsim`: sentences of `bfsim check` "
@@ -39,7 +39,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
-    """Fail a test with a marker of its own that ran no firmware: nothing was held against its limits."""
+    """Fail a test with its own marker that ran no firmware: nothing was compared with its limits."""
     result = yield
     if any(each.name == MARK for each in pyfuncitem.own_markers) and _IS_HELD not in pyfuncitem.stash:
         pytest.fail(
@@ -51,7 +51,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 
 @pytest.fixture
 def bfsim(request: pytest.FixtureRequest) -> Callable[..., Run]:
-    """Return `bfsim.run.simulate`, which runs the same configuration once a session, and fails the test if a run breaks its `frame_budget`."""
+    """Return `bfsim.run.simulate`, but it runs each configuration once a session, and checks the test's `frame_budget`."""
     from bfsim.errors import BfsimError
     from bfsim.result import Run
 
@@ -77,9 +77,10 @@ def bfsim(request: pytest.FixtureRequest) -> Callable[..., Run]:
 
 @pytest.fixture
 def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]:
-    """Return a function that does what `bfsim check` does: `bfsim_check("budget.toml", case=None)` fails the test if a run breaks its limits.
+    """Return a function that does what `bfsim check` does and fails the test if a run breaks its limits.
 
-    The file lies beside the test. Returns the runs by their names: all of the file, or the one of that name.
+    Call it as `bfsim_check("budget.toml", case=None)`; the file lies beside the test. It returns the runs by name: all
+    of the file, or the one named.
     """
     from bfsim.checking import arguments_of, require_comparable, require_held
     from bfsim.report.check.baseline_file import read_baseline
@@ -140,7 +141,7 @@ def _result(*recording: Any, on_seen: Callable[[SeenFrame], None] | None = None,
 
 @contextmanager
 def _mistakes() -> Iterator[None]:
-    """Fail the test with what is wrong in its marker or baseline, without the code that found it."""
+    """Fail the test with the mistake in its marker or baseline, without the code that found it."""
     from bfsim.errors import BfsimError
 
     try:
@@ -150,17 +151,17 @@ def _mistakes() -> Iterator[None]:
 
 
 def _cause(error: BaseException) -> BaseException | None:
-    """Return what the firmware itself raised, if it did, without the code that called it."""
+    """Return the error that the firmware itself raised, if any, without the calling code."""
     from bfsim.errors import BfsimError
 
     cause = error.__cause__
-    while isinstance(cause, BfsimError):  # the same: simpy makes it once more
+    while isinstance(cause, BfsimError):  # simpy raises the same one again
         cause = cause.__cause__
     return cause and cause.with_traceback(_firmware_alone(cause.__traceback__))
 
 
 def _firmware_alone(calls: TracebackType | None) -> TracebackType | None:
-    """Return a traceback without what is not the firmware's."""
+    """Return a traceback with the firmware's own part only."""
     from bfsim.machine.firmware_lines import INSTALLED, is_firmware
 
     if calls is None:
@@ -171,7 +172,7 @@ def _firmware_alone(calls: TracebackType | None) -> TracebackType | None:
 
 
 def _sentences(mark: pytest.Mark) -> list[str]:
-    """Return what a marker says as sentences of `bfsim check`; raise ConfigError for what it must not say."""
+    """Return what a marker says as sentences of `bfsim check`; raise ConfigError for anything not allowed."""
     from bfsim.errors import ConfigError, cut, shown
 
     for each in mark.args:
@@ -196,17 +197,17 @@ def _sentences(mark: pytest.Mark) -> list[str]:
 
 
 def _number(value: object, what: str) -> str:
-    """Return a number as a sentence has it; raise ConfigError for anything else."""
+    """Return a number in the form for a sentence; raise ConfigError for anything else."""
     from bfsim.errors import ConfigError, shown
 
-    with suppress(OverflowError):  # of an integer beyond all floats
+    with suppress(OverflowError):  # an integer beyond all floats
         if isinstance(value, int | float) and not isinstance(value, bool):
             return f"{value:f}"
     raise ConfigError(f"@pytest.mark.{MARK}: {what} must be a number, not {shown(value)}")
 
 
 def _broken(result: Result, required: list[str]) -> str:
-    """Return what a run breaks, and the kernels and lines that take most; nothing if it breaks nothing."""
+    """Return the limits that a run breaks, and the dearest kernels and lines; "" if it breaks none."""
     from bfsim.report.check.baseline import Case
     from bfsim.report.check.judge import judge
 
@@ -215,7 +216,7 @@ def _broken(result: Result, required: list[str]) -> str:
 
 
 def _told(outcome: Outcome) -> str:
-    """Return what is broken, and why; nothing if nothing is."""
+    """Return the broken limits, and why; "" if there are none."""
     from bfsim.report.check.cause import explanation
     from bfsim.report.check.sentences import broken_lines
     from bfsim.result import Run

@@ -1,4 +1,4 @@
-"""`Run`: what `simulate` returns. The records of a run, and what notebooks and scripts make of them."""
+"""`Run`, which `simulate` returns: the records of a run, for notebooks and scripts."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ HTML = '<pre style="white-space: pre; line-height: 1.2; font-family: monospace">
 
 
 def profile_of_run(run: RunRecord, target: Target | None) -> RenderableType:
-    """Return the profile of a run, behind how it keeps a target if there is one."""
-    from bfsim.report.profile.tables import profile_report  # a run on the screen needs neither it nor tables
+    """Return the profile of a run; with a target, how well the run keeps it comes first."""
+    from bfsim.report.profile.tables import profile_report  # a run on the screen needs none of this
 
     return profile_report(run, target=target)
 
@@ -37,7 +37,7 @@ REPORTS: dict[str, Callable[[RunRecord, Target | None], RenderableType]] = {
     "full": run_report,
     "profile": profile_of_run,
 }
-"""What `Run.report` returns, by its name."""
+"""The reports of `Run.report` by name."""
 PAGE = ".html"
 
 
@@ -114,7 +114,7 @@ class Run(RunRecord):
 
 
 def _console(*, record: bool) -> Console:
-    """Return what writes text to be kept: in a notebook rich would show it there, and colour it where FORCE_COLOR says so."""
+    """Return a console for text to keep: by itself, rich shows it in a notebook, in colours if FORCE_COLOR is set."""
     return Console(
         file=io.StringIO(), width=WIDTH, markup=False, emoji=False, highlight=False, record=record,
         force_terminal=False, force_jupyter=False,

@@ -52,17 +52,17 @@ from bfsim.spans import Span
 from bfsim.trace import BoardRecord, Identity, MemoryRecord, RunWarning
 
 _WATCHING = ("before", "progress", "on_seen", "on_time", "on_spans", "on_call", "record_work", "work")
-"""Arguments of `simulate` that change nothing in the records: whoever makes the run again has others."""
+"""Arguments of `simulate` that change nothing in the records; a repeated run has others."""
 
 Given = ParamSpec("Given")
 
 
 _ONE_AT_A_TIME = RLock()
-"""Held by the thread whose run it is: kernels have variables of their own in machine code, and modules of firmware names that others may have."""
+"""Held by the running thread: variables of kernels and names of firmware modules can serve only one run at a time."""
 
 
 def _let_runs_begin() -> None:
-    """Have no run go on: a process that was forked has none of its parent's other threads."""
+    """Let runs begin in a forked process: it has none of its parent's other threads."""
     global _ONE_AT_A_TIME  # noqa: PLW0603  # a run that the thread has forked in gives back the lock that it took
     _ONE_AT_A_TIME = RLock()
 
@@ -71,14 +71,14 @@ os.register_at_fork(after_in_child=_let_runs_begin)
 
 
 def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
-    """Return what also tells the run that it returns how to make it again."""
+    """Return `simulate`, but with the function that repeats the run in the run it returns."""
 
     @wraps(simulate)
     def repeatable(*arguments: Given.args, **options: Given.kwargs) -> Run:
         __tracebackhide__ = True  # a test that calls it with a wrong argument is told with its own lines
         try:
             bound = signature(simulate).bind(*arguments, **options)
-        except TypeError as error:  # which names no function
+        except TypeError as error:  # it names no function
             raise TypeError(f"simulate() {error}") from None
         bound.apply_defaults()
         require_kinds(bound.arguments)
@@ -206,7 +206,10 @@ def simulate(
 
 
 def _machine(setup: RunSetup, fitted: FittedFirmware, *, sanitize: bool, on_call: BeforeCall | None) -> Board:
-    """Return the board with the firmware in it. Code that nobody has tried is sanitized for a frame, all of it if asked; then `on_call` is called."""
+    """Return the board with the firmware in it.
+
+    Newly compiled code is sanitized for a frame, and all code always if `sanitize`; then `on_call` is called.
+    """
     sanitizer = (Sanitizer(),)
     return Board(
         setup.board.value,
@@ -223,13 +226,13 @@ def _machine(setup: RunSetup, fitted: FittedFirmware, *, sanitize: bool, on_call
 
 
 def _told_of_frames(progress: Callable[[int, int], None], total: int) -> Callable[[object], None]:
-    """Return who is told of each frame that is done, and tells `progress` how many of `total` are."""
+    """Return a listener for finished frames, which tells `progress` how many of `total` are done."""
     done = count(1)
     return lambda _frame: progress(next(done), total)
 
 
 def _frames_to_run(reader: RecordingReader, most: int | None) -> int:
-    """Return how many frames of a recording are run. Raises RecordingError where it has none."""
+    """Return how many frames of a recording to run. Raises RecordingError if it has none."""
     if not reader.frame_count:
         raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
     return min(most or reader.frame_count, reader.frame_count)
@@ -238,7 +241,7 @@ def _frames_to_run(reader: RecordingReader, most: int | None) -> int:
 def _shown_to(
     on_seen: Callable[[SeenFrame], None], source: DigestedFrames
 ) -> Callable[[int, tuple[Seen, ...]], None]:
-    """Return who is told what was seen in a frame, and tells it with the times of its pictures."""
+    """Return a listener for what was seen in a frame, which passes it on with the times of the pictures."""
     return lambda index, cameras: on_seen(
         SeenFrame(index=index, times_ns=source.times_ns(index), cameras=cameras)
     )
@@ -259,7 +262,7 @@ def _record(
     fitted: FittedFirmware,
     doubts: Iterable[RunWarning],
 ) -> Run:
-    """Return the records of a run. `doubts`: about its cameras, by what their pictures showed."""
+    """Return the records of a run. `doubts` are about its cameras, from their pictures."""
     firmware, calibration, spec = setup.loaded.firmware, fitted.calibration, setup.board.value
     ldf = setup.placement.path
     return Run(

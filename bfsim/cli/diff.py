@@ -82,7 +82,7 @@ def diff(
             "--json must have a FILE.json beside --markdown: without one, each is all of the output"
         )
     with ExitStack() as stack:
-        sides = [_asked(text) for text in (before, after)]  # a mistake in either is reported before anything runs
+        sides = [_asked(text) for text in (before, after)]  # mistakes come before anything runs
         read = [*chain(*map(_read, (before, after), sides))]
         require_json_place(json_path, (*read, html))
         if html:

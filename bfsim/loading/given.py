@@ -1,7 +1,7 @@
-"""Firmware that is given as an object, in a script, a test or a notebook, and the source files that it is from.
+"""Firmware that a script, a test or a notebook gives as an object, and its source files.
 
-Others have imported it, so its sources are found by reading: the files in which its functions and classes stand, what these import
-from the same folder or package, and libraries. Of a notebook it is the cells in which functions and kernels stand.
+Others have imported it, so its sources are found by reading: the files of its functions and classes, what these import
+from the same folder or package, and libraries. In a notebook, they are the cells of its functions and kernels.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from bfsim.machine.peripherals.table import makers_of
 from bfsim.machine.program import Firmware
 
 CELL = "(cell)"
-"""Stands for the name of a cell of a notebook."""
+"""Stands for the file name of a notebook's cell."""
 
 Namespace = Mapping[str, Any]
-"""What a module holds by its names."""
+"""The names of a module and their values."""
 
 
 def given_firmware(firmware: Firmware) -> LoadedFirmware:
@@ -60,7 +60,7 @@ def _parts(firmware: Firmware) -> Iterator[Any]:
 
 
 def _unbound(part: Any) -> Any:
-    """Return the function that some arguments are given to already."""
+    """Return the function under any partial application."""
     return _unbound(part.func) if isinstance(part, functools.partial) else part
 
 
@@ -77,7 +77,7 @@ def _namespace(part: Any) -> Namespace:
 
 
 def _home(firmware: Firmware, first: Namespace) -> tuple[Namespace, str]:
-    """Return where the firmware stands, and by which name: best in the package of its first main loop."""
+    """Return the module and the name of the firmware, preferably in the package of its first main loop."""
     top = first["__name__"].partition(".")[0]
     others = sorted(sys.modules.items(), key=lambda each: (each[0].partition(".")[0] != top, each[0]))
     for namespace in (first, *(vars(module) for _, module in others)):
@@ -94,7 +94,7 @@ def _file(namespace: Namespace) -> Path | None:
 
 
 def _add_sources(sources: dict[str, ImportedFile], namespace: Namespace) -> None:
-    """Add the file of a module, or the cells that it is from, and what is imported there."""
+    """Add the file of a module, or the cells of a notebook, and what they import."""
     file = _file(namespace)
     if file:
         module, root = located(str(file))
@@ -112,7 +112,7 @@ def _add_sources(sources: dict[str, ImportedFile], namespace: Namespace) -> None
 
 
 def _add_imported(sources: dict[str, ImportedFile], modules: Sequence[str], roots: Sequence[Root]) -> None:
-    """Add the files of modules that `roots` have, their packages, and what they import."""
+    """Add the files of modules in `roots`, their packages, and what they import."""
     pending = [*modules]
     while pending:
         module = pending.pop()

@@ -130,7 +130,7 @@ class _Rows:
 
 
 def _below_frame(stalls: NDArray[np.float64], slack_cclk: float) -> LinearConstraint:
-    """Return the constraint that the frame is no shorter than a core's, with `slack_cclk` less work than the busiest."""
+    """Return the constraint that no core's frame is longer; its work is `slack_cclk` less than that of the busiest."""
     return LinearConstraint(np.append(stalls, -1.0)[np.newaxis], -np.inf, slack_cclk)
 
 

@@ -19,7 +19,7 @@ LEAST_TOLD_CUT = 0.05
 
 
 def fitted_text(summary: ImportSummary, *, is_scaled: bool) -> str:
-    """Return the sizes from which pictures were scaled or cut, how much was cut off, and which size keeps everything."""
+    """Return the sizes from which pictures were scaled or cut, the share cut off, and which size keeps everything."""
     sizes = [f"{width}x{height}" for width, height in summary.source_sizes]
     text = f"{'Scaled by a triangle filter' if is_scaled else 'Cut'} from {listed(sizes, MOST_LISTED)}"
     cuts = [_part_cut_off(size, (summary.width, summary.height), is_scaled) for size in summary.source_sizes]
