@@ -1,4 +1,4 @@
-"""The vision firmware of the robot Tinyphoon for both cores of its ADSP-BF561. T is the thesis it follows."""
+"""The vision firmware of the robot Tinyphoon for both cores of its ADSP-BF561. T is the thesis that it follows."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ STAGES = (
 
 
 def rows(rectified_in: str) -> tuple[BudgetRow, ...]:
-    """Return the stages, with the rectification as a part of one."""
+    """Return the stages, with the rectification as a part of one of them."""
     part = BudgetRow(stage="Rectification", within=rectified_in)
     after = 1 + [each.stage for each in STAGES].index(rectified_in)
     return *STAGES[:after], part, *STAGES[after:]
@@ -77,7 +77,7 @@ thesis = replace(
     colours=partial(picture_colours, mode=THESIS_FIELD),
     losses=THESIS_LOSSES,
 )
-"""The steps that the thesis describes: what the robot ran, as far as it says so. Lines are found in another way."""
+"""The steps that the thesis describes: what the robot ran, as far as the thesis says. Lines are found differently."""
 
 rectified_features = replace(
     tinyphoon,
@@ -85,7 +85,7 @@ rectified_features = replace(
     calibration=places_calibration,
     rows=rows(rectified_in="Line detection"),
 )
-"""The features of the pictures as the cameras have them, rectified in place of the pictures (T §7.2)."""
+"""The features of unrectified pictures, rectified in place of the pictures (T §7.2)."""
 
 one_eye = replace(tinyphoon, mains={"A": one_core}, buffers=one_core_buffers)
 """The same stages for a board with one core and one camera, such as cm-bf533."""

@@ -1,9 +1,9 @@
-"""What of the cameras' pictures a mode looks at: their size, and an area of interest in them (T §5.2.6).
+"""The part of the cameras' pictures that a mode uses: their size, and an area of interest in them (T §5.2.6).
 
-All stages see the area only, as if it were the picture. The DMA crops its lines: it begins further right and takes fewer
-bytes. The buffers are those of a picture of that size, and all coordinates that stages leave in memory count from the
-area's corner. The buffer `geometry` says where the principal point lies in the area, and the report of a frame says where
-the area's corner lies in the picture.
+All stages see only the area, as if it were the picture. The DMA crops its lines: it begins further right and takes
+fewer bytes. The buffers are those of a picture of that size, and all coordinates that stages store count from the
+area's corner. The buffer `geometry` says where the principal point lies in the area, and the report of a frame says
+where the area's corner lies in the picture.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from tinyphoon.stores.lines import SUBPIXELS
 
 HALF_PIXEL = SUBPIXELS // 2
 LARGEST_PX = 4094  # twelve bits
-LEAST_AREA_PX = 16  # each way: the stages' windows and borders take up to 6 [ours]
+LEAST_AREA_PX = 16  # each way: the windows and borders of the stages take up to 6 [ours]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Area:
-    """An area of interest in pixels of the picture, from (x, y) on. Columns are even: pixels come in pairs of one colour.
+    """An area of interest in pixels of the picture, from (x, y) on. Columns are even: pairs of pixels share a colour.
 
     `width` and `height` of 0: the whole picture.
     """
@@ -36,7 +36,7 @@ class Area:
 class Camera:
     """Settings of both cameras (T §5.1.2).
 
-    `width`, `height`: of their pictures, as recorded or a half or a quarter of that; 0: as recorded. The rest: see
+    `width`, `height`: of their pictures, as recorded, or a half or a quarter of it; 0: as recorded. The rest: see
     `bfsim.api.CameraSettings`.
     """
 
@@ -53,9 +53,9 @@ AS_RECORDED = Camera()
 
 
 def see(core: Core, frame: Frame, camera: Camera, area: Area, full: FrameSize) -> Area:
-    """Give this core's camera its settings, and the stages the buffers of the area; returns the area that is seen.
+    """Apply the settings of this core's camera, and give the stages the buffers of the area; return that area.
 
-    `full`: size of the recorded pictures. The same settings again change nothing.
+    `full`: size of the recorded pictures. Repeating the same settings changes nothing.
     """
     settings = CameraSettings(
         exposure_lines=camera.exposure_lines,
@@ -71,9 +71,9 @@ def see(core: Core, frame: Frame, camera: Camera, area: Area, full: FrameSize) -
 
 
 def area_in(frame: Frame, area: Area) -> Area:
-    """Return the area of a picture that is seen: all of it when `area` does not lie in it.
+    """Return the area of a picture that is used: the whole picture if `area` does not lie in it.
 
-    That is so for the pictures on their way when a mode changes their size.
+    That happens to pictures that are on their way when a mode changes their size.
     """
     if area.width and area.x + area.width <= frame.width and area.y + area.height <= frame.height:
         return area
@@ -89,8 +89,8 @@ def cropped(core: Core, frame: Frame, area: Area) -> Frame:
 def principal_shift(frame: Frame, area: Area, halvings: int) -> tuple[int, int]:
     """Return how far the principal point is from the middle of the area, in x and y, in 1/16 px.
 
-    It is the middle of the recorded picture; `frame` is one that was halved so often. A sensor that skips pixels sends
-    the first of each two or four, which lies left of their middle.
+    It is the middle of the recorded picture; `frame` was halved `halvings` times. A sensor that skips pixels sends the
+    first of each two or four, which lies left of their middle.
     """
     first = HALF_PIXEL - (HALF_PIXEL >> halvings)
     across = HALF_PIXEL * (frame.width - area.width - 2 * area.x) + first

@@ -1,7 +1,7 @@
-"""The buffers of the firmware and where they go: line rings and the edge store in L1, pictures in SDRAM.
+"""The buffers of the firmware and their places: line rings and the edge store in L1, pictures in SDRAM.
 
-Each core's camera and each core's working images have an SDRAM bank of their own. For pictures of w x h
-pixels L1 bank A holds 46 w bytes and bank B 19 w + 6 h + 6 KB: 640x480 fits, beside heap and stack.
+Each core's camera and each core's working images have an SDRAM bank of their own. For pictures of w x h pixels, L1 bank
+A holds 46 w bytes and bank B 19 w + 6 h + 6 KB: 640x480 fits, beside heap and stack.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ from tinyphoon.strategy.results import MESSAGE_WORDS
 from tinyphoon.tables import arctangent_table
 
 ScanBuffers = Callable[[FrameSize], Sequence[Buffer]]
-"""What a scan of a picture has between its kernels."""
+"""The buffers that a scan of a picture needs between its kernels."""
 
-CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
+CAMERA_FRAMES = 3  # one in work, one waiting, one being filled
 
 
 def buffers(size: FrameSize, scan_buffers: ScanBuffers = scan_buffers) -> Mapping[str, Sequence[Buffer]]:
@@ -57,17 +57,17 @@ def buffers(size: FrameSize, scan_buffers: ScanBuffers = scan_buffers) -> Mappin
 
 
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
-    """Return the buffers for pictures of `size` of a board with one core."""
+    """Return the buffers of a board with one core for pictures of `size`."""
     return {"A": (*_left_buffers(size, scan_buffers), *shared_order_buffers(size, "data1"))}
 
 
 def calibration_buffers(calibration: Calibration) -> Buffers:
-    """Return the buffers that depend on the cameras of a recording: tables where it has them, and the geometry."""
+    """Return the buffers that depend on a recording's cameras: tables if it has them, and the geometry."""
     return with_geometry(rectification_buffers(calibration.sources), calibration)
 
 
 def with_geometry(tables: Buffers, calibration: Calibration) -> Buffers:
-    """Return the tables of each core and the geometry that a recording has."""
+    """Return the tables of each core and the geometry of a recording."""
     geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
     return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
 

@@ -1,4 +1,4 @@
-"""Core A: the left camera, and the results of both."""
+"""Core A: the left camera, and the results of both cores."""
 
 from __future__ import annotations
 

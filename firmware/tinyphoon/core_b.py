@@ -15,7 +15,7 @@ from tinyphoon.strategy.orders import read_mode, see_by
 def core_b(core: Core, steps: Steps = PLAIN) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair.
 
-    Core A is done with orders, too, before the first one.
+    Core A is also done with orders before the first frame.
     """
     yield from core.wait("core A is done")
     while (frame := (yield from core.next_frame())) is not None:

@@ -1,8 +1,8 @@
-"""How the results of core B reach core A: core B copies them to the L2 memory that both share, and posts.
+"""How core A gets the results of core B: core B copies them to the L2 memory that both share, and posts.
 
-What core B calls X is `right_X` there; its edges are stored there from the start. Core A waits for the post before it reads, and core B for core A's before it
-writes again. A store to L2 is posted and costs a core next to nothing; a load waits for its latency each time, so
-core A takes what it reads often into its L1 first.
+X of core B is `right_X` there; its edges are stored there from the start. Core A waits for the post before it reads,
+and core B waits for core A's before it writes again. A store to L2 is posted and costs a core next to nothing; a load
+waits for its latency each time, so core A first copies what it reads often into its L1.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SHARED = "l2_shared"
 
 
 def exchange_buffers(size: FrameSize) -> Sequence[Buffer]:
-    """Return the shared buffers: lines and edges of the right picture, and how many there are."""
+    """Return the shared buffers: lines and edges of the right picture, and their numbers."""
     return (
         Buffer("right_lines", i16, LINE_WORDS * SEGMENT_CAPACITY, SHARED, handed_over=True),
         Buffer("right_line_count", u32, 1, SHARED, handed_over=True),
@@ -45,19 +45,19 @@ def store_word(words: u32[:], value: i32) -> None:
 
 @kernel
 def load_word(words: u32[:]) -> i32:
-    """Read a number that the other core has stored."""
+    """Load a number that the other core has stored."""
     return i32(words[0])
 
 
 @kernel
 def pack_edge_rows(edge_index: u32[:], edge_counts: u16[:], edge_rows: u32[:]) -> None:
-    """Put first edge and count of each row into one word, so that core A waits for L2 once a row."""
+    """Pack first edge and count of each row into one word, so that core A waits for L2 once a row."""
     for y in range(len(edge_rows)):
         edge_rows[y] = edge_index[y] | u32(edge_counts[y]) << 16
 
 
 def as_words(core: Core, name: str) -> Row:
-    """Return a buffer, all its rows as one, as 32-bit words."""
+    """Return a buffer, all its rows together, as 32-bit words."""
     return core.overlay(name, u32, sum(each.nbytes for each in core.rows(name)) // 4)[0]
 
 
@@ -85,7 +85,7 @@ def share_lines(core: Core, lines: int) -> Generator[Any, Any, None]:
 
 
 def share_edges(core: Core, edges: int) -> Generator[Any, Any, None]:
-    """Share the edge store of core B's picture: where its rows begin, for the edges are there already."""
+    """Share the edge store of core B's picture: only where its rows begin, for the edges are there already."""
     yield core.run(store_word, core.array("right_edges"), edges)
     index, counts = core.array("edge_index"), core.array("edge_counts")
     yield core.run(pack_edge_rows, index, counts, core.array("right_edge_rows"))

@@ -1,4 +1,4 @@
-"""From a picture to features: the stages that every core plays on the picture of its own camera."""
+"""From a picture to features: the stages that every core runs on the picture of its own camera."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tinyphoon.strategy.modes import Mode
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Features:
-    """How many features of each kind an area of a picture has in the core's memories. `frame`: the area as a picture."""
+    """How many features of each kind an area has in the core's memories. `frame`: the area as a picture."""
 
     frame: Frame
     edges: int
@@ -33,14 +33,14 @@ class Features:
 
 
 def as_found(core: Core, area: Area, found: Features) -> Generator[Any, Any, Features]:  # noqa: ARG001
-    """Leave the features where they are: the picture was rectified."""
+    """Leave the features where they are: the picture is rectified already."""
     yield from ()
     return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Steps:
-    """The steps that take most of a frame: plain ones, or others with the same results, or nearly so."""
+    """The steps that take most of a frame: the plain ones, or others with the same or nearly the same results."""
 
     rectification: Callable[[Core, Frame, Area], Generator[Any, Any, Frame]] = rectification
     colour_groups: Callable[[Core, Sequence[int]], Generator[Any, Any, None]] = join_groups
@@ -60,7 +60,7 @@ PLAIN = Steps()
 def features(
     core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE, steps: Steps = PLAIN
 ) -> Generator[Any, Any, Features]:
-    """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
+    """Store edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from steps.rectification(core, frame, area)

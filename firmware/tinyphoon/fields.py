@@ -1,10 +1,10 @@
-"""Dataclasses of numbers as words of 32 bits, in the order of their fields: how they go over the SPI and lie in memory.
+"""Dataclasses of numbers as words of 32 bits, in the order of their fields: their form on the SPI and in memory.
 
-A field is an int, a bool, an IntEnum, a Literal of ints or a dataclass of such fields. What each may be stands beside it:
+A field is an int, a bool, an IntEnum, a Literal of ints or a dataclass of such fields. Its limits stand beside it:
 
     edge_threshold: int = allowed(1, 255, at_most="strong_threshold")
 
-A field without that may be any number of 32 bits. Strings, and fields that `not_ordered` marks, are left out.
+A field without limits may be any number of 32 bits. Strings, and fields that `not_ordered` marks, are left out.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ Numbers = TypeVar("Numbers")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Word:
-    """A word: its name, such as edges.gauss_px, and what it may be.
+    """A word: its name, such as edges.gauss_px, and its limits.
 
-    From `lowest` to `highest` in steps of `step`, a power of two, and not above the word called `at_most`. Words with a
-    `total` make that together at most.
+    It goes from `lowest` to `highest` in steps of `step`, a power of two, and not above the word called `at_most`.
+    Words with a `total` have at most this sum.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Word:
 
     @property
     def demand(self) -> str:
-        """What it must be, in words."""
+        """Its limits, in words."""
         steps = f" in steps of {self.step}" if self.step != 1 else ""
         return f"{self.name} must be {self.lowest} to {self.highest}{steps}"
 
@@ -53,9 +53,9 @@ def allowed(
     total: int = 0,
     default: int | None = None,
 ) -> Any:
-    """Declare a field with the numbers that it may be.
+    """Declare a field with its limits.
 
-    `at_most`: the field beside it that it must not exceed. `total`: what all fields with one may be together.
+    `at_most`: the field beside it that it must not exceed. `total`: the largest sum of all fields with one.
     """
     limits = {"lowest": lowest, "highest": highest, "step": step, "at_most": at_most, "total": total}
     return field(metadata=limits) if default is None else field(default=default, metadata=limits)
@@ -81,7 +81,7 @@ def _words_of(kind: type, within: str) -> Iterator[Word]:
 
 @cache
 def _ordered(kind: type) -> tuple[tuple[str, Any, Mapping[str, Any]], ...]:
-    """Return name, type and limits of the fields that are words, or have them."""
+    """Return name, type and limits of the fields that are words, or contain them."""
     hints = get_type_hints(kind)
     return tuple(
         (each.name, hints[each.name], each.metadata)
@@ -104,7 +104,7 @@ def _word(within: str, name: str, hint: Any, limits: Mapping[str, Any]) -> Word:
 
 
 def _choices(hint: Any) -> list[int]:
-    """Return what a field of a few numbers may be; nothing for any other type."""
+    """Return the possible values of a field with a few numbers; nothing for any other type."""
     if hint is bool:
         return [0, 1]
     if get_origin(hint) is Literal:
@@ -124,7 +124,7 @@ def to_words(value: Any) -> list[int]:
 
 
 def from_words(base: Numbers, words: Sequence[int]) -> Numbers:
-    """Return `base`, a dataclass, with the numbers of `words`, which must be as many as it has."""
+    """Return `base`, a dataclass, with the numbers of `words`, of which there must be as many."""
     return _from_words(base, iter(words))
 
 
@@ -137,9 +137,9 @@ def _from_words(base: Any, words: Iterator[int]) -> Any:
 
 
 def named_words(base: Any, names: object, at: str) -> list[int]:
-    """Return the words of `base` with some numbers changed: by the names of their fields, or all in their order.
+    """Return the words of `base` with some numbers changed: by the names of their fields, or all in order.
 
-    Whether they are allowed is not asked: that is the receiver's. Raises FirmwareError that names the field under `at`.
+    Limits are left to the receiver. Raises FirmwareError that names the field under `at`.
     """
     parts = _ordered(type(base))
     known = [name for name, _, _ in parts]
@@ -162,7 +162,7 @@ def named_words(base: Any, names: object, at: str) -> list[int]:
 
 
 def _number(value: object, hint: Any, at: str) -> int:
-    """Return the number that a field gets; members of an IntEnum go by their names too, in any case."""
+    """Return the number for a field; members of an IntEnum may be given by name, in any case."""
     if isinstance(value, str) and isinstance(hint, type) and issubclass(hint, IntEnum):
         if value.upper() not in hint.__members__:
             raise FirmwareError(

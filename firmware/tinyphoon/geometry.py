@@ -1,7 +1,7 @@
-"""Where the cameras are, as the kernels read it: the buffer `geometry` of each core, a struct of 32-bit words.
+"""The geometry of the cameras, as the kernels read it: the buffer `geometry` of each core, a struct of 32-bit words.
 
-It comes with the recording. The pictures are rectified, the cameras equal and parallel, and the principal point is
-the middle of the picture, of which the stages may see an area only.
+It comes with the recording. The pictures are rectified, the cameras equal and parallel, and the principal point is the
+middle of the picture; the stages may see only an area of it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ GEOMETRY_HEIGHT = 2  # above the floor, 1/16 mm
 GEOMETRY_TILT = 3  # how far the cameras look down, 1/65536 of a turn
 GEOMETRY_SINE = 4  # of the tilt, 1/16384
 GEOMETRY_COSINE = 5
-# Of an area of interest, and of smaller pictures than the recorded ones; see `look_at`.
+# For an area of interest, and for pictures smaller than the recorded ones; see `look_at`.
 GEOMETRY_SHIFT_X = 6  # how far the principal point is from the middle of the area, 1/16 px
 GEOMETRY_SHIFT_Y = 7
 GEOMETRY_FULL_FOCAL = 8  # focal length in the recorded pictures, 1/16 px
@@ -31,13 +31,13 @@ TILT_STEPS = 65536
 SINE_BITS = 14
 
 DEEPEST = (1 << 31) - MICROMETRES
-"""Focal length times baseline, in the units above, must stay below: it is what all depths are made of."""
+"""Focal length times baseline, in the units above, must stay below: all depths are computed from it."""
 
 HIGHEST = 1 << 31
-"""Focal length times height, in the units above, must stay below: depths on the floor are made of it."""
+"""Focal length times height, in the units above, must stay below: depths on the floor are computed from it."""
 
 FARTHEST_MM = 32767
-"""A point that is farther away does not go into a 16-bit word."""
+"""A point that is farther away does not fit into a 16-bit word."""
 
 
 THESIS_FOCAL_PX, THESIS_WIDTH_PX = 386.0, 320  # T §6.2: measured in pictures of 320x240
@@ -49,7 +49,7 @@ THESIS_GEOMETRY = (
 
 
 def geometry_buffer(geometry: Geometry) -> Buffer:
-    """Return the geometry of a recording as a buffer; a height or tilt it does not say is that of the thesis's robot."""
+    """Return the geometry of a recording as a buffer; unknown height or tilt are those of the thesis's robot."""
     height_mm, tilt_deg = geometry.height_mm, geometry.tilt_deg
     return _buffer(
         geometry.focal_px,
@@ -60,7 +60,7 @@ def geometry_buffer(geometry: Geometry) -> Buffer:
 
 
 def thesis_geometry_buffer(size: FrameSize) -> Buffer:
-    """Return the geometry of the thesis's robot, for recordings that do not say theirs.
+    """Return the geometry of the thesis's robot, for recordings without one.
 
     Raises FirmwareError for pictures so large that nothing can be computed with its cameras.
     """
@@ -91,7 +91,7 @@ def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: flo
 
 
 def _check(focal_px: float, baseline_mm: float, height_mm: float) -> None:
-    """Raise FirmwareError unless 32 bits can compute with the cameras."""
+    """Raise FirmwareError unless 32 bits are enough to compute with the cameras."""
     if focal_px < 1:
         raise FirmwareError(f"focal length of the cameras must be at least 1 px, not {focal_px:g} px")
     if 0 < baseline_mm < 1 / MICROMETRES:
@@ -111,7 +111,7 @@ def _check(focal_px: float, baseline_mm: float, height_mm: float) -> None:
 
 @kernel
 def look_at(geometry: i32[:], shift_x: i32, shift_y: i32, halvings: i32) -> None:
-    """Set what depends on the mode: where the principal point is, in 1/16 px, and how often the pictures are halved."""
+    """Set what depends on the mode: the principal point's position, in 1/16 px, and how often pictures are halved."""
     geometry[GEOMETRY_SHIFT_X] = shift_x
     geometry[GEOMETRY_SHIFT_Y] = shift_y
     geometry[GEOMETRY_FOCAL] = geometry[GEOMETRY_FULL_FOCAL] >> halvings
@@ -121,7 +121,7 @@ def look_at(geometry: i32[:], shift_x: i32, shift_y: i32, halvings: i32) -> None
 def depth_mm(geometry: i32[:], disparity: i32) -> i32:
     """Return how far away a point is along the axis of the cameras, Z of T Eq. 3.16, in mm, rounded.
 
-    `disparity` is in 1/16 px. Without a positive one the point is nowhere, and beyond FARTHEST_MM too far: 0.
+    `disparity` is in 1/16 px. If it is not positive, the point is nowhere, and beyond FARTHEST_MM it is too far: 0.
     """
     if disparity <= 0:
         return 0
@@ -132,7 +132,7 @@ def depth_mm(geometry: i32[:], disparity: i32) -> i32:
 
 @kernel
 def disparity_at(geometry: i32[:], depth: i32) -> i32:
-    """Return the disparity of what is at a positive depth in mm, in 1/16 px, rounded (T Eq. 3.16)."""
+    """Return the disparity of a point at a positive depth in mm, in 1/16 px, rounded (T Eq. 3.16)."""
     reach = geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE]
     return (reach // depth + MICROMETRES // 2) // MICROMETRES
 
@@ -141,7 +141,7 @@ def disparity_at(geometry: i32[:], depth: i32) -> i32:
 def beside_mm(geometry: i32[:], depth: i32, off_axis: i32) -> i32:
     """Return how far beside the axis a point is, X or Y of T Eq. 3.17, in mm, rounded.
 
-    `depth` is its Z in mm, `off_axis` how far from the principal point the picture shows it, in 1/16 px.
+    `depth` is its Z in mm, `off_axis` its distance from the principal point in the picture, in 1/16 px.
     """
     focal = geometry[GEOMETRY_FOCAL]
     return (2 * depth * off_axis + focal) // (2 * focal)
@@ -153,7 +153,7 @@ def store_point(
 ) -> i32:
     """Store X, Y and Z of a point of the left picture of width x height pixels at word `at`; returns 1.
 
-    `x`, `y` and `disparity` are in 1/16 px. Of a point that is nowhere or too far away nothing is stored: 0.
+    `x`, `y` and `disparity` are in 1/16 px. If a point is nowhere or too far away, nothing is stored: 0.
     """
     depth = depth_mm(geometry, disparity)
     across = beside_mm(geometry, depth, x - SUBPIXELS * (width - 1) // 2 - geometry[GEOMETRY_SHIFT_X])

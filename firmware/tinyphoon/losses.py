@@ -1,4 +1,4 @@
-"""What the stages had to leave out for want of room or time, by the numbers that they publish: a run ends with a warning of it."""
+"""What the stages left out for lack of room or time, by the numbers that they publish, for warnings of a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A board with one core and one camera: the left one's picture, without stereo."""
+"""A board with one core and one camera: the picture of the left one, without stereo."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from itertools import cycle, islice
 from bfsim.api import Row
 
 Lines = tuple[Row, ...]
-"""Rows in L1 by the number of the line that they hold, which is lost when its ring has come round to it again."""
+"""Rows in L1, by the number of their line; a line is lost when its ring comes round to its row again."""
 
 
 def line_ring(rows: Sequence[Row], height: int) -> Lines:
@@ -17,6 +17,6 @@ def line_ring(rows: Sequence[Row], height: int) -> Lines:
 
 
 def windows(lines: Sequence[Row], reach: int = 1) -> Sequence[tuple[Row, ...]]:
-    """Return for each line of a picture `reach` lines above it, itself, and as many below; the first and the last line repeat."""
+    """Return for each line of a picture `reach` lines above it, itself, and as many below; at the ends, lines repeat."""
     padded = (*lines[:1] * reach, *lines, *lines[-1:] * reach)
     return tuple(zip(*(padded[step:] for step in range(2 * reach + 1)), strict=False))

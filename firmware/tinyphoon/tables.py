@@ -1,4 +1,4 @@
-"""Look-up tables that travel with the firmware (T §1.3.4, pre-computation)."""
+"""Look-up tables that come with the firmware (T §1.3.4, pre-computation)."""
 
 from __future__ import annotations
 
@@ -33,5 +33,5 @@ def root_table() -> NDArray[np.uint8]:
 
 
 def reciprocal_table() -> NDArray[np.uint32]:
-    """Return 1/n as a fraction of 1 << 28, rounded up, for n = 1..1020, the components of a Sobel gradient; and 0 for 0."""
+    """Return 1/n as a fraction of 1 << 28, rounded up, for n = 1..1020, the components of a Sobel gradient; 0 for 0."""
     return np.array([0, *(-(-(1 << 28) // n) for n in range(1, 1021))], np.uint32)

@@ -46,7 +46,7 @@ THESIS_ORDERS = {
     "ordered_mode": np.array(to_words(THESIS_FIELD)),
     "ordered_models": model_words(THESIS_FIELD.models),
 }
-"""What is in force before the first message of the strategy unit."""
+"""The mode in force before the first message of the strategy unit."""
 
 
 def mains(steps: Steps) -> Mapping[str, partial]:
@@ -77,12 +77,12 @@ def thesis_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
 
 
 def places_calibration(calibration: Calibration) -> Buffers:
-    """Return the buffers that depend on the cameras of a recording: where pixels lie in rectified pictures, and the geometry."""
+    """Return the buffers for a recording's cameras: where pixels lie in rectified pictures, and the geometry."""
     return with_geometry(places_buffers(calibration.sources), calibration)
 
 
 def thesis_calibration(calibration: Calibration) -> Buffers:
-    """Return the buffers that depend on the cameras of a recording: every picture has a table, and the geometry."""
+    """Return the buffers for a recording's cameras: every picture has a table, and the geometry."""
     size = calibration.size
     sources = calibration.sources or ({core: untouched(size) for core in ("A", "B")} if size else {})
     return with_geometry(sdram_rectification_buffers(sources), calibration)

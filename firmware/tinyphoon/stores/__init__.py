@@ -1,1 +1,1 @@
-"""What the stages leave in memory for those that follow: tables of C structs, one kind of feature a file."""
+"""Results of the stages in memory, for later stages: tables of C structs, one file for each kind of feature."""

@@ -1,4 +1,4 @@
-"""The blob store: what is kept of a segment of a picture (T §2.3.5), as the C struct that it is in memory.
+"""The blob store: the record of a segment of a picture (T §2.3.5), as the C struct that it is in memory.
 
     typedef struct {
         unsigned long  iColours;                       // the colours that make one segment: S_c32 of T §5.2.4
@@ -39,7 +39,7 @@ def pair(low: i32, high: i32) -> u32:
 
 @kernel
 def wider(span: u32, first: i32, last: i32) -> u32:
-    """Return the pair of ends `span`, moved apart until it holds `first` to `last` too."""
+    """Return the pair of ends `span`, moved apart until it also holds `first` to `last`."""
     return pair(min(i32(span & 0xFFFF), first), max(i32(span >> 16), last))
 
 
@@ -51,31 +51,31 @@ def middle(span: u32) -> i32:
 
 @kernel
 def extent_of(span: u32) -> i32:
-    """Return how many pixels a pair of ends has from one to the other."""
+    """Return the number of pixels from one end of a pair to the other."""
     return i32(span >> 16) - i32(span & 0xFFFF) + 1
 
 
 @kernel
 def is_cut_before(span: u32) -> i32:
-    """Return 1 if a blob that reaches from end to end of `span` leaves the picture at the left, or at the top; else 0."""
+    """Return 1 if a blob from end to end of `span` leaves the picture at the left or at the top, else 0."""
     return 1 if i32(span & 0xFFFF) <= BORDER_PX else 0
 
 
 @kernel
 def is_cut_behind(span: u32, pixels: i32) -> i32:
-    """Return 1 if it leaves a picture of `pixels` at the right, or at the bottom; else 0."""
+    """Return 1 if the blob leaves a picture of `pixels` at the right or at the bottom, else 0."""
     return 1 if i32(span >> 16) >= pixels - 1 - BORDER_PX else 0
 
 
 @kernel
 def is_cut(span: u32, pixels: i32) -> i32:
-    """Return 1 if it leaves the picture at either end; else 0."""
+    """Return 1 if the blob leaves the picture at either end, else 0."""
     return is_cut_before(span) | is_cut_behind(span, pixels)
 
 
 @kernel
 def open_segment(blob_data: u32[:], label: i32, colours: u32, x: i32, y: i32) -> None:
-    """Begin the record of a segment that has its first pixel at (x, y) and no pixel yet."""
+    """Begin the record of a segment with its first pixel at (x, y); the record has no pixel yet."""
     at = label * BLOB_WORDS
     blob_data[at + COLOURS] = colours
     blob_data[at + PIXELS] = 0
@@ -99,7 +99,7 @@ def add_run(blob_data: u32[:], label: i32, first: i32, last: i32, y: i32) -> Non
 
 @kernel
 def add_segment(blob_data: u32[:], label: i32, other: i32) -> None:
-    """Add the pixels of segment `other` to another one."""
+    """Add the pixels of segment `other` to segment `label`."""
     at = label * BLOB_WORDS
     source = other * BLOB_WORDS
     for word in range(PIXELS, SUM_Y + 1):
@@ -111,7 +111,7 @@ def add_segment(blob_data: u32[:], label: i32, other: i32) -> None:
 
 @kernel
 def move_segment(blob_data: u32[:], label: i32, to: i32) -> None:
-    """Make the record of segment `label` that of number `to`."""
+    """Move the record of segment `label` to number `to`."""
     at = to * BLOB_WORDS
     source = label * BLOB_WORDS
     for word in range(COLOURS, DOWN + 1):
@@ -122,7 +122,7 @@ def move_segment(blob_data: u32[:], label: i32, to: i32) -> None:
 def close_blob(blob_data: u32[:], blob: i32) -> None:
     """Complete the record of a blob with its position and its centre of mass.
 
-    The centre is rounded to the nearest pixel, halves upwards; the sums stay for who needs it finer.
+    The centre is rounded to the nearest pixel, halves upwards; the sums stay for finer use.
     """
     at = blob * BLOB_WORDS
     blob_data[at + POSITION] = pair(middle(blob_data[at + ACROSS]), middle(blob_data[at + DOWN]))

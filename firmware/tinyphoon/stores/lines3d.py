@@ -1,4 +1,4 @@
-"""The 3-D lines and 3-D edges of a stereo frame (T §5.2.7, §5.2.8), on core A, for the stages that follow.
+"""The 3-D lines and 3-D edges of a stereo frame (T §5.2.7, §5.2.8), on core A, for later stages.
 
 Both are tables of structs of 16-bit words. Points are in the left camera's frame, in mm: x to the right, y down,
 z forward along its axis. Words beyond the last record are undefined.
@@ -19,8 +19,8 @@ LINE3D_LEFT = 6  # number of the line in `lines` of core A
 LINE3D_RIGHT = 7  # number of the line in `right_lines`
 LINE3D_WORDS = 8
 
-# `edges_3d` holds a t_Edge3D for each edge of the left picture that has a corresponding one, row after row from
-# the bottom of the picture: what finds the table full is farther away than the floor before the robot.
+# `edges_3d` holds a t_Edge3D for each edge of the left picture that has a corresponding one, row after row from the
+# bottom: when the table is full, the remaining edges are farther away than the floor before the robot.
 EDGE3D_X = 0  # mm
 EDGE3D_Y = 1
 EDGE3D_Z = 2
@@ -28,4 +28,4 @@ EDGE3D_LEFT = 3  # number of the edge in `edge_data` of core A
 EDGE3D_WORDS = 4
 
 EDGE3D_CAPACITY = 4096
-"""32 KB: half of the edges of a full edge store. Those of cluttered rooms gave 1900 to 3100."""
+"""32 KB: half of the edges of a full edge store. Cluttered rooms had 1900 to 3100."""

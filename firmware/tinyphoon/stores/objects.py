@@ -1,10 +1,10 @@
-"""The objects that the robot knows of: a table of t_Object, for what a camera sees now and for the object history.
+"""The objects that the robot knows: a table of t_Object, for what a camera sees now and for the object history.
 
 A t_Object is a struct of 16-bit words. Records whose model is NO_MODEL are free. Places are in the frame of the left
 camera: x to the right, y down, z forward.
 
 `left_seen` and `right_seen` hold what each camera sees, the latter in its own camera's frame until core A has taken it;
-`objects` is the history, which leaves for the strategy unit (T §5.2.6).
+`objects` is the history, which goes to the strategy unit (T §5.2.6).
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from bfsim.api import i16, i32, kernel
 
 OBJECT_MODEL = 0  # number of its model
 OBJECT_ACCURACY = 1  # 0..255
-OBJECT_TESTS = 2  # those passed: *_TEST, VERIFIED
+OBJECT_TESTS = 2  # passed tests: *_TEST, VERIFIED
 OBJECT_CAMERAS = 3  # that see it: SEEN_LEFT, SEEN_RIGHT
 OBJECT_MEASURES = 4  # of the distance: BY_*, or 0 if only the direction is known
-OBJECT_X = 5  # place in mm; if only the direction is known a vector that way, DIRECTION_Z long in z
+OBJECT_X = 5  # place in mm; if only the direction is known, a vector in that direction, DIRECTION_Z long in z
 OBJECT_Y = 6
 OBJECT_Z = 7
-OBJECT_IMAGE_X = 8  # middle in the left picture, or in the right one if that alone has it, 1/16 px
+OBJECT_IMAGE_X = 8  # middle in the left picture, or in the right one if only that shows it, 1/16 px
 OBJECT_IMAGE_Y = 9
-OBJECT_WIDTH = 10  # there, 1/16 px
+OBJECT_WIDTH = 10  # in that picture, 1/16 px
 OBJECT_HEIGHT = 11
-OBJECT_EXTENT = 12  # what its distance is measured by in the picture, 1/16 px
+OBJECT_EXTENT = 12  # the extent in the picture from which its distance is measured, 1/16 px
 OBJECT_OUTLINE = (
     13  # number of its record in `circles` or `rectangles` of the camera that sees it, or NO_OUTLINE
 )
-OBJECT_AGE = 14  # frames since it was seen, 0: in this one
+OBJECT_AGE = 14  # frames since it was last seen, 0: in this one
 OBJECT_WORDS = 15
 
 NO_MODEL = 0

@@ -1,1 +1,1 @@
-"""What the strategy unit sends, modes and models, and the results that it gets."""
+"""What the strategy unit sends, modes and models, and the results that it receives."""

@@ -1,7 +1,7 @@
 """Colours by name and by hue in degrees, as bits of the 32-colour image.
 
-The degrees are those of the firmware's own colour circle: the angle of (V, U), from V towards U. Grey has no U and no V, so
-the angle of a colour depends on its HSV hue alone, however dark or pale it is. In BT.601, for R, G and B from 0 to 1:
+The degrees are those of the firmware's own colour circle: the angle of (V, U), from V towards U. Grey has no U and no V,
+so the angle of a colour depends only on its HSV hue, however dark or pale it is. In BT.601, for R, G and B from 0 to 1:
 
     U = -0.169 R - 0.331 G + 0.500 B        V = 0.500 R - 0.419 G - 0.081 B
 
@@ -18,13 +18,13 @@ from tinyphoon.stages.blob_detection import hues
 from tinyphoon.stages.colour_reduction import BLACK, HUES, WHITE
 
 HUE_DEG = 360 / HUES
-"""How wide a hue is: 12.86 degrees."""
+"""The width of a hue: 12.86 degrees."""
 
 NARROWEST_DEG = 13
-"""A range as wide as that has the middle of a hue wherever it lies."""
+"""A range of this width contains the middle of a hue, wherever it lies."""
 
-# Where one name ends the next one begins, at a border between two of the 28 hues. In brackets the HSV hues, which
-# everyday things of that name have: tomatoes and poppies, carrots and golf balls, lemons and bananas, grass and limes.
+# Where one name ends the next one begins, at a border between two of the 28 hues. In brackets are the HSV hues of
+# everyday things of that name: tomatoes and poppies, carrots and golf balls, lemons and bananas, grass and limes.
 NAMED_DEG: Mapping[str, tuple[int, int]] = {
     "red": (334, 13),  # 327 to 8
     "orange": (296, 334),  # 8 to 43
@@ -42,7 +42,7 @@ COLOUR_NAMES = (*NAMED_DEG, *WITHOUT_HUE)
 
 
 def width_deg(first: float, last: float) -> float:
-    """Return how many degrees lie from `first` up to `last`, 0 to 360; a range may go on past 360."""
+    """Return how many degrees lie from `first` up to `last`, 0 to 360; a range may extend past 360."""
     return last - first if last >= first else last - first + 360
 
 
@@ -58,5 +58,5 @@ def colours_named(name: str) -> int:
 
 
 def names_of(colours: int) -> list[str]:
-    """Return the names of which there is a colour among bits."""
+    """Return the names with at least one colour among the bits."""
     return [name for name in COLOUR_NAMES if colours & colours_named(name)]

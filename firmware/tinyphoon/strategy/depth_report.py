@@ -1,10 +1,10 @@
-"""What the message of a frame says of depth: 3-D lines and 3-D edges (T §5.2.7 to §5.2.9), as many as the mode allows.
+"""The depth in the message of a frame: 3-D lines and 3-D edges (T §5.2.7 to §5.2.9), as many as the mode allows.
 
-The thesis wants them for self-localization and for obstacles, and does not say how they leave: layout and choice are [ours]. A
-3-D line is six words, X, Y and Z of start and end in mm in the left camera's frame, with the bright side on its left as in the picture;
-a 3-D edge is three. Of more lines than there is room for those leave that begin lowest in the picture, for these are the
-nearest on the floor; of more edges every n-th, so that what is left of the cloud covers the whole picture. How many there were is
-said, too.
+The thesis wants them for self-localization and for obstacles, but does not say how they are sent: layout and choice are
+[ours]. A 3-D line is six words, X, Y and Z of start and end in mm in the left camera's frame, with the bright side on
+its left as in the picture; a 3-D edge is three. If there is no room for all lines, those that begin lowest in the
+picture are sent, since these are nearest on the floor; of too many edges, every n-th is sent, so that the rest of the
+cloud covers the whole picture. The message also says how many there were.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ EDGE3D_REPORT_WORDS = EDGE3D_Z - EDGE3D_X + 1
 LINES_3D_CAPACITY = 64
 EDGES_3D_CAPACITY = 128
 
-# Of the payload, beside the other counts.
+# In the payload, beside the other counts.
 LINES_3D = 7  # how many follow
 EDGES_3D = 8
 LINES_3D_FOUND = 9  # how many there were
@@ -30,7 +30,7 @@ EDGES_3D_FOUND = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReportLimits:
-    """How many 3-D lines and 3-D edges a message has at most; 0 for none."""
+    """The most 3-D lines and 3-D edges in a message; 0 for none."""
 
     lines_3d: int = allowed(0, LINES_3D_CAPACITY)
     edges_3d: int = allowed(0, EDGES_3D_CAPACITY)
@@ -38,7 +38,7 @@ class ReportLimits:
 
 @kernel
 def pack_lines_3d(message: u16[:], words: i32, lines_3d: i16[:], count: i32, most: i32) -> i32:
-    """Append the last `most` of `count` 3-D lines to a payload of `words` words; returns its words then."""
+    """Append the last `most` of `count` 3-D lines to a payload of `words` words; return its new length."""
     first = max(count - most, 0)
     to = HEADER_WORDS + words
     for line in range(first, count):
@@ -52,7 +52,7 @@ def pack_lines_3d(message: u16[:], words: i32, lines_3d: i16[:], count: i32, mos
 
 @kernel
 def pack_edges_3d(message: u16[:], words: i32, edges_3d: i16[:], count: i32, most: i32) -> i32:
-    """Append `most` of `count` 3-D edges, evenly chosen, to a payload of `words` words; returns its words then."""
+    """Append `most` of `count` 3-D edges, evenly chosen, to a payload of `words` words; return its new length."""
     sent = min(count, most)
     to = HEADER_WORDS + words
     for number in range(sent):

@@ -1,7 +1,7 @@
-"""Messages as they go over the SPI, both ways: 16-bit words around a payload.
+"""Messages on the SPI, in both directions: 16-bit words around a payload.
 
-The framing is [ours], the thesis has none (`strategy_unit/messages.py` is the other end): sync word, type, sequence number, bytes of the payload,
-the payload, and the CRC-16 of CCITT over all but the sync word, byte by byte in the order of memory.
+The framing is [ours], as the thesis has none (`strategy_unit/messages.py` is the other end): sync word, type, sequence number,
+bytes of the payload, the payload, and CCITT's CRC-16 over everything but the sync word, byte by byte in the order of memory.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ MODELS = 3
 
 HEADER_WORDS = 4
 FRAME_BYTES = 2 * HEADER_WORDS + 2
-"""Of a message without payload: header and checksum."""
+"""Size of a message without payload: header and checksum."""
 
 
 @kernel
 def crc16_byte(crc: i32, byte: i32) -> i32:
-    """Return the CRC-16 with one byte more."""
+    """Return the CRC-16 extended by one byte."""
     crc = crc ^ byte << 8
     for _ in range(8):
         if crc & 0x8000:
@@ -35,7 +35,7 @@ def crc16_byte(crc: i32, byte: i32) -> i32:
 
 @kernel
 def checksum(message: u16[:], words: i32) -> i32:
-    """Return the CRC-16 of a message of so many words, its last one not included."""
+    """Return the CRC-16 of a message of `words` words, without its last one."""
     crc: i32 = 0xFFFF
     for word in range(1, words - 1):
         crc = crc16_byte(crc, message[word] & 255)

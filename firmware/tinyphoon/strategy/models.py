@@ -1,4 +1,4 @@
-"""Object models: what is known of the things that the robot looks for (T §4.1, §5.2.6), and as words for kernels.
+"""Object models: what is known of the things that the robot looks for (T §4.1, §5.2.6), also as words for kernels.
 
     typedef struct {
         long iNumber;              // 0: no model
@@ -42,31 +42,31 @@ MODEL_WORDS = 9
 
 MODEL_CAPACITY = COLOUR_GROUPS
 LARGEST_NUMBER = 255
-LARGEST_MM = 4000  # fields are not longer, and products with it fit in 32 bits
+LARGEST_MM = 4000  # no field is longer, and products with it fit in 32 bits
 ASPECT_UNITS = 16  # an aspect is width by height in sixteenths
 LARGEST_ASPECT = 32 * ASPECT_UNITS
 ALL_COLOURS = (1 << COLOURS) - 2  # bit 0 is no colour
 
 
 class Shape(IntEnum):
-    """What is looked for near a blob: a circle, the border lines of a rectangle, or the upright edges of a box."""
+    """What to look for near a blob: a circle, the border lines of a rectangle, or the upright edges of a box."""
 
     BALL = 1
     GOAL = 2
-    """There is one of a model on the field: the rules give each goal a colour of its own (T §2.3). Its bottom line and its posts
-    go out separately too (T §6.4)."""
+    """The field has one of each model: the rules give each goal a colour of its own (T §2.3). Its bottom line and its
+    posts are also sent separately (T §6.4)."""
     MARKER = 3
     BOX = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ObjectModel:
-    """What is known of a kind of objects: its colours, its shape and its size (T §4.1).
+    """A kind of objects: its colours, its shape and its size (T §4.1).
 
-    `number` is its name on the SPI. `colours` are bits of the 32-colour image. `width_mm`, `height_mm` and `depth_mm` are its
-    size from the front; only that of a box is looked at from all sides. `floor_mm` is how high above the floor
-    its lower border is. `aspect_min`, `aspect_max`, of the dimension test, are limits of width by height of its blob
-    in sixteenths. Raises FirmwareError where the model contradicts itself.
+    `number` is its name on the SPI. `colours` are bits of the 32-colour image. `width_mm`, `height_mm` and `depth_mm`
+    are its size from the front; only a box may be seen from all sides. `floor_mm` is the height of its lower border
+    above the floor. `aspect_min` and `aspect_max`, of the dimension test, limit width by height of its blob, in
+    sixteenths. Raises FirmwareError if the model contradicts itself.
     """
 
     name: str
@@ -114,9 +114,9 @@ class ObjectModel:
 
 
 def check_models(models: Sequence[ObjectModel]) -> None:
-    """Raise FirmwareError where models contradict one another.
+    """Raise FirmwareError if models contradict one another.
 
-    The colours of two models must be the same, or have none in common: a pixel belongs to one blob only.
+    The colours of two models must be the same or disjoint: a pixel belongs to only one blob.
     """
     if not 1 <= len(models) <= MODEL_CAPACITY:
         raise FirmwareError(f"there must be 1 to {MODEL_CAPACITY} models, not {len(models)}")
@@ -137,7 +137,7 @@ def colour_groups(models: Iterable[ObjectModel]) -> tuple[int, ...]:
 
 
 def colours_of(models: Iterable[ObjectModel], *shapes: Shape) -> int:
-    """Return the colours of the models of some shapes, for what looks for these."""
+    """Return the colours of the models of the given shapes."""
     return reduce(or_, (each.colours for each in models if each.shape in shapes), 0)
 
 
@@ -150,21 +150,21 @@ def model_words(models: Sequence[ObjectModel]) -> NDArray[np.int32]:
 
 
 def model_buffers() -> Sequence[Buffer]:
-    """Return the buffer of the models for a core; it starts with those of the indoor field."""
+    """Return a core's buffer of the models; it starts with those of the indoor field."""
     return (Buffer("models", i32, MODEL_CAPACITY * MODEL_WORDS, "data1", values=model_words(MODELS)),)
 
 
 # The hues of the recording's blue goal, yellow ball and red mark, each with the hue on either side: noise and shade
-# move a colour by one.
+# shift a colour by one.
 BLUE = hues(9, 11)
 YELLOW = hues(21, 23)
 RED = hues(25, 27)
 GREEN = hues(15, 19)
-# The hue of the cyan mark in the scene of T Figure 6.10, as others are left between blue and green.
+# The hue of the cyan mark in the scene of T Figure 6.10, with the hue on either side, between blue and green.
 CYAN = hues(12, 14)
 
-# Goals 400 mm wide and 150 mm deep [MiroSot] and 100 mm high [assumed, as in scenes/soccer.py]: 4 to 1 from the
-# front, and not even as wide as high at a sharp angle (T Figure 6.14) or half in view.
+# Goals 400 mm wide and 150 mm deep [MiroSot] and 100 mm high [assumed, as in scenes/soccer.py]: 4 to 1 from the front,
+# but less than 1 to 1 at a sharp angle (T Figure 6.14) or half in view.
 _GOAL_MM = {
     "width_mm": 400,
     "height_mm": 100,
@@ -175,7 +175,7 @@ _GOAL_MM = {
 }
 
 MODELS = (
-    # Round: 1 to 1, and a quarter off for shade and reflections. A ball of 6 cm [T §6.3.1].
+    # Round: 1 to 1, with a quarter more for shade and reflections. A ball of 6 cm [T §6.3.1].
     ObjectModel(
         name="ball",
         number=1,
@@ -207,10 +207,10 @@ MODELS = (
 """The objects of the indoor field."""
 
 THESIS_MODELS = (*MODELS, replace(MODELS[-1], name="other team's marker", number=6, colours=CYAN))
-"""Those, and the marks of the other team: the rules give each of the two teams a colour of its own (T §2.3), and the players of both are
-to be detected (T §1.3.1, §6.3.2)."""
+"""Also with the marks of the other team: the rules give each team a colour of its own (T §2.3), and the players of both
+are to be detected (T §1.3.1, §6.3.2)."""
 
-# Its aspects hold from every side, and a quarter more for shade and reflections: a side of 100 mm by 100 mm, and the diagonal.
+# Its aspects fit every side, 100 mm by 100 mm, and the diagonal, and a quarter more for shade and reflections.
 BOX = ObjectModel(
     name="box",
     number=5,
@@ -223,4 +223,4 @@ BOX = ObjectModel(
     aspect_min=12,
     aspect_max=29,
 )
-"""What other boxes are made after; the field has none."""
+"""The template for other boxes; the field has none."""

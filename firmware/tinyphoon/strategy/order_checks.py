@@ -1,7 +1,7 @@
-"""Can a message of the strategy unit be obeyed? Kernels that check every word of it, and the reasons to refuse it.
+"""Kernels that check every word of a message of the strategy unit, and the reasons to refuse it.
 
-A refusal is a number: the reason in bits 0..7, and above them which word, or which model, is meant. `order_texts.py`
-has it in words. Orders are words of 32 bits, low half first, in the frame of `framing.py`.
+A refusal is a number: the reason in bits 0..7, and above them the number of the word or model. `order_texts.py` has it
+in words. Orders are words of 32 bits, low half first, in the frame of `framing.py`.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ SAME_MODEL = 14
 TOTAL = 15
 WHICH_BIT = 8
 
-# What a word may be: a struct of these for each word of a record.
+# Limits of a word: a struct of these for each word of a record.
 LIMIT_LOWEST = 0
 LIMIT_HIGHEST = 1
 LIMIT_STEP = 2  # a power of two
-LIMIT_AT_MOST = 3  # the word of the same record that this one must not exceed; itself for none
-LIMIT_TOTAL = 4  # what the words with one may be together; 0 for none
+LIMIT_AT_MOST = 3  # the word of the same record that this one must not exceed; itself if there is none
+LIMIT_TOTAL = 4  # the largest sum of all words with one; 0 for none
 LIMIT_WORDS = 5
 
 BALL = int(Shape.BALL)
@@ -50,7 +50,7 @@ BALL = int(Shape.BALL)
 
 @kernel
 def frame_refusal(message: u16[:], nbytes: i32) -> i32:
-    """Return why the `nbytes` that came in are no message with an order, or 0."""
+    """Return why the `nbytes` that arrived are no message with an order, or 0."""
     if nbytes < FRAME_BYTES:
         return CUT_SHORT
     if message[0] != SYNC:
@@ -106,10 +106,10 @@ def words_refusal(message: u16[:], limits: i32[:], most: i32) -> i32:
 def picture_refusal(
     message: u16[:], camera: i32, area: i32, full_size: i32[:], most_halvings: i32, least_area: i32
 ) -> i32:
-    """Return why the pictures that a mode wants cannot be had, or 0.
+    """Return why the pictures that a mode wants are not possible, or 0.
 
-    `camera` and `area`: the first words of these two. `full_size`: width and height of the pictures that the buffers
-    are made for; they may be halved `most_halvings` times.
+    `camera` and `area`: their first words. `full_size`: width and height of the pictures that the buffers are made for;
+    they may be halved `most_halvings` times.
     """
     width = full_size[0]
     height = full_size[1]
@@ -135,7 +135,7 @@ def picture_refusal(
 
 @kernel
 def models_refusal(message: u16[:]) -> i32:
-    """Return why the models of an order contradict themselves or one another, or 0: see `models.check_models`."""
+    """Return why the models of an order contradict themselves or one another, or 0; see `models.check_models`."""
     for model in range(i32(message[3]) // (4 * MODEL_WORDS)):
         at = model * MODEL_WORDS
         shape = order_word(message, at + MODEL_SHAPE)

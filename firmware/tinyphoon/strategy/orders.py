@@ -1,8 +1,8 @@
-"""Modes and models of the strategy unit: taken in, checked word by word, and obeyed from the next frame on (T §5.2.6).
+"""Modes and models of the strategy unit: received, checked word by word, and obeyed from the next frame on (T §5.2.6).
 
-Core A takes the messages before the first frame and at the end of each. The words of a good one go to L2, where both cores
-copy them from when they begin a frame; a bad one is counted, told to the strategy unit with the reason, and changes nothing.
-A mode is all its words, and a table of models all its models; how many words those are is the version of the format.
+Core A takes the messages before the first frame and at the end of each. The words of a good one go to L2, where both
+cores copy them from at the beginning of a frame; a bad one is counted, reported with the reason, and changes nothing. A
+mode is all its words, and a table of models all its models; the number of words is the version of the format.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ CAMERA, AREA = _NAMES.index("camera.width"), _NAMES.index("area.x")
 
 
 def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
-    """Return the buffers that both cores share: orders in force, limits of what may be ordered, and incoming messages."""
+    """Return the buffers that both cores share: orders in force, limits of orders, and incoming messages."""
     return (
         Buffer("orders", u16, ORDER_WORDS, section),
         Buffer("ordered_mode", i32, len(MODE_WORDS), section, values=np.array(to_words(INDOOR_FIELD))),
@@ -64,12 +64,12 @@ def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
 
 
 def order_buffers() -> Sequence[Buffer]:
-    """Return a core's own copy of the mode. That of the models is in `models.py`."""
+    """Return a core's own copy of the mode. The copy of the models is in `models.py`."""
     return (Buffer("mode", i32, len(MODE_WORDS), "data1"),)
 
 
 def _limits(name: str, words: Sequence[Word]) -> Buffer:
-    """Return the limits of words, in the SDRAM of the images: they are read only when a message has come."""
+    """Return the limits of words, in the SDRAM of the images: they are read only when a message arrives."""
     names = [each.name for each in words]
     limits = [(each.lowest, each.highest, each.step, names.index(each.at_most), each.total) for each in words]
     return Buffer(name, i32, LIMIT_WORDS * len(words), "sdram_bank2", values=np.ravel(limits))
@@ -100,7 +100,7 @@ class Orders:
         self._taken = self._refused = self._refusal = 0
 
     def take(self) -> Generator[Any, Any, None]:
-        """Take the messages that wait and put the good ones in force, from the next frame on; remark on each bad one."""
+        """Take the waiting messages and put the good ones in force, from the next frame on; remark on each bad one."""
         core, message = self._core, self._core.array("orders")
         while nbytes := (yield from core.receive(message)):
             refusal = yield from _obey(core, message, nbytes)
@@ -112,7 +112,7 @@ class Orders:
             core.remark(refusal_text(refusal, message.array, nbytes, *words, _full_size(core)))
 
     def close(self) -> int:
-        """Publish how many `orders_taken` and `orders_refused`, and return why the last bad one was refused, or 0."""
+        """Publish the counts `orders_taken` and `orders_refused`, and return why the last bad one was refused, or 0."""
         self._core.publish(orders_taken=self._taken, orders_refused=self._refused)
         refusal = self._refusal
         self._taken = self._refused = self._refusal = 0
@@ -120,7 +120,7 @@ class Orders:
 
 
 def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:
-    """Check a message and store its words if it is good; returns why it is refused, or 0."""
+    """Check a message and store its words if it is good; return why it is refused, or 0."""
     refusal: int = yield core.run(frame_refusal, message, nbytes)
     if refusal:
         return refusal
@@ -142,7 +142,7 @@ def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:
 
 
 def see_by(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Area]:
-    """Look at what of a picture the mode wants, and set the camera for the next ones; returns the area that is seen."""
+    """Use the part of a picture that the mode wants, and set the camera for the next ones; return that area."""
     full = _full_size(core)
     area = see(core, frame, mode.camera, mode.area, full)
     halvings = halvings_of(core, frame)
@@ -151,7 +151,7 @@ def see_by(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Area]:
 
 
 def halvings_of(core: Core, frame: Frame) -> int:
-    """Return how often the size of a picture was halved from that of the recorded ones."""
+    """Return how often a picture's size was halved from the recorded one."""
     return (_full_size(core).width_px // frame.width).bit_length() - 1
 
 
@@ -174,7 +174,7 @@ def mode_in(mode: NDArray[np.int32], models: NDArray[np.int32]) -> Mode:
 
 @lru_cache(maxsize=4)
 def _mode_of(mode: tuple[int, ...], models: tuple[int, ...]) -> Mode:
-    """Return those of these words: nearly always those of the frame before."""
+    """Return the mode of these words, which are nearly always those of the previous frame."""
     each_words = (models[first : first + MODEL_WORDS] for first in range(0, len(models), MODEL_WORDS))
     known = tuple(_model(each) for each in each_words if each[MODEL_NUMBER])
     ordered = from_words(INDOOR_FIELD, mode)
@@ -189,5 +189,5 @@ def _model(words: tuple[int, ...]) -> ObjectModel:
 
 
 def _what_it_is(model: ObjectModel) -> str:
-    """Return what a model of another number is called: names do not go over the SPI."""
+    """Return the description of a model with a new number: names do not go over the SPI."""
     return f"{' or '.join(names_of(model.colours))} {model.shape.name.lower()} {model.number}"

@@ -1,4 +1,4 @@
-"""The end of a frame: the message of its results is made and sent."""
+"""The end of a frame: the message with its results is made and sent."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SEQUENCE_MASK = 0x7FFF
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Depth:
-    """How many 3-D lines and 3-D edges are in their stores, and how many of them may leave."""
+    """How many 3-D lines and 3-D edges are stored, and how many of them may be sent."""
 
     lines_3d: int
     edges_3d: int
@@ -30,7 +30,7 @@ def report(
     refusal: int = 0,
     depth: Depth | None = None,
 ) -> Generator[Any, Any, None]:
-    """Send the object history, the border lines of rectangles in the left picture, and what has depth to the strategy unit.
+    """Send the object history, the border lines of rectangles in the left picture, and everything with depth.
 
     `refusal`: why an order was refused, or 0. A board with one camera has no `depth`.
     """

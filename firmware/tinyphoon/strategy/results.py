@@ -1,9 +1,9 @@
-"""What leaves for the strategy unit after every frame: the object history, the border lines of rectangles (T §5.2.6, §6.4), and depth.
+"""The message to the strategy unit after every frame: object history, border lines (T §5.2.6, §6.4) and depth.
 
-The payload of a message (`framing.py`) is 16-bit words: the frame's number, low half first; how many objects and how many border lines
-follow; why an order was refused (`order_checks.py`), or 0; the corner of the area, in pixels, that the places in the picture
-count from; how many 3-D lines and 3-D edges follow, and how many there were (`depth_report.py`); then objects, border
-lines, 3-D lines and 3-D edges.
+The payload of a message (`framing.py`) is 16-bit words: the frame's number, low half first; the numbers of objects and
+border lines that follow; why an order was refused (`order_checks.py`), or 0; the corner of the area, in pixels, from
+which places in the picture count; the numbers of 3-D lines and 3-D edges that follow, and of all that there were
+(`depth_report.py`); then objects, border lines, 3-D lines and 3-D edges.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ from tinyphoon.strategy.depth_report import (
 from tinyphoon.strategy.framing import HEADER_WORDS, RESULTS, SYNC, crc16_byte
 
 COUNTS_WORDS = 11  # of the payload: frame number, objects, border lines, refusal, corner of the area, depth
-PLACE_WORDS = OBJECT_HEIGHT - OBJECT_X + 1  # position, image, size: as they are in t_Object
+PLACE_WORDS = OBJECT_HEIGHT - OBJECT_X + 1  # position, image, size: as in t_Object
 REPORT_WORDS = 3 + PLACE_WORDS
 LINE_REPORT_WORDS = 5
-LINE_CAPACITY = 24  # of four goals and three marks
+LINE_CAPACITY = 24  # for four goals and three marks
 PAYLOAD_WORDS = (
     COUNTS_WORDS
     + OBJECT_CAPACITY * REPORT_WORDS
@@ -62,7 +62,7 @@ MESSAGE_WORDS = HEADER_WORDS + PAYLOAD_WORDS + 1
 
 @kernel
 def pack_objects(message: u16[:], objects: i16[:]) -> i32:
-    """Begin the payload with all objects of the history, in the order of their records; returns its words so far."""
+    """Begin the payload with all objects of the history, in the order of their records; return its length in words."""
     count: i32 = 0
     to: i32 = HEADER_WORDS + COUNTS_WORDS
     for at in range(0, len(objects), OBJECT_WORDS):
@@ -83,7 +83,7 @@ def pack_objects(message: u16[:], objects: i16[:]) -> i32:
 
 @kernel
 def pack_line(message: u16[:], words: i32, model: i32, side: i32, lines: i16[:], line: i32) -> i32:
-    """Append the line `line` of a rectangle to the payload of `words` words if there is one and room; returns its words then."""
+    """Append line `line` of a rectangle to the payload, if it exists and there is room; return the new length."""
     if line == NO_LINE or message[HEADER_WORDS + 3] == LINE_CAPACITY:
         return words
     to = HEADER_WORDS + words
@@ -98,9 +98,9 @@ def pack_line(message: u16[:], words: i32, model: i32, side: i32, lines: i16[:],
 def pack_border_lines(
     message: u16[:], words: i32, seen: i16[:], models: i32[:], rectangles: i16[:], lines: i16[:]
 ) -> i32:
-    """Append the border lines of the rectangles in `seen` to a payload of `words` words; returns its words then.
+    """Append the border lines of the rectangles in `seen` to a payload of `words` words; return its new length.
 
-    Those of a goal are its posts and its bottom line; a mark, which is seen over the floor, has a top line too (T §6.4).
+    For a goal these are its posts and its bottom line; a mark, which is above the floor, has a top line, too (T §6.4).
     """
     for at in range(0, len(seen), OBJECT_WORDS):
         model = i32(seen[at + OBJECT_MODEL])
@@ -125,7 +125,7 @@ def pack_border_lines(
 def close_message(
     message: u16[:], sequence: i32, frame: i32, refusal: i32, x: i32, y: i32, words: i32
 ) -> i32:
-    """Frame a payload of `words` words, begin it with what is known of its frame, and return the bytes of the message.
+    """Frame a payload of `words` words, write the facts of its frame at its beginning, and return the message's bytes.
 
     `refusal`: of an order, or 0. (`x`, `y`): the corner of the area.
     """

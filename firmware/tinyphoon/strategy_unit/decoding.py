@@ -1,4 +1,4 @@
-"""The results as the strategy unit reads them: the payload of a message taken apart."""
+"""The results as the strategy unit reads them: the payload of a message, decoded."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tinyphoon.strategy.results import COUNTS_WORDS, LINE_REPORT_WORDS, REPORT_W
 
 
 class Side(IntEnum):
-    """Which border of a rectangle a line is."""
+    """The border of a rectangle that a line belongs to."""
 
     LEFT = RECTANGLE_LEFT
     RIGHT = RECTANGLE_RIGHT
@@ -28,10 +28,10 @@ class Side(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReportedObject:
-    """An object as the strategy unit is told of it.
+    """An object as reported to the strategy unit.
 
-    `tests`, `cameras`, `measures`: the bits of `stores/objects.py`. `towards`: its place in mm in the left camera's frame, or
-    without `measures` a vector that points there. `image_px`: middle, width and height in the picture.
+    `tests`, `cameras`, `measures`: the bits of `stores/objects.py`. `towards`: its place in mm in the left camera's
+    frame or, without `measures`, a vector in its direction. `image_px`: middle, width and height in the picture.
     """
 
     model: int
@@ -45,13 +45,13 @@ class ReportedObject:
 
     @property
     def has_place(self) -> bool:
-        """Whether `towards` is a place, and not only a direction."""
+        """Whether `towards` is a place rather than just a direction."""
         return self.measures != 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BorderLine:
-    """A border line of a rectangle in the left picture: x and y of its start and of its end."""
+    """A border line of a rectangle in the left picture: x and y of its start and its end."""
 
     model: int
     side: Side
@@ -60,10 +60,10 @@ class BorderLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """What the strategy unit is told after a frame. `refusal`: why an order was refused, or 0.
+    """The report after a frame. `refusal`: why an order was refused, or 0.
 
-    `lines_3d` are starts and ends in mm in the left camera's frame, of shape (lines, 2, 3), the bright side on the left; `edges_3d`, of
-    shape (edges, 3), are places. `*_found`: how many of them there were; only a part has room.
+    `lines_3d` are starts and ends in mm in the left camera's frame, of shape (lines, 2, 3), with the bright side on the
+    left; `edges_3d`, of shape (edges, 3), are places. `*_found`: how many there were; only some of them fit.
     """
 
     frame: int
@@ -77,7 +77,7 @@ class Results:
 
 
 def decode_results(payload: bytes) -> Results:
-    """Read the payload of a message of results. Raises FirmwareError if it is none."""
+    """Decode the payload of a message of results. Raises FirmwareError if it is invalid."""
     words = np.frombuffer(payload[: len(payload) // 2 * 2], "<i2").tolist()
     if len(payload) < 2 * COUNTS_WORDS:
         raise FirmwareError(f"results must have at least {2 * COUNTS_WORDS} bytes, not {len(payload)}")

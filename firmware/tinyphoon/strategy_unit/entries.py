@@ -1,9 +1,9 @@
-"""What the strategy unit is to send, and when: its script.
+"""The script of the strategy unit: what it sends, and when.
 
-A TOML script is a list of tables, and a JSON script an object with the same keys. Each entry has one order by name, `mode`
-or `models`; or the words of a payload; or bytes that go over the wire as they are, to see what the firmware does with a
-damaged message. `after_frames` is how many frames are to be reported before it is sent. Without it, or with 0, it waits when
-the firmware starts and holds from frame 0 on; after n frames it comes in frame n and holds from the next one on:
+A TOML script is a list of tables, and a JSON script an object with the same keys. Each entry has one order by name,
+`mode` or `models`; or the words of a payload; or raw bytes, to see how the firmware handles a damaged message.
+`after_frames` is the number of frames to be reported before it is sent. Without it, or with 0, the message waits when
+the firmware starts and holds from frame 0 on; after n frames it arrives in frame n and holds from the next one on:
 
     [[send]]
     models = [{name = "ball", colour = "orange", diameter_mm = 43}]
@@ -38,12 +38,12 @@ from tinyphoon.strategy_unit.payloads import BY_NAME, payload_by_name
 MOST_FRAMES = 0x7FFF_FFFF
 ORDERS = (MessageType.MODE, MessageType.MODELS)
 DAMAGED = "damaged"
-"""The type, in the report, of bytes that are no message."""
+"""The type, in the report, of bytes that are not a message."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """What to send once so many frames have been reported; 0: before the first one."""
+    """What to send after so many reported frames; 0: before the first one."""
 
     after_frames: int
     message: SpiMessage
@@ -51,7 +51,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class _Asked:
-    """An entry as it stands in the script under the key `at`: an order and its payload, or raw bytes, which have no `type`."""
+    """An entry of the script under the key `at`: an order and its payload, or raw bytes, which have no `type`."""
 
     at: str
     after_frames: int
@@ -62,9 +62,9 @@ class _Asked:
 def entries_of(script: Script, mode: Mode = INDOOR_FIELD) -> tuple[Entry, ...]:
     """Return the entries of a script in the order in which they are due; their messages are numbered in that order.
 
-    `mode` is what an ordered mode is in all that the script does not name.
+    `mode` gives the fields of an ordered mode that the script does not name.
 
-    Raises FirmwareError that names the key and what must be.
+    Raises FirmwareError that names the key and what it must be.
     """
     _require_keys(script, (), ("send",), "the script")
     send = script.get("send", [])
@@ -89,7 +89,7 @@ def _numbered(asked: Sequence[_Asked]) -> Iterator[Entry]:
 
 
 def _type_of(octets: bytes) -> str:
-    """Return what the report calls raw bytes, which may be a message all the same."""
+    """Return the report's name for raw bytes, which may be a valid message."""
     try:
         return decode(octets).type.name
     except MessageError:

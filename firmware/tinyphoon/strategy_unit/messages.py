@@ -1,8 +1,8 @@
-"""Messages as the strategy unit makes and reads them; the format is [ours], the thesis has none.
+"""Messages as the strategy unit makes and reads them; the format is [ours], as the thesis has none.
 
-A message is 16-bit words: a sync word, the type, a sequence number, the bytes of the payload, the payload
-(with a zero byte behind it where its size is odd) and a CRC of all that is between sync word and CRC. Bytes here
-are in the order of memory, where DMA takes the words from: low byte first.
+A message is 16-bit words: a sync word, the type, a sequence number, the bytes of the payload, the payload (followed by
+a zero byte if its size is odd) and a CRC of everything between sync word and CRC. Bytes here are in the order of
+memory, where DMA takes the words from: low byte first.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ _CRC = struct.Struct("<H")
 
 
 class MessageError(FirmwareError):
-    """Raised when bytes from the SPI are no message, or something cannot be sent as one."""
+    """Raised when bytes from the SPI are not a message, or something cannot be sent as one."""
 
 
 class MessageType(IntEnum):
-    """What a message is about. RESULTS come from the vision sensor, the others go to it."""
+    """The subject of a message. RESULTS come from the vision sensor, the others go to it."""
 
     RESULTS = framing.RESULTS
     MODE = framing.MODE
@@ -34,7 +34,7 @@ class MessageType(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message. The sender numbers its messages with `sequence`, 0..65535 and from 0 again."""
+    """One message. The sender numbers its messages with `sequence`, 0..65535, then from 0 again."""
 
     type: MessageType
     sequence: int
@@ -64,7 +64,7 @@ def encode(message: Message) -> bytes:
 
 
 def decode(octets: bytes) -> Message:
-    """Return the message that `octets` are, all of them; raise MessageError if they are none."""
+    """Return the message in all of `octets`; raise MessageError if it is invalid."""
     if len(octets) < _HEADER.size:
         raise MessageError(
             f"a message must have a header of {_HEADER.size} bytes, but is cut short after {len(octets)}"
@@ -97,5 +97,5 @@ def _type_of(number: int) -> MessageType:
 
 
 def _crc(framed: bytes) -> int:
-    """CRC-16 of what follows the sync word: CCITT's polynomial, from all ones."""
+    """Return the CRC-16 of everything after the sync word: CCITT's polynomial, from all ones."""
     return binascii.crc_hqx(framed[2:], 0xFFFF)

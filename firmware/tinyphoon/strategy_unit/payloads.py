@@ -1,4 +1,4 @@
-"""What the strategy unit may order, by name → the payload of its message."""
+"""Orders of the strategy unit by name → the payloads of their messages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tinyphoon.strategy_unit.plain_models import words_of_models
 
 
 def payload(words: Sequence[int]) -> bytes:
-    """Return words as they go over the SPI."""
+    """Return words as bytes for the SPI."""
     return np.array(words, np.int64).astype("<i4").tobytes()
 
 
@@ -26,7 +26,7 @@ def mode_payload(names: object, at: str = "mode", mode: Mode = INDOOR_FIELD) -> 
 
 
 def models_payload(models: object, at: str = "models") -> bytes:
-    """Return the payload of models: each the name of one of `MODELS`, or in plain words (`plain_models.py`).
+    """Return the payload of models: each is the name of one of `MODELS`, or described (`plain_models.py`).
 
     Raises FirmwareError that names the model or its field under `at`.
     """
@@ -40,5 +40,5 @@ BY_NAME = "mode", "models"
 
 
 def payload_by_name(name: str, order: object, at: str, mode: Mode) -> bytes:
-    """Return the payload of an order of `BY_NAME`; a mode is what it says, and `mode` in the rest."""
+    """Return the payload of an order of `BY_NAME`; fields that a mode does not name come from `mode`."""
     return mode_payload(order, at, mode) if name == "mode" else models_payload(order, at)

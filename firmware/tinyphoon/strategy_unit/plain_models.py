@@ -1,14 +1,14 @@
-"""Models in plain words, as a script has them, and the words that they become on the SPI.
+"""Models as a script describes them, and their words on the SPI.
 
     {"name": "ball", "colour": "orange", "diameter_mm": 43}
     {"name": "cone", "shape": "marker", "colour": ["red", "orange"], "width_mm": 40, "height_mm": 60}
     {"name": "crate", "shape": "box", "colour": "green", "width_mm": 120, "height_mm": 70, "depth_mm": 80}
     {"name": "blue goal", "hue_deg": [90, 155], "width_mm": 600}
 
-A name of the indoor field stands for its model, and what is given besides changes that. Any other name is a new model: it
-must have a shape, a colour and a size; its number is the first free one, and the rest is as in the first model of that
-shape, boxes after one of 100 mm. The limits of a blob's width by height follow the size unless they are given. A name does not go over the SPI: the
-report calls a new model by what it is, "green box 5".
+A name of the indoor field stands for its model, changed by anything else that is given. Any other name is a new model:
+it must have a shape, a colour and a size; its number is the first free one, and the rest is as in the first model of
+that shape, for boxes as in one of 100 mm. The limits of a blob's width by height follow the size unless they are given.
+Names do not go over the SPI: the report describes a new model, "green box 5".
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _no_model(given: object, at: str) -> FirmwareError:
 
 
 def _base(given: Mapping[str, Any], at: str) -> tuple[ObjectModel, bool]:
-    """Return the model that `given` changes, and whether it is a new one made after that."""
+    """Return the model that `given` changes, and whether it is only the template of a new one."""
     name = given.get("name")
     if isinstance(name, str) and name in BY_NAME:
         return BY_NAME[name], False
@@ -87,12 +87,12 @@ def _base(given: Mapping[str, Any], at: str) -> tuple[ObjectModel, bool]:
 
 
 def _is_shape(value: object, shape: Shape) -> bool:
-    """Whether a script means `shape`: by its name in any case, or by its number."""
+    """Whether a script's value means `shape`: by its name in any case, or by its number."""
     return value.upper() == shape.name if isinstance(value, str) else value == shape
 
 
 def _colours(given: Mapping[str, Any], at: str, *, needed: bool) -> dict[str, int]:
-    """Return the colours that a model is given by name or by hue."""
+    """Return the colours of a model, given by name or by hue."""
     found = [key for key in COLOUR_KEYS if key in given]
     if len(found) > 1 or (needed and not found):
         raise FirmwareError(
@@ -129,7 +129,7 @@ def _by_hue(value: object, at: str) -> int:
 
 
 def _size(given: Mapping[str, Any], base: ObjectModel, at: str, *, needed: bool) -> dict[str, Any]:
-    """Return the sides of a model. A ball has all of them in one number; only boxes must say how deep they are."""
+    """Return the sides of a model. A single number gives all sides of a ball; only boxes need a depth."""
     is_ball = _is_shape(given.get("shape", base.shape), Shape.BALL)
     is_box = _is_shape(given.get("shape", base.shape), Shape.BOX)
     sides = {key: given[key] for key in SIDES if key in given}
@@ -153,7 +153,7 @@ def _size(given: Mapping[str, Any], base: ObjectModel, at: str, *, needed: bool)
 
 
 def _aspects(base: ObjectModel, named: Mapping[str, Any]) -> dict[str, int]:
-    """Return the limits of width by height: those of `base`, by as much wider or narrower as the model is.
+    """Return the limits of width by height: those of `base`, scaled with the proportions of the model.
 
     A box looks narrowest from its shorter side and widest along its diagonal.
     """

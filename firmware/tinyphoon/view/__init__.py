@@ -1,1 +1,1 @@
-"""What the firmware saw, read out for people and files: no part of the firmware on the chip."""
+"""What the firmware saw, read out for people and files: not part of the firmware on the chip."""

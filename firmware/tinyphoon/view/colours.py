@@ -1,4 +1,4 @@
-"""A colour to draw with for the bits of the 32-colour image."""
+"""A drawing colour for the bits of the 32-colour image."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from bfsim.api import Colour
 from tinyphoon.stages.colour_reduction import BLACK, FIRST_HUE, HUES, WHITE
 
 WHITENESS = 0.2
-"""Of each drawn hue, so that blue too is bright on a dark picture. [ours]"""
+"""White in each drawn hue, so that blue is also bright on a dark picture. [ours]"""
 
 
 def colour_of(colours: int) -> Colour:

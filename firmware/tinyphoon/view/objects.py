@@ -1,4 +1,4 @@
-"""The objects of the object history, as what firmware saw."""
+"""The objects of the object history, as records of what the firmware saw."""
 
 from __future__ import annotations
 

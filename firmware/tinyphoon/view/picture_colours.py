@@ -1,4 +1,4 @@
-"""What the colour reduction makes of any picture, for people: each colour with its name, and the white balance to order."""
+"""The colour reduction of any picture, for people: each colour with its name, and the white balance to order."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WITHOUT_HUE_DRAWN: dict[str, Colour] = {"black": (20, 20, 20), "white": (255, 25
 NO_COLOUR: Colour = (128, 128, 128)
 
 DARKEST, BRIGHTEST = 16, 240
-"""Lumas that a white balance is measured by: darker is noise, and what is brighter may be cut off at 255."""
+"""The lumas used to measure a white balance: darker ones are noise, and brighter ones may be clipped at 255."""
 
 LEAST_GAIN, MOST_GAIN = next(
     (each.lowest, each.highest) for each in words_of(EdgeThresholds) if each.name == "red_gain"
@@ -33,7 +33,7 @@ LEAST_GAIN, MOST_GAIN = next(
 def picture_colours(
     picture: NDArray[np.uint8], script: Script, frame: int, mode: Mode = INDOOR_FIELD
 ) -> PictureColours:
-    """Return the colours of a UYVY picture by the mode that a script has put in force at `frame`, in place of `mode`."""
+    """Return the colours of a UYVY picture by the mode that a script has in force at `frame`, `mode` at first."""
     thresholds = mode_at(script, frame, mode).edges
     atan, words = arctangent_table(), np.zeros((picture.shape[0], picture.shape[1] // 2), np.uint32)
     for line, found in zip(picture.copy(), words, strict=True):
@@ -48,7 +48,7 @@ def picture_colours(
 
 
 def mode_at(script: Script, frame: int, mode: Mode = INDOOR_FIELD) -> Mode:
-    """Return the mode that holds in a frame, `mode` at first. Raises FirmwareError where a script orders what is not allowed."""
+    """Return the mode in force in a frame, `mode` at first. Raises FirmwareError for a forbidden order."""
     for entry in entries_of(script, mode):
         if entry.after_frames == 0 or entry.after_frames < frame:
             mode = _ordered(entry) or mode
@@ -56,7 +56,7 @@ def mode_at(script: Script, frame: int, mode: Mode = INDOOR_FIELD) -> Mode:
 
 
 def _ordered(entry: Entry) -> Mode | None:
-    """Return the mode of an order, if it is one; the chip, too, leaves damaged messages alone."""
+    """Return the mode of an order, if it is one; like the chip, ignore damaged messages."""
     try:
         message = decode(entry.message.octets)
     except MessageError:
@@ -96,5 +96,5 @@ def _balance(picture: NDArray[np.uint8]) -> str:
 
 
 def _gain(grey: float, part: float) -> int:
-    """Return what brings red or blue, on average `part`, to `grey`, within what may be ordered."""
+    """Return the gain that brings red or blue, with mean `part`, to `grey`, within the limits of orders."""
     return round(min(max(AS_IT_IS * grey / max(part, 1), LEAST_GAIN), MOST_GAIN))

@@ -1,7 +1,7 @@
 """The rectified picture under rectified features, for people: nothing on the chip needs one.
 
-Places of the camera's pixels are known, and wanted are sources of the rectified ones: each is sought from the pixel itself, by
-what its place is off, again and again. A lens that moves its neighbours by less than their distance lets that converge.
+The places of the camera's pixels are known, but the sources of the rectified ones are needed: each is sought from the
+pixel itself, correcting by the error of its place. This converges if a lens moves neighbours by less than their distance.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Points = NDArray[np.float64]
 
 
 def rectified_picture(picture: NDArray[np.uint8], places: NDArray[np.int16], area: Area) -> NDArray[np.uint8]:
-    """Return an area of the rectified picture, UYVY: the nearest pixel of the camera's `picture` each, black beyond it."""
+    """Return an area of the rectified picture, UYVY: each pixel is the camera's nearest, black outside of `picture`."""
     height, width = picture.shape[0], picture.shape[1] // 2
     rows, columns = np.indices((area.height, area.width))
     wanted = np.stack([columns + area.x, rows + area.y], axis=-1).astype(float)
@@ -33,14 +33,14 @@ def rectified_picture(picture: NDArray[np.uint8], places: NDArray[np.int16], are
     x, y = np.where(inside, x, 0), np.where(inside, y, 0)
     rectified = np.empty((area.height, 2 * area.width), np.uint8)
     rectified[:, 1::2] = np.where(inside, picture[y, 2 * x + 1], BLACK_PAIR[1])
-    for byte in (0, 2):  # a pair has the colour of its left pixel
+    for byte in (0, 2):  # both pixels of a pair get the colour of the left one
         colour = picture[y, 4 * (x // 2) + byte]
         rectified[:, byte::4] = np.where(inside, colour, BLACK_PAIR[byte])[:, ::2]
     return rectified
 
 
 def _placed(nodes: Points, points: Points) -> Points:
-    """Return where points of the camera's picture lie between the nodes; beyond these as far as the nearest cell says."""
+    """Return the places of points in the camera's picture, interpolated between nodes; beyond them, extrapolated."""
     last = np.array(nodes.shape[1::-1]) - 2
     cells = np.clip(np.floor(points / NODE_PX).astype(int), 0, last)
     right, below = np.moveaxis(points / NODE_PX - cells, -1, 0)[..., None]

@@ -1,4 +1,4 @@
-"""What the firmware saw, read out of its stores for people and files: no part of the firmware on the chip."""
+"""What the firmware saw, read out of its stores for people and files: not part of the firmware on the chip."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ SIDES = {
 
 
 def view(readout: Readout) -> Seen:
-    """Return what a core saw, in coordinates of the area that it looked at. Stages that it does not have left nothing."""
+    """Return what a core saw, in coordinates of its area. Stages that it does not have contribute nothing."""
     mode = mode_in(readout.values("mode"), readout.values("models"))
     area = area_in(readout.frame, mode.area)
     picture = _picture(readout, area)
@@ -183,6 +183,6 @@ def _edges_3d(readout: Readout) -> SeenEdges3D:
 
 
 def _records(readout: Readout, name: str, words: int) -> list[list[int]]:
-    """Return the structs of a buffer that has as many as the core has published under its name."""
+    """Return the structs in a buffer, as many as the core has published under its name."""
     found: list[list[int]] = readout.records(name, words, readout.published(name)).tolist()
     return found
