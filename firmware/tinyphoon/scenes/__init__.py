@@ -1,4 +1,4 @@
-"""Scenes to render recordings of: robot soccer as the robot sees it, and what the thesis shows and measures."""
+"""Scenes for recordings: robot soccer as the robot sees it, and what the thesis shows and measures."""
 
 from __future__ import annotations
 
@@ -14,4 +14,4 @@ SCENES: dict[str, Scenes] = {
     "box-distances": BOX_DISTANCES,
     "ball-distances": BALL_DISTANCES,
 }
-"""By the names that `bfsim record render` takes."""
+"""The scenes by the names that `bfsim record render` takes."""

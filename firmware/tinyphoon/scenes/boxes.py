@@ -9,12 +9,12 @@ from bfsim.recording.scenes import Box, Pose
 from tinyphoon.scenes.soccer import FLOOR, SOCCER
 from tinyphoon.scenes.thesis import GREEN
 
-# Longer than deep, so that its faces differ, and not as high as the cameras. [assumed]
+# Longer than deep, so that its faces differ, and lower than the cameras. [assumed]
 BOX = Box(foot_mm=(300, 0, 0), size_mm=(80, 120, 70), colour=GREEN)
-"""The side that looks towards -x is 120 mm wide: from there it is 80 mm deep."""
+"""The side facing -x is 120 mm wide; seen from there, the box is 80 mm deep."""
 
 DISTANCES_MM = (350, 500, 700, 900)  # to its middle
-ANGLES_DEG = (0, 20, 45, 70, 90)  # from where it looks 120 mm wide to where it looks 80 mm wide
+ANGLES_DEG = (0, 20, 45, 70, 90)  # from the view 120 mm wide to the view 80 mm wide
 ASIDE_DEG = 4  # the robot looks a little past it
 
 BOXES = replace(

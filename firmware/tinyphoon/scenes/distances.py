@@ -1,4 +1,4 @@
-"""A box and a ball at known distances, as T Tables 6.2 and 6.3 measure them: a frame for each distance."""
+"""A box and a ball at known distances, as in T Tables 6.2 and 6.3: a frame for each distance."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from dataclasses import replace
 from bfsim.recording.scenes import Box, Pose, Scene, SceneAtDistances, StereoGeometry
 from tinyphoon.scenes.soccer import BALL, FLOOR, RED, SOCCER
 
-# Both borders in both pictures at the shortest distance. [assumed]
+# Both borders are in both pictures at the shortest distance. [assumed]
 _BOX_MM = (80.0, 100.0, 100.0)
 
 _THING_X_MM = 600.0
 _BOX = Box(foot_mm=(_THING_X_MM + _BOX_MM[0] / 2, 0, 0), size_mm=_BOX_MM, colour=RED)
 _BALL = replace(BALL, x_mm=_THING_X_MM, y_mm=0)
 
-# Wide and empty: nothing but the thing has edges. [assumed]
+# Wide and empty: only the thing has edges. [assumed]
 _FLOOR = replace(FLOOR, size_mm=(4000.0, 4000.0), lines=())
 
 
 def _box_at(distances_mm: Sequence[float], geometry: StereoGeometry) -> Scene:
-    """Return a box between the axes of the cameras; its front is each of `distances_mm` from them, over the floor."""
+    """Return a box between the axes of the cameras; its front is at each of `distances_mm`, over the floor."""
     return replace(
         SOCCER,
         description=f"T Table 6.2: a box with its front {_listed(distances_mm)} mm before the cameras.",
@@ -35,7 +35,7 @@ def _box_at(distances_mm: Sequence[float], geometry: StereoGeometry) -> Scene:
 
 
 def _ball_at(distances_mm: Sequence[float], geometry: StereoGeometry) -> Scene:
-    """Return a ball of 6 cm between the axes of the cameras; its centre is each of `distances_mm` deep.
+    """Return a ball of 6 cm between the axes of the cameras; its centre is at each of `distances_mm` in depth.
 
     Depth is along the axes, as T Eq. 4.1 measures it.
     """
@@ -58,9 +58,9 @@ def _listed(distances_mm: Sequence[float]) -> str:
     return ", ".join(f"{distance:g}" for distance in distances_mm)
 
 
-# Distances, focal length and baseline of the synthetic pictures: [T 6.2], [T 6.3.1]. The thesis gives the focal
-# length in mm and uses it in px. Height and tilt: [assumed]; level before the box, so that its upright edges are
-# as deep at the top as at the bottom, and as on the robot before the ball [T 6.4].
+# Distances, focal length and baseline of the synthetic pictures: [T 6.2], [T 6.3.1]. The thesis gives the focal length
+# in mm and uses it in px. Height and tilt: [assumed]; level for the box, so that its upright edges are as deep at the
+# top as at the bottom, and as on the robot for the ball [T 6.4].
 BOX_DISTANCES = SceneAtDistances(
     at=_box_at,
     distances_mm=(250.0, 300.0, 350.0, 400.0, 450.0, 500.0, 600.0, 700.0, 800.0, 1000.0),

@@ -1,4 +1,4 @@
-"""The field, its things and its light; and the soccer scene of the built-in recording: numbers only.
+"""The field, its things and its light, and the soccer scene of the built-in recording: only numbers.
 
 Sources: [T] the Tinyphoon thesis; [MiroSot] the rules of FIRA's league for robots of 7.5 cm, quoted from
 memory; [assumed].
@@ -24,7 +24,7 @@ from bfsim.recording.scenes import (
 # Focal length after rectification and baseline: [T 6.2]; height above the floor and tilt: [T 6.4].
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 
-# Clearly apart in hue when seen as U and V, none of them so saturated that it counts as black. [assumed]
+# Clearly different in hue as U and V, and none so saturated that it counts as black. [assumed]
 YELLOW: Colour = (0.80, 0.54, 0.03)
 BLUE: Colour = (0.11, 0.36, 0.66)
 RED: Colour = (0.80, 0.20, 0.16)
@@ -54,7 +54,7 @@ ROBOT = Robot(
     mark_colour=RED,
 )
 
-# Wide enough for a camera 12 cm above the floor to see a line across its way. [assumed]
+# Wide enough for a camera 12 cm above the floor to see a line that crosses its view. [assumed]
 LINE_MM = 10.0
 
 LINES = (
@@ -80,14 +80,14 @@ WALLS = {
     "wall_side_right": Box(foot_mm=(0, -662.5, 0), size_mm=(1500, 25, 50), colour=WHITE),
 }
 
-# Two rows of office lamps, the brighter one behind the robot; 1 just saturates the sensor. [assumed]
+# Two rows of office lamps, with the brighter one behind the robot; 1 just saturates the sensor. [assumed]
 LAMPS = (
     Lamp((-1700, 300, 1600), (300, 1600), 48.0),
     Lamp((100, -500, 1900), (1200, 300), 16.0),
 )
 LIGHT = Light(lamps=LAMPS, room_radiance=0.015)
 
-# 30 frames a second; the second camera has an oscillator of its own and lags by a constant phase. [assumed]
+# 30 frames a second; the second camera has its own oscillator and lags by a constant phase. [assumed]
 FRAME_PERIOD_NS = 33_333_333
 RIGHT_PHASE_NS = 2_100_000
 
@@ -107,6 +107,6 @@ SOCCER = Scene(
     poses=DRIVE.poses(8, FRAME_PERIOD_NS),
     period_ns=FRAME_PERIOD_NS,
     right_phase_ns=RIGHT_PHASE_NS,
-    samples=192,  # light paths a pixel; their own noise then stays below that of the sensor
+    samples=192,  # light paths a pixel; their noise then stays below that of the sensor
     seed=561,
 )

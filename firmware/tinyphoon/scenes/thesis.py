@@ -1,8 +1,8 @@
-"""The scenes of the thesis's figures, rebuilt from what its text says of them: numbers only.
+"""The scenes of the thesis's figures, rebuilt from the descriptions in its text: only numbers.
 
-The pictures themselves are not reproduced: where things stand, and all colours and lights, are [assumed]; what
-the text gives is marked [T] with its section. Each scene shows the effect that the text reports, as strongly as
-it comes.
+The pictures themselves are not reproduced: positions, and all colours and lights, are [assumed]; what the text
+gives is marked [T] with its section. Each scene shows the effect that the text reports, as strongly as it
+occurs.
 """
 
 from __future__ import annotations
@@ -37,18 +37,18 @@ LIGHT_GREY: Colour = (0.45, 0.45, 0.45)
 YELLOW_GOAL = replace(GOAL, colour=YELLOW)
 
 FRAMES = 3
-SAMPLES = 64  # light paths a pixel; where light is low their noise is that of a gain turned up
+SAMPLES = 64  # light paths a pixel; in low light, their noise is that of a gain turned up
 
 
 def _still(x_mm: float, y_mm: float, heading_deg: float, speed_mm_per_s: float = 0.0) -> Drive:
-    """Return a robot that looks and drives straight on."""
+    """Return a robot that looks and drives straight ahead."""
     return Drive(
         x_mm=x_mm, y_mm=y_mm, heading_deg=heading_deg, speed_mm_per_s=speed_mm_per_s, turn_deg_per_s=0
     )
 
 
 # The ball lies next to the goal; half of a circular landmark is in view; on the left above the goal, off the field, is
-# a blob that no model takes for its shape or dimension, so it has a model's colour. [T 6.4, Figure 6.7]
+# a blob whose shape and dimension fit no model, so it has a model's colour. [T 6.4, Figure 6.7]
 BALL_BESIDE_GOAL = replace(
     SOCCER,
     description="T Figure 6.7: the ball beside the goal, a circular landmark half in view, a thing off the field.",
@@ -64,14 +64,14 @@ BALL_BESIDE_GOAL = replace(
     seed=607,
 )
 
-# The first pictures after the settings were sent drift toward yellow; five to ten pictures pass before the camera
-# answers. The goal is yellow. [T 6.4, Figure 6.8]
+# The first pictures after the settings were sent have a yellow cast; five to ten pictures pass before the camera
+# responds. The goal is yellow. [T 6.4, Figure 6.8]
 _YELLOW_DRIFT: Colour = (1.5, 1.35, 0.30)  # [assumed]
 _SETTLING_FRAMES = 8
 
 
 def _settling(frame: int) -> Colour:
-    """Return the gains of a frame on the straight way from the drift to 1."""
+    """Return the gains of a frame on a linear way from the drift to 1."""
     rest = 1 - frame / _SETTLING_FRAMES
     red, green, blue = (1 + rest * (gain - 1) for gain in _YELLOW_DRIFT)
     return red, green, blue
@@ -89,8 +89,8 @@ CAMERA_INITIALISED = replace(
     seed=608,
 )
 
-# The mark is seen from 7 to 12 cm above the ground; what stands behind the field makes the left border line of
-# the mark longer than the mark. [T 6.4, Figure 6.9]
+# The mark is seen from 7 to 12 cm above the ground; things behind the field make the left border line of the mark
+# longer than the mark. [T 6.4, Figure 6.9]
 ROBOT_MARKER = replace(
     SOCCER,
     description="T Figure 6.9: a robot by its mark; a post behind the field carries its left border on upwards.",
@@ -131,8 +131,8 @@ HIDDEN_BALL = replace(
     things={**BALL_BESIDE_ROBOT.things, "ball": replace(BALL, x_mm=455, y_mm=94)},
 )
 
-# A yellow tennis ball, its seam dividing it in two; white field lines have an edge on each side. All of the ball is
-# in view: what fails there fails for the seam. [T 6.4, Figure 6.12]
+# A yellow tennis ball, divided in two by its seam; white field lines have an edge on each side. The whole ball is in
+# view, so any failure is due to the seam. [T 6.4, Figure 6.12]
 BALL_WITH_SEAM = replace(
     SOCCER,
     description="T Figure 6.12: field lines, and a tennis ball whose seam cuts its yellow in two.",
@@ -146,8 +146,8 @@ BALL_WITH_SEAM = replace(
     seed=612,
 )
 
-# Too close to the camera: the top of the ball is too bright to be detected, the rest is a blob, and only a part of
-# it is in the picture. [T 6.4, Figure 6.13]
+# Too close to the camera: the top of the ball is too bright to be detected, the rest is a blob, and the ball is only
+# partly in the picture. [T 6.4, Figure 6.13]
 BALL_TOO_CLOSE = replace(
     SOCCER,
     description="T Figure 6.13: the ball too close, only a part of it in view, its top over-exposed.",
@@ -168,8 +168,8 @@ GOAL_SHARP_ANGLE = replace(
     seed=614,
 )
 
-# A computer-generated picture to try the detection of circles with; some come out with their size, of others only
-# the direction. [T 5.2.6, Figure 5.8]
+# A computer-generated picture to test the detection of circles; some get their size, others only a direction. [T 5.2.6,
+# Figure 5.8]
 _CIRCLES: tuple[tuple[float, float, float, Colour], ...] = (
     (250, 60, 22, YELLOW), (260, -15, 30, BLUE), (270, -85, 16, ORANGE),
     (360, 110, 30, GREEN), (370, 30, 20, MAGENTA), (390, -55, 30, YELLOW), (380, -125, 24, CYAN),
@@ -186,7 +186,7 @@ FIELD_OF_CIRCLES = replace(
     },
     floor=replace(FLOOR, lines=(), colour=BLACK),
     poses=_still(0, 0, 0, 200).poses(FRAMES, FRAME_PERIOD_NS),
-    samples=4 * SAMPLES,  # the thesis's picture was made by a computer: little noise
+    samples=4 * SAMPLES,  # the thesis's picture was computer-generated: little noise
     seed=508,
 )
 

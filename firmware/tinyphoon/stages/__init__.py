@@ -1,1 +1,1 @@
-"""The stages of the vision: each is pure kernels on line arrays and one task that feeds them lines."""
+"""The stages of the vision: each consists of pure kernels on line arrays and a task that feeds them lines."""

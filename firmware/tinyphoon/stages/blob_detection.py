@@ -1,15 +1,15 @@
 """Blob detection: Rosenfeld segmentation of the opened colour image, and its blobs (T §2.3.3, §2.3.5, §5.2.3).
 
-One pass over the picture, line by line. A run is a row's stretch of pixels of one colour group; all of it gets
-the label of the runs of that group that it touches in the line above, by side or by corner. A run that touches
-none gets a new label; where labels meet, the equivalence table makes them one segment. Three choices are ours:
+One pass over the picture, line by line. A run is a stretch of a row's pixels of one colour group; it gets the label of
+the runs of that group that it touches in the line above, by side or by corner. A run that touches none gets a new
+label; where labels meet, the equivalence table makes them one segment. Three choices are ours:
 
-- T §2.3.3 labels pixel by pixel and renames a label in both lines when it meets another. Labels by runs make
-  the same segments with fewer labels: only a run at the top of a shape needs one, not every step of a slope.
-- The table is small. When most of its labels are taken, those that no blob can come from are given back: of
-  segments that became one with another, and of those that ended too small.
-- No label image is kept: the blobs are summed up on the way, and what needs the colour of a pixel later reads
-  it in the opened image.
+- T §2.3.3 labels pixel by pixel and renames a label in both lines when it meets another. Labels by runs make the same
+  segments with fewer labels: only a run at the top of a shape needs one, not every step of a slope.
+- The table is small. When most of its labels are taken, those that no blob can have are given back: of segments that
+  merged with another, and of those that ended too small.
+- No label image is kept: the blobs are summed up on the way, and later stages read the colour of a pixel in the opened
+  image.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ from tinyphoon.stores.blobs import (
 )
 
 LABELS = 128  # 0 for no label; 4 KB of records
-RECYCLE_AT = 96  # so many taken: a row can still begin 31 segments
+RECYCLE_AT = 96  # so many labels taken: a row can still begin 31 segments
 LARGEST_PIXELS = 1 << 20  # more than any picture has
-COLOUR_GROUPS = 8  # room for the colours of as many kinds of objects
+COLOUR_GROUPS = 8  # for the colours of as many kinds of objects
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BlobThresholds:
     """What makes a blob (T §2.3.5, §5.2.3).
 
-    `colour_groups`: the colours of interest as bits of the 32-colour image; the colours of a group count as one,
-    and no colour is in two. `min_pixels`, `max_pixels`: smaller and bigger segments are no blobs.
-    `max_blobs`: how many are kept, 0..127. `merged`: whether those that are parts of one thing count as one [ours].
+    `colour_groups`: the colours of interest as bits of the 32-colour image; the colours of a group count as one, and no
+    colour is in two. `min_pixels`, `max_pixels`: smaller and larger segments are no blobs. `max_blobs`: how many are
+    kept, 0..127. `merged`: whether those that are parts of one thing count as one [ours].
     """
 
-    colour_groups: tuple[int, ...] = not_ordered()  # it follows from the models
+    colour_groups: tuple[int, ...] = not_ordered()  # they follow from the models
     min_pixels: int = allowed(1, LARGEST_PIXELS, at_most="max_pixels")
     max_pixels: int = allowed(1, LARGEST_PIXELS)
     max_blobs: int = allowed(0, LABELS - 1)
@@ -81,7 +81,7 @@ def hues(first: int, last: int) -> int:
 def blob_buffers(size: FrameSize) -> Sequence[Buffer]:
     """Return the buffers of the stage for a core; it also uses those of the opened image and its ring.
 
-    All are in L1 while there is room in either bank; the records, last, go to L2 when there is none.
+    All are in L1 while there is room in either bank; the records come last and go to L2 if there is none.
     """
     return (
         Buffer("label_row", u8, size.width_px, "L1_data"),
@@ -99,7 +99,7 @@ def store_group(colour_groups: u32[:], number: i32, colours: u32) -> None:
 
 @kernel
 def clear_labels(labels: u8[:]) -> None:
-    """Forget the labels of the line above: there is none above the first."""
+    """Clear the labels of the line above: the first line has none above it."""
     for x in range(len(labels)):
         labels[x] = 0
 
@@ -115,7 +115,7 @@ def group_of(word: u32, colour_groups: u32[:]) -> u32:
 
 @kernel
 def root_of(label: i32, parents: u8[:]) -> i32:
-    """Return the smallest label of the segment that `label` belongs to, and halve the way there."""
+    """Return the smallest label of the segment that `label` belongs to, and halve the path to it."""
     while parents[label] != label:
         parents[label] = parents[parents[label]]
         label = parents[label]
@@ -140,7 +140,7 @@ def joined(label: i32, above: i32, colours: u32, parents: u8[:], blob_data: u32[
 
 @kernel
 def after_alike(words: u32[:], labels: u8[:], x: i32, colours: u32, above: i32) -> i32:
-    """Return the column from `x` on of the first pixel without `colours`, or with another label above it than `above`."""
+    """Return the first column from `x` on without `colours`, or with another label above it than `above`."""
     while x < len(words) and labels[x] == above and words[x] & colours != 0:
         x = x + 1
     return x
@@ -148,7 +148,7 @@ def after_alike(words: u32[:], labels: u8[:], x: i32, colours: u32, above: i32) 
 
 @kernel
 def begin_segment(label: i32, parents: u8[:], blob_data: u32[:], colours: u32, x: i32, y: i32) -> i32:
-    """Begin a segment with the label `label` at (x, y) and return it, or 0 if there is no such label."""
+    """Begin a segment with the label `label` at (x, y) and return the label, or 0 if there is no such label."""
     if label >= len(parents):
         return 0
     parents[label] = label
@@ -167,7 +167,7 @@ def segment_row(
     y: i32,
     used: i32,
 ) -> i32:
-    """Segment row `y`, with labels 1 to `used` taken before it, and return how many labels are needed with it.
+    """Segment row `y`, with labels 1 to `used` taken before it, and return how many labels are taken afterwards.
 
     `words` have at most one colour each, as opened pixels do; `interest` are the colours of all groups. `labels`
     are those of the line above and become those of this row. A run for which `parents` has no label left
@@ -175,10 +175,10 @@ def segment_row(
     """
     width = len(words)
     wanted = used
-    corner: i32 = 0  # the label above of the pixel to the left
+    corner: i32 = 0  # the label above the pixel to the left
     x: i32 = 0
     while x < width:
-        while x < width and words[x] & interest == 0:  # most pixels: few registers are enough for them
+        while x < width and words[x] & interest == 0:  # most pixels: few registers are enough here
             corner = labels[x]
             labels[x] = 0
             x = x + 1
@@ -205,9 +205,9 @@ def segment_row(
 
 @kernel
 def unite_segments(parents: u8[:], blob_data: u32[:], used: i32) -> None:
-    """Add up the segments of labels 1 to `used` that are one, in the record of the smallest of their labels.
+    """Add up segments with several of the labels 1 to `used`, in the record of the smallest of their labels.
 
-    A parent is smaller than its label: from the last label down, every record is whole before it is added.
+    A parent is smaller than its label: from the last label down, every record is complete before it is added.
     """
     for label in range(used, 0, -1):
         if parents[label] != label:
@@ -216,7 +216,7 @@ def unite_segments(parents: u8[:], blob_data: u32[:], used: i32) -> None:
 
 @kernel
 def recycle_labels(labels: u8[:], parents: u8[:], blob_data: u32[:], used: i32, min_pixels: u32) -> i32:
-    """Number the segments anew that can still be blobs, in the same order, and return how many they are.
+    """Renumber the segments that can still become blobs, in the same order, and return how many they are.
 
     These are the segments in the last row, `labels`, and those of `min_pixels` or more.
     """
@@ -250,8 +250,8 @@ def select_blobs(
 ) -> i32:
     """Keep the segments of the right size as blobs and return how many there are.
 
-    The order is that of labels: by the first pixel from the top, then from the left. Beyond `max_blobs` they
-    are counted, not kept.
+    They are in the order of labels: by the first pixel from the top, then from the left. Beyond `max_blobs` they are
+    counted but not kept.
     """
     found: i32 = 0
     for label in range(1, used + 1):
@@ -267,8 +267,8 @@ def select_blobs(
 def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Generator[Any, Any, int]:
     """Find the blobs of a picture in one pass of DMA lines over `opened_image`, and leave them in `blob_data`.
 
-    Publishes `blobs`, how many are stored; `blobs_lost`, how many had no room; and `labels_lost`, how many
-    runs were left out because no label was left. Returns how many blobs are stored.
+    Publishes `blobs`, how many are stored; `blobs_lost`, how many had no room; and `labels_lost`, how many runs were
+    left out because no label was free. Returns how many blobs are stored.
     """
     opened = core.input_ring(core.rows("opened_image"), "opened_ring")
     labels, parents, blobs = core.array("label_row"), core.array("label_parents"), core.array("blob_data")

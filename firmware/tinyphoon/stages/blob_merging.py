@@ -1,9 +1,9 @@
-"""Merged blobs: one record for the blobs that are parts of one thing [ours].
+"""Merged blobs: one record for blobs that are parts of one thing [ours].
 
-A ball with a seam falls into blobs that lie within one circle. A goal is a box open to the front: its posts and its
-back are blobs side by side, no farther apart than a goal of their height is wide. A merged blob follows the blobs in
-`blob_data`, and the stages that come take it for one; `label_parents`, of no use after the segmentation, has for each blob
-the one that it is part of.
+The seam of a ball divides it into blobs within one circle. A goal is a box open to the front: its posts and its back
+are blobs side by side, no farther apart than a goal of their height is wide. Merged blobs follow the others in
+`blob_data`, and later stages treat them as single blobs; `label_parents`, which the segmentation no longer needs, then
+holds the whole that each blob is part of.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ FAR = 1 << 16  # px: farther than any picture is wide
 
 @kernel
 def separate_blobs(parents: u8[:], blobs: i32) -> None:
-    """Begin with each blob being part of itself only."""
+    """Begin with each blob as part of itself only."""
     for blob in range(blobs):
         parents[blob] = blob
 
@@ -75,14 +75,14 @@ def add_part(blob_data: u32[:], parents: u8[:], merged: i32, blob: i32) -> None:
 
 @kernel
 def fills_half(pixels: i32, radius: i32) -> i32:
-    """Return 1 if so many pixels are half of a disc or more, whose radius is in 1/16 px; else 0."""
+    """Return 1 if `pixels` are at least half of a disc with this radius, in 1/16 px; else 0."""
     side = 2 * radius // SUBPIXELS
     return 1 if 2 * (pixels << AREA_BITS) >= DISC_AREA * side * side else 0
 
 
 @kernel
 def is_ball(blob_data: u32[:], blob: i32, circles: i16[:], circle_count: i32) -> i32:
-    """Return 1 if a blob lies within its own circle, which passed all tests, and fills half of it at least; else 0."""
+    """Return 1 if a blob lies within its own circle, which passed all tests, and fills at least half of it; else 0."""
     for at in range(0, circle_count * CIRCLE_WORDS, CIRCLE_WORDS):
         if circles[at + CIRCLE_BLOB] == blob and circles[at + CIRCLE_TESTS] & RADIUS_PASSED != 0:
             pixels = i32(blob_data[blob * BLOB_WORDS + PIXELS])
@@ -93,7 +93,7 @@ def is_ball(blob_data: u32[:], blob: i32, circles: i16[:], circle_count: i32) ->
 
 @kernel
 def is_part(blob_data: u32[:], parents: u8[:], blob: i32, colours: u32, circles: i16[:], circle: i32) -> i32:
-    """Return 1 if a blob of just these colours lies within a circle and is no part of another blob yet; else 0."""
+    """Return 1 if a blob of exactly these colours lies within a circle and is not yet part of another; else 0."""
     if parents[blob] != blob or blob_data[blob * BLOB_WORDS + COLOURS] != colours:
         return 0
     return lies_within(blob_data, blob, circles, circle)
@@ -103,10 +103,10 @@ def is_part(blob_data: u32[:], parents: u8[:], blob: i32, colours: u32, circles:
 def merge_within(
     blob_data: u32[:], parents: u8[:], blobs: i32, number: i32, circles: i16[:], circle: i32
 ) -> i32:
-    """Merge the blob of a circle with the others that lie within it, as blob `number`; returns 1, or 0 if that is not right.
+    """Merge the blob of a circle with the others that lie within it, as blob `number`; return 1, or 0 if that is wrong.
 
-    It is not if the blob itself does not or is part of another already, if there are no others, or if they do not fill half
-    of the circle together.
+    It is wrong if the blob itself does not lie within it or is already part of another, if there are no others, or if
+    together they do not fill half of the circle.
     """
     first = i32(circles[circle + CIRCLE_BLOB])
     colours = blob_data[first * BLOB_WORDS + COLOURS]
@@ -132,10 +132,10 @@ def merge_within(
 
 @kernel
 def merge_balls(blob_data: u32[:], parents: u8[:], blobs: i32, circles: i16[:], circle_count: i32) -> i32:
-    """Merge the blobs of one colour group that lie within a circle that passed all tests; the circle is the merged blob's then.
+    """Merge the blobs of a colour group within a circle that passed all tests; the circle then is the merged blob's.
 
-    The merged blobs are numbered from `blobs` on; returns the next number. Those beyond the length of `parents` are
-    counted, not made.
+    The merged blobs are numbered from `blobs` on; return the next number. Those beyond the length of `parents` are
+    counted but not made.
     """
     number = blobs
     for at in range(0, circle_count * CIRCLE_WORDS, CIRCLE_WORDS):
@@ -146,10 +146,10 @@ def merge_balls(blob_data: u32[:], parents: u8[:], blobs: i32, circles: i16[:], 
 
 @kernel
 def gap_beside(blob_data: u32[:], whole: i32, blob: i32, aspect_max: i32) -> i32:
-    """Return how many columns there are between two blobs that stand side by side, FAR if they do not.
+    """Return how many columns are between two blobs that stand side by side, FAR if they do not.
 
-    They do if the lower one has half its rows in common with the other, and both together are not wider by height than
-    `aspect_max` sixteenths.
+    They do if the lower one shares half of its rows with the other, and both together are at most `aspect_max`
+    sixteenths as wide as high.
     """
     across = blob_data[whole * BLOB_WORDS + ACROSS]
     down = blob_data[whole * BLOB_WORDS + DOWN]
@@ -171,7 +171,7 @@ def gap_beside(blob_data: u32[:], whole: i32, blob: i32, aspect_max: i32) -> i32
 def largest_blob(
     blob_data: u32[:], parents: u8[:], blobs: i32, colours: u32, circles: i16[:], circle_count: i32
 ) -> i32:
-    """Return the blob with most pixels of some of `colours` that is neither a ball nor part of another blob, or NONE."""
+    """Return the blob with the most pixels of some of `colours` that is neither a ball nor part of another, or NONE."""
     found: i32 = NONE
     pixels: u32 = 0
     for blob in range(blobs):
@@ -194,7 +194,7 @@ def nearest_beside(
     circles: i16[:],
     circle_count: i32,
 ) -> i32:
-    """Return the blob of the same colours that stands nearest beside `whole`, which has all its parts so far, or NONE."""
+    """Return the blob of the same colours that stands nearest to `whole`, with all its parts so far, or NONE."""
     found: i32 = NONE
     nearest: i32 = FAR
     colours = blob_data[whole * BLOB_WORDS + COLOURS]
@@ -217,9 +217,9 @@ def merge_goals(
     circles: i16[:],
     circle_count: i32,
 ) -> i32:
-    """Merge, for each model of a goal, its largest blob and those beside it, as blob `number` and so on.
+    """Merge, for each goal model, its largest blob and those beside it, as blob `number` and so on.
 
-    There is one goal of a model. Returns the next number, counted and made as by `merge_balls`.
+    There is one goal of a model. Return the next number, counted and made as by `merge_balls`.
     """
     for model in range(0, len(models), MODEL_WORDS):
         if models[model + MODEL_NUMBER] != NO_MODEL and models[model + MODEL_SHAPE] == GOAL:
@@ -243,10 +243,10 @@ def merge_goals(
 
 
 def blob_merging(core: Core, blobs: int, circles: int, merged: bool) -> Generator[Any, Any, int]:
-    """Merge the first `blobs` blobs where they are parts of one thing, if that is wanted, given the first `circles` circles.
+    """Merge the first `blobs` blobs that are parts of one thing, if `merged`, given the first `circles` circles.
 
-    Publishes `blobs_merged`, how many merged blobs there are, and `blobs_unmerged`, for how many there was no room. Returns
-    how many blobs `blob_data` has then, with those that are parts of others.
+    Publishes `blobs_merged`, how many merged blobs there are, and `blobs_unmerged`, how many had no room. Returns how
+    many blobs `blob_data` then has, including those that are parts of others.
     """
     blob_data, parents = core.array("blob_data"), core.array("label_parents")
     yield core.run(separate_blobs, parents, blobs)

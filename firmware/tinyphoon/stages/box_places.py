@@ -1,11 +1,11 @@
-"""Where a box is: from the upright edges at both ends of its blob, and from the one between them if two faces are seen (T §7.2).
+"""The place of a box, from the upright edges at both ends of its blob, and from one between them for two faces (T §7.2).
 
-The thesis wishes for the detection of boxes and says nothing of it, but that 3-D lines may help (T §5.2.9); this is [ours]. Over the floor
-an upright edge is a point. With two faces in view the outer two are opposite corners, and the middle of the box lies behind the
-near corner on the way to the middle between them, half a diagonal away: the near edge is measured best, and the far ones tell only the
-direction. If that edge has no contrast, but they are a diagonal apart, it is the middle between them. With one face in view they
-are as far apart as the box is wide, or as it is deep, and the middle lies behind that face. If they are as far apart as none of these,
-or an edge has no depth, the box stays where the floor below it has it.
+The thesis wishes for the detection of boxes but only says that 3-D lines may help (T §5.2.9); this is [ours]. Seen from
+above, an upright edge is a point on the floor. With two faces in view, the outer two are opposite corners, and the middle
+of the box lies behind the near corner, half a diagonal away, towards the middle between the outer two: the near edge is
+measured best, and the far ones only give the direction. If that edge has no contrast, but the others are a diagonal apart,
+the middle is between them. With one face in view they are as far apart as the box is wide or deep, and the middle lies
+behind that face. If their distance is none of these, or an edge has no depth, the box stays at its place by the floor.
 """
 
 from __future__ import annotations
@@ -60,13 +60,13 @@ from tinyphoon.strategy.models import (
 
 NONE = -1
 SIZE_PARTS = 5  # a side may look a fifth longer or shorter
-CORNER_PARTS = 2  # the near corner a half nearer or farther
-FAR_APART = 2 * LARGEST_MM  # mm: farther than any box is wide; squares stay in 32 bits
+CORNER_PARTS = 2  # the near corner may be half nearer or farther
+FAR_APART = 2 * LARGEST_MM  # mm: farther than any box is wide; squares fit in 32 bits
 
 
 @kernel
 def model_of(models: i32[:], number: i32) -> i32:
-    """Return where the words of the model with a number begin, NONE if it is no box."""
+    """Return where the words of a box's model begin, NONE if the model `number` is no box."""
     for at in range(0, len(models), MODEL_WORDS):
         if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == BOX:
             return at
@@ -103,9 +103,9 @@ def edge_aside(lines_3d: i16[:], number: i32) -> i32:
 
 @kernel
 def is_upright(geometry: i32[:], lines_3d: i16[:], number: i32, height_mm: i32) -> i32:
-    """Return 1 if a 3-D line stands on the floor, and at least half as high as `height_mm`; else 0.
+    """Return 1 if a 3-D line stands on the floor and is at least half of `height_mm` high; else 0.
 
-    It leans aside by a quarter of that at most; ahead it may lean by as much as it is high, for depth is measured less well.
+    It leans aside by at most a quarter of that; ahead it may lean by its height, for depth is less accurate.
     """
     at = number * LINE3D_WORDS
     down = lines_3d[at + LINE3D_X1 + 1] - lines_3d[at + LINE3D_Y0]
@@ -118,7 +118,7 @@ def is_upright(geometry: i32[:], lines_3d: i16[:], number: i32, height_mm: i32) 
 
 @kernel
 def edge_of(lines_3d: i16[:], count: i32, line: i32) -> i32:
-    """Return which of `count` 3-D lines is the line `line` of the left picture, NONE if none is."""
+    """Return which of `count` 3-D lines comes from `line` of the left picture, NONE if none does."""
     if line != NO_LINE:
         for number in range(count):
             if lines_3d[number * LINE3D_WORDS + LINE3D_LEFT] == line:
@@ -128,7 +128,7 @@ def edge_of(lines_3d: i16[:], count: i32, line: i32) -> i32:
 
 @kernel
 def length_of(across: i32, ahead: i32) -> i32:
-    """Return how long a way over the floor is, FAR_APART if longer than that."""
+    """Return the length of a way over the floor, FAR_APART if it is longer than that."""
     if abs(across) >= FAR_APART or abs(ahead) >= FAR_APART:
         return FAR_APART
     return i32(isqrt32(u32(across * across) + u32(ahead * ahead)))
@@ -136,7 +136,7 @@ def length_of(across: i32, ahead: i32) -> i32:
 
 @kernel
 def is_about(length: i32, wanted: i32, parts: i32) -> i32:
-    """Return 1 if a length is the one that is wanted, give or take one of its `parts`; else 0."""
+    """Return 1 if a length is about `wanted`, give or take one of its `parts`; else 0."""
     return 1 if parts * abs(length - wanted) <= wanted else 0
 
 
@@ -151,10 +151,10 @@ def near_edge(
     corner: i32,
     height_mm: i32,
 ) -> i32:
-    """Return the upright 3-D line of a box's near corner, NONE if none is seen.
+    """Return the upright 3-D line of a box's near corner, NONE if it is not seen.
 
-    It stands between the lines `left` and `right`, `wide` mm apart, and about `corner` mm before the way from one to the other. Of
-    several it is the nearest.
+    It stands between the lines `left` and `right`, `wide` mm apart, and about `corner` mm before the way from one to
+    the other. If there are several, it is the nearest.
     """
     left_x = edge_aside(lines_3d, left)
     left_z = edge_ahead(geometry, lines_3d, left)
@@ -211,7 +211,7 @@ def place_box(
     objects: i16[:],
     number: i32,
 ) -> None:
-    """Place a box whose blob ends with the 3-D lines `left` and `right`, if it can be told from them where it is."""
+    """Place a box whose blob ends with the 3-D lines `left` and `right`, if these determine its place."""
     width_mm = models[model + MODEL_WIDTH]
     depth_mm = models[model + MODEL_DEPTH]
     left_x = edge_aside(lines_3d, left)
@@ -269,7 +269,7 @@ def place_all_boxes(
 
 
 def place_boxes(core: Core, lines_3d: int) -> Generator[Any, Any, None]:
-    """Place the boxes that the left camera sees by so many 3-D lines."""
+    """Place the boxes that the left camera sees by the first `lines_3d` 3-D lines."""
     found = core.array("rectangles"), core.array("lines_3d"), lines_3d
     yield core.run(
         place_all_boxes, core.array("geometry"), core.array("models"), *found, core.array("left_seen")

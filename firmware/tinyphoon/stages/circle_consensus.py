@@ -1,12 +1,12 @@
-"""The circle that most of a ball's edges agree on [ours]: a fixed number of circles through three of them, and the votes' own.
+"""The circle that most of a ball's edges agree on [ours]: a fixed number of circles through three, and the votes' own.
 
-The votes trust gradients, and shade bends these: where light falls off along a ball its edges look past its centre, and the
-border between light and shade has edges of its own. The places of the edges are true. So circles are laid through three
-edges at a time, far apart in the order of rows, and the one that has most edges near it is taken (Fischler and Bolles' random
-sample consensus, with samples that are the same every time).
+The votes rely on gradients, which shade bends: where light falls off along a ball, its edges look past its centre, and
+the border between light and shade has edges of its own. The places of the edges are reliable. So circles are drawn
+through three edges at a time, far apart in row order, and the one with most edges near it is taken (Fischler and
+Bolles' random sample consensus, with samples that are the same every time).
 
-Where some edges look at the ball and others away from it, the circle of all tells whether they are one ball's, brighter than
-the floor in part and darker in part: then both kinds lie on it.
+If some edges look at the ball and others away from it, the circle through all tells whether they belong to one ball,
+partly brighter and partly darker than the floor: then both kinds lie on it.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from tinyphoon.arithmetic import isqrt32
 from tinyphoon.stages.circle_edges import FINE, MASS_X, MASS_Y, REACH, edge_x, edge_y, looks_away
 from tinyphoon.stages.circle_fit import CENTRE_X, CENTRE_Y, RADIUS, near_of
 
-# If 4 of 10 edges lie on the outline, one of 16 triples does: 48 miss it once in twenty times, and once in 600 if half do.
+# If 4 of 10 edges lie on the outline, one of 16 triples does: 48 miss it once in twenty times, or in 600 if half do.
 TRIPLES = 48
-MOST_JUDGES = 64  # so many edges, evenly chosen, say how many agree
+MOST_JUDGES = 64  # the most edges, evenly chosen, that say how many agree
 
 
 @kernel
@@ -35,7 +35,7 @@ def is_near(edge: u32, x: i32, y: i32, radius: i32) -> i32:
 
 @kernel
 def agreeing(selected: u32[:], count: i32, x: i32, y: i32, radius: i32) -> i32:
-    """Return how many of the judges, of 256, are near a circle in 1/64 px."""
+    """Return how many of the judges, in 256ths, are near a circle in 1/64 px."""
     stride = (count + MOST_JUDGES - 1) // MOST_JUDGES
     found = 0
     judges = 0
@@ -58,7 +58,7 @@ def in_fine(number: i32, divisor: i32) -> i32:
 def try_triple(
     selected: u32[:], count: i32, first: i32, second: i32, third: i32, area: i32[:], fit: i32[:], best: i32
 ) -> i32:
-    """Take the circle through three edges if more than `best` agree on it, and its centre is in the patch; returns the most."""
+    """Take the circle through three edges if more than `best` agree and its centre is in the patch; return the most."""
     x = edge_x(selected[first])
     y = edge_y(selected[first])
     x2 = edge_x(selected[second]) - x
@@ -76,7 +76,7 @@ def try_triple(
         twice = -twice
         right = -right
         down = -down
-    # in whole pixels first: what is far off has no place in 1/64
+    # first in whole pixels: distant centres do not fit in 1/64
     if (
         abs(x + right // twice - area[MASS_X]) > area[REACH]
         or abs(y + down // twice - area[MASS_Y]) > area[REACH]
@@ -96,9 +96,9 @@ def try_triple(
 
 @kernel
 def find_consensus(selected: u32[:], count: i32, area: i32[:], fit: i32[:]) -> i32:
-    """Move centre and radius to the circle that most edges agree on, if more do than on the one that is there.
+    """Move centre and radius to the circle that most edges agree on, if it has more than the present one.
 
-    Returns how many, of 256. A radius of 0 is no circle.
+    Returns how many agree, in 256ths. A radius of 0 is no circle.
     """
     best: i32 = 0
     if fit[RADIUS] > 0:
@@ -113,9 +113,9 @@ def find_consensus(selected: u32[:], count: i32, area: i32[:], fit: i32[:]) -> i
 
 @kernel
 def agree_on_side(selected: u32[:], count: i32, area: i32[:], fit: i32[:]) -> i32:
-    """Leave out those of `count` edges that look another way than most, at the ball or away; returns how many are left.
+    """Leave out edges that do not look the way most do, at the ball or away from it; return how many are left.
 
-    They are of something beside it. If three quarters of them are near the circle of all edges, they are the ball's and stay.
+    They belong to something beside it; but if three quarters of them are near the circle of all, they stay.
     """
     away = 0
     for number in range(count):

@@ -1,8 +1,8 @@
-"""Circle detection (T §5.2.4): centre and radius of the ball that a blob may be, from the edges round it.
+"""Circle detection (T §5.2.4): centre and radius of the ball that a blob may be, from the edges around it.
 
-Votes along the gradients find the centre, a histogram of distances the radius; two tests judge them. [ours] is what
-follows: the circle that most edges agree on, and a fit to the outline finer than a pixel. Where a ball is hidden in part, or cut
-by the picture's border, the edges that are left decide. The sphere's image is taken as a circle.
+Votes along the gradients find the centre, and a histogram of distances the radius; two tests judge them. The rest is
+[ours]: the circle that most edges agree on, and a fit to the outline finer than a pixel. If a ball is partly hidden, or
+cut by the picture's border, the remaining edges decide. The sphere's image is taken as a circle.
 """
 
 from __future__ import annotations
@@ -46,23 +46,23 @@ from tinyphoon.stores.edges import EDGE_CAPACITY, edge_store
 from tinyphoon.tables import tangent_table
 
 CIRCLE_CAPACITY = 64  # 1 KB; as many as there are blobs in the modes
-LARGEST_REACH = 32  # of the patch: 65 x 65 votes lie over the segments of the line detection
-LARGEST_FIT_RANGE = 4  # the fit's sums over all edges of a picture 640 wide have 32 bits
+LARGEST_REACH = 32  # of the patch: 65 x 65 votes share memory with the segments of the line detection
+LARGEST_FIT_RANGE = 4  # the fit's sums over all edges of a picture 640 wide fit in 32 bits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CircleThresholds:
     """Thresholds of the circle detection. Angles in 1/256 of a turn, lengths in pixels, shares of all edges in 1/256.
 
-    `border`: how far from the blob's rectangle edges are taken. `angle_range`: how far a gradient may point past
-    the centre of mass, or away from it (eps_angle). `beside_colour`: where the ball's side of an edge is
-    the dark one, the blob's colour must be near it.
-    `patch_reach`: how far the centre is looked for to each side of the centre of mass, 0..32, and not further than half the blob.
-    `peak_reach`: how many cells round a peak belong to it; 0 is the thesis, whole pixels.
-    `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6). `min_peak`, `radius_share`: of the radius test
-    T_r (T Eq. 5.7). `consensus_share`: if more of the edges agree on a circle, it has passed both tests.
-    `fit_rounds`: how often at most centre and radius are fitted to the outline; 0 is the thesis, without consensus.
-    `fit_range`: how far from the circle the outline is looked for, 1..4.
+    `border`: how far from the blob's rectangle edges are used. `angle_range`: how far a gradient may point past
+    the centre of mass, or away from it (eps_angle). `beside_colour`: if the ball's side of an edge is the dark
+    one, the blob's colour must be near it. `patch_reach`: how far the centre is looked for to each side of the
+    centre of mass, 0..32, and not further than half the blob. `peak_reach`: how many cells round a peak belong to
+    it; 0 is the thesis, whole pixels. `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6).
+    `min_peak`, `radius_share`: of the radius test T_r (T Eq. 5.7). `consensus_share`: if more of the edges agree
+    on a circle, it has passed both tests. `fit_rounds`: how often at most centre and radius are fitted to the
+    outline; 0 is the thesis, without consensus. `fit_range`: how far from the circle the outline is looked for,
+    1..4.
     """
 
     border: int = allowed(0, 64)
@@ -88,7 +88,7 @@ class CircleThresholds:
 
 
 def circle_buffers() -> Sequence[Buffer]:
-    """Return the buffers of the stage for a core. What it works on lies over the rings of the stages before."""
+    """Return the buffers of the stage for a core. Its working memory shares the rings of earlier stages."""
     return (
         Buffer("circles", i16, CIRCLE_WORDS * CIRCLE_CAPACITY, "data1"),
         Buffer("tangents", u16, 33, "L1_data", values=tangent_table()),
@@ -101,7 +101,7 @@ def circle_buffers() -> Sequence[Buffer]:
 def select_edges(
     core: Core, frame: Frame, blob: int, colours: int, thresholds: CircleThresholds, selected: Row
 ) -> Generator[Any, Any, int]:
-    """Select the edges of a blob's outline; returns how many there are. Its lines come through the opening's ring."""
+    """Select the edges of a blob's outline; return how many there are. Its lines come through the opening's ring."""
     area, atan = core.array("circle_area"), core.array("atan")
     top, bottom = yield from open_outline(core, frame, blob, thresholds)
     first = max(top - 1, 0)
@@ -123,7 +123,7 @@ def select_edges(
 
 
 EdgeSelection = Callable[[Core, Frame, int, int, CircleThresholds, Row], Generator[Any, Any, int]]
-"""How the edges of a blob's outline are told from others: `select_edges`, or another way."""
+"""How the edges of a blob's outline are selected: `select_edges`, or another way."""
 
 
 def circle_detection(
@@ -134,7 +134,7 @@ def circle_detection(
     thresholds: CircleThresholds,
     select: EdgeSelection = select_edges,
 ) -> Generator[Any, Any, int]:
-    """Look for a circle round each of the first `blobs` blobs that has some of `colours`. Leaves them in `circles`.
+    """Look for a circle around each of the first `blobs` blobs with some of `colours`; leave them in `circles`.
 
     Returns how many records there are, failed ones included, and publishes it as `circles`. Also publishes
     `circles_lost`, how many had no room, and `circle_edges_lost`, the edges that found no room in the working memory.
@@ -169,7 +169,7 @@ def circle_detection(
 def open_outline(
     core: Core, frame: Frame, blob: int, thresholds: CircleThresholds
 ) -> Generator[Any, Any, tuple[int, int]]:
-    """Say in `circle_area` where the outline of a blob is looked for; returns the first row and the last."""
+    """Store in `circle_area` where to look for the outline of a blob; return the first row and the last."""
     limits = thresholds.border, thresholds.patch_reach, frame.width, frame.height
     return ends(
         (yield core.run(open_area, core.array("blob_data"), blob, core.array("circle_area"), *limits))
@@ -207,7 +207,7 @@ def _refine(
 ) -> Generator[Any, Any, None]:
     """Fit centre and radius to the outline in the camera's lines, which come through the ring of the edge detection.
 
-    `weights` is room for as many words as there are edges.
+    `weights` has room for as many words as there are edges.
     """
     area, fit = core.array("circle_area"), core.array("circle_fit")
     profile = fit, thresholds.fit_range, core.array("circle_rises"), weights

@@ -1,7 +1,7 @@
 """The edges of a ball's outline: those near its blob that pass the two filters of T §5.2.4.
 
-Filter 1 needs the erosion of the opened image at each edge. Nobody has made that: the opening erodes the noisy image.
-So DMA brings the blob's lines of the opened image back, and the filter erodes it only where there is an edge. That is a
+Filter 1 needs the erosion of the opened image at each edge. It does not exist: the opening erodes the noisy image. So
+DMA brings the blob's lines of the opened image back, and the filter erodes it only where there is an edge. That is a
 tenth of the pixels at most, and nothing is written.
 
 A selected edge is one word: direction in bits 0..7, y in 8..18, whether it looks away from the ball in 19, x in 20..31.
@@ -25,18 +25,18 @@ from tinyphoon.stores.blobs import (
 
 NONE = -1
 
-# Parts of a pixel in which centre and radius are worked out: a picture 640 wide, squared, stays below 32 bits.
+# Parts of a pixel for computing centre and radius: a picture 640 wide, squared, stays below 32 bits.
 FINE = 64
 
-# Where to look for the outline: pixels, both ends included.
+# Where to look for the outline: in pixels, both ends included.
 LEFT = 0
 RIGHT = 1
 TOP = 2
 BOTTOM = 3
-MASS_X = 4  # blob.cc, or where the middle is of a disc that the picture shows less than half of
+MASS_X = 4  # blob.cc, or the middle of a disc of which the picture shows less than half
 MASS_Y = 5
-REACH = 6  # the centre is looked for so far from there to each side
-BORDERING = 7  # edges that pass filter 1, whatever they look at
+REACH = 6  # the centre is sought this far from there on each side
+BORDERING = 7  # edges that pass filter 1, wherever they look
 AREA_WORDS = 8
 
 HALF_TURN = 128
@@ -63,7 +63,7 @@ def looks_away(edge: u32) -> i32:
 
 @kernel
 def next_blob(blob_data: u32[:], blob: i32, blobs: i32, colours: u32) -> i32:
-    """Return the first blob from number `blob` on that has some of `colours`, or NONE."""
+    """Return the first blob from number `blob` on with some of `colours`, or NONE."""
     while blob < blobs:
         if blob_data[blob * BLOB_WORDS + COLOURS] & colours != 0:
             return blob
@@ -79,10 +79,10 @@ def rows_of(area: i32[:]) -> i32:
 
 @kernel
 def middle_beyond(span: u32, chord: i32, pixels: i32, mass: i32) -> i32:
-    """Return where the middle of a disc is along an axis of which the picture has `pixels`, given its centre of mass.
+    """Return the middle of a disc along an axis with `pixels` in the picture, given its centre of mass.
 
-    Of a disc that the picture's border cuts, so that less than half of it is seen, the part seen and the chord at the border
-    tell the radius; of less than a seventh they hardly do.
+    If the picture's border cuts a disc so that less than half is seen, the part seen and the chord at the border give
+    the radius; from less than a seventh they hardly do.
     """
     seen = extent_of(span)
     before = is_cut_before(span)
@@ -98,7 +98,7 @@ def middle_beyond(span: u32, chord: i32, pixels: i32, mass: i32) -> i32:
 def open_area(
     blob_data: u32[:], blob: i32, area: i32[:], border: i32, patch_reach: i32, width: i32, height: i32
 ) -> i32:
-    """Describe where the outline of a blob is looked for, and return the first row and the last, as a pair of shorts."""
+    """Describe where to look for the outline of a blob, and return the first row and the last, as a pair of shorts."""
     across = blob_data[blob * BLOB_WORDS + ACROSS]
     down = blob_data[blob * BLOB_WORDS + DOWN]
     left = i32(across & 0xFFFF)
@@ -131,7 +131,7 @@ def is_overlaid(above: u32[:], here: u32[:], below: u32[:], x: i32, colours: u32
 
 @kernel
 def is_near_colour(above: u32[:], here: u32[:], below: u32[:], x: i32, colours: u32) -> i32:
-    """Return 1 if a pixel beside `x` has one of `colours`; else 0: the border of a shadow has the floor on both sides.
+    """Return 1 if a pixel beside `x` has one of `colours`; else 0: the border of a shadow has floor on both sides.
 
     Up to two columns away, since pairs of pixels share their chroma.
     """
@@ -143,9 +143,9 @@ def is_near_colour(above: u32[:], here: u32[:], below: u32[:], x: i32, colours: 
 
 @kernel
 def looks_along(direction: i32, dx: i32, dy: i32, angle_range: i32, atan: u8[:]) -> i32:
-    """Return 1 if a gradient points to what lies (dx, dy) from it, to `angle_range` 1/256 of a turn, -1 if away from it; else 0.
+    """Return 1 if a gradient points to (dx, dy), to `angle_range` 1/256 of a turn, -1 if it points away; else 0.
 
-    That is filter 2 for a ball that is brighter than what is behind it, or darker, or each in part.
+    This is filter 2 for a ball that is brighter than the background, or darker, or partly each.
     """
     turn = abs(turn_between(direction, angle8(dx, dy, atan)))
     if turn <= angle_range:
@@ -170,11 +170,11 @@ def select_edges_row(
     selected: u32[:],
     found: i32,
 ) -> i32:
-    """Append the edges of row `y` that pass both filters to the `found` ones before; returns how many there are then.
+    """Append the edges of row `y` that pass both filters to the `found` earlier ones; return the new number.
 
-    `above`, `here` and `below` are lines of the opened image. With `beside_colour` an edge that looks away from the ball passes
-    only near `colours`: what is dark and has not its colour is a shadow. Edges beyond the length of `selected` are counted,
-    not stored.
+    `above`, `here` and `below` are lines of the opened image. With `beside_colour`, an edge that looks away from the
+    ball passes only near `colours`: a dark thing without its colour is a shadow. Edges beyond the length of `selected`
+    are counted but not stored.
     """
     first = i32(edge_index[y])
     for position in range(first, first + edge_counts[y]):

@@ -1,4 +1,4 @@
-"""The edges of a ball's outline as T §5.2.4 has its filter 1: by a picture of the eroded colours.
+"""The edges of a ball's outline by filter 1 as in T §5.2.4: by a picture of the eroded colours.
 
 [said] An edge is skipped where I_s32, a bitwise erosion of I_c32, has a colour of the shape (T §5.2.4). [said] What has not the form of
 its model is removed by the dimension test, before any shape is measured (T §5.2.6, Figure 5.7). [implied] I_s32 is a picture like I_c32,
@@ -6,7 +6,7 @@ with all colours at once: one serves every shape, whose own colours only the fil
 does those of the segmentation (T §5.2), for the stage benefits from the speed of L1 (T §6.6). [assumed] It is eroded as T Eq. 2.14 is
 written, in every frame, and goes back to SDRAM.
 
-The edges are those of `circle_edges.py`, as long as all colours of balls are one group, and joined.
+The edges are those of `circle_edges.py`, provided that all colours of balls form one group, and are joined.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def shape_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
 
 @kernel
 def has_ball_form(blob_data: u32[:], blob: i32, models: i32[:], width: i32, height: i32) -> i32:
-    """Return 1 if a blob has colour and form of a ball of the models; else 0."""
+    """Return 1 if a blob has the colour and the form of a ball of the models; else 0."""
     at = blob * BLOB_WORDS
     for model in range(0, len(models), MODEL_WORDS):
         is_ball = models[model + MODEL_NUMBER] != NO_MODEL and models[model + MODEL_SHAPE] == BALL
@@ -73,7 +73,7 @@ def select_outer_row(
     selected: u32[:],
     found: i32,
 ) -> i32:
-    """Append the edges of row `y` that pass both filters to the `found` ones before, as `select_edges_row` does."""
+    """Append the edges of row `y` that pass both filters to the `found` earlier ones, as `select_edges_row` does."""
     first = i32(edge_index[y])
     for position in range(first, first + edge_counts[y]):
         edge = edge_data[position]
@@ -93,7 +93,7 @@ def select_outer_row(
 def select_outer_edges(
     core: Core, frame: Frame, blob: int, colours: int, thresholds: CircleThresholds, selected: Row
 ) -> Generator[Any, Any, int]:
-    """Select the edges of a ball's outline by `shape_image`; returns how many there are."""
+    """Select the edges of a ball's outline by `shape_image`; return how many there are."""
     blobs, models = core.array("blob_data"), core.array("models")
     if not (yield core.run(has_ball_form, blobs, blob, models, frame.width, frame.height)):
         return 0
@@ -111,7 +111,7 @@ def select_outer_edges(
 def eroded_circles(
     core: Core, frame: Frame, blobs: int, colours: int, thresholds: CircleThresholds
 ) -> Generator[Any, Any, int]:
-    """Look for circles round blobs as `circle_detection` does; leaves `shape_image` in SDRAM, too."""
+    """Look for circles around blobs as `circle_detection` does; this also leaves `shape_image` in SDRAM."""
     yield from looped_erosion(core, core.rows("opened_image"), core.rows("shape_image"))
     found: int = yield from circle_detection(core, frame, blobs, colours, thresholds, select_outer_edges)
     return found

@@ -1,29 +1,29 @@
-"""A fit of centre and radius to the outline of a ball, finer than the thesis has them [ours].
+"""A fit of centre and radius to the outline of a ball, finer than in the thesis [ours].
 
-Rounds of least squares over the points near the circle: each moves centre and radius by what their distances and
-directions ask for (Gauss-Newton). A point counts by one over the variance of its place, which has three parts:
+Rounds of least squares over the points near the circle: each moves centre and radius according to their distances and
+directions (Gauss-Newton). The weight of a point is one over the variance of its place, which has three parts:
 
     PLACE^2 + (NOISE / steep)^2                              outside the circle
     PLACE^2 + (NOISE / steep)^2 + SHADE^2 (mean^2 / steep^2 - 1)   inside, where the outline is less steep than in the mean
 
-PLACE is what is left with the best of light: pixels are squares, and a profile runs along rows or columns. Noise of the camera
-moves a place by as much as it is beside the steepness. And where light falls off along the ball, less of its brightness is gained
-at the outline and the rest behind it, over the next pixel or two: the edge lies further in, by SHADE times how often steeper
-it would be in good light. It never lies further out. So on a ball in even light both sides count alike, and the circle
-has no bias; on one that is lit from above it settles on the outermost points that agree.
+PLACE is the error in the best of light: pixels are squares, and a profile runs along rows or columns. The camera's
+noise moves a place in proportion to its ratio to the steepness. And where light falls off along the ball, less
+brightness is gained at the outline and the rest behind it, over the next pixel or two: the edge lies further in, by
+SHADE times how much steeper it would be in good light. It never lies further out. So on a ball in even light both sides
+count alike, and the circle has no bias; on one that is lit from above it settles on the outermost points that agree.
 
-A sphere off the middle of the picture is no circle there but an ellipse, longer along the way to the middle [ours]: its outline is
-a cone of rays, and the picture cuts it askew. To the first order it is a circle whose radius grows and shrinks twice
-a turn, and the fit takes off that bulge. Centre and mean radius of the ellipse are what is fitted.
+The image of a sphere off the middle of the picture is no circle but an ellipse, longer towards the middle [ours]: its
+outline is a cone of rays, which the picture cuts obliquely. To the first order it is a circle whose radius grows and
+shrinks twice a turn, and the fit removes that bulge. It fits the centre and the mean radius of the ellipse.
 
-A point also counts the less the further it is from the circle, down to nothing (Beaton and Tukey's weights): what lies
-beside the ball, or on it, does not pull it over. Where light comes from one side the first circle is that of the lit part alone,
-and the fit goes on until it stands still.
+The weight of a point also falls to nothing with its distance from the circle (Beaton and Tukey's weights), so that
+things beside the ball, or on it, do not pull the circle over. If light comes from one side, the first circle is that of
+the lit part alone, and the fit continues until it stands still.
 
-Blur moves an outline that bends [ours]. It mixes each point with those beside it, which lie further in: by v / 2r with the variance v
-of the blur and the radius r, on a profile along a ray; on profiles askew to the outline by less, for they rise longer outside it.
-So at the end the radius grows by v / 2r, and v is what the rises of the profiles show of it: how broad they are between their
-flanks, where all of it is seen of a little blur and less of much, as of the shift.
+Blur moves a curved outline [ours]. It mixes each point with those beside it, which lie further in: by v / 2r with the
+variance v of the blur and the radius r, on a profile along a ray; on profiles oblique to the outline by less, for they
+rise longer outside it. So at the end the radius grows by v / 2r, and v is taken from the rises of the profiles: from
+how broad they are between their flanks, where a little blur is seen fully and much blur less so, as in the shift.
 """
 
 from __future__ import annotations
@@ -35,40 +35,40 @@ from tinyphoon.stages.circle_edges import FINE
 from tinyphoon.stages.line_fit import spread
 from tinyphoon.stores.lines import SUBPIXELS
 
-# What is fitted and from what, all in one array of words.
+# What is fitted, and its inputs, in one array of words.
 CENTRE_X = 0  # 1/64 px
 CENTRE_Y = 1
 RADIUS = 2
-WEIGHT = 3  # of the points near the circle; below, weighted sums over them
+WEIGHT = 3  # of the points near the circle; the next words are weighted sums over them
 SUM_NX = 4  # of their unit vectors from the centre, 1/128
 SUM_NY = 5
 SUM_NXX = 6
 SUM_NXY = 7
 SUM_NYY = 8
-SUM_E = 9  # of how far they lie outside the circle, 1/64 px
+SUM_E = 9  # of their distances outside the circle, 1/64 px
 SUM_NXE = 10
 SUM_NYE = 11
-NEXT_EDGE = 12  # how many selected edges have been refined
+NEXT_EDGE = 12  # number of selected edges that have been refined
 REFINED = 13  # how many of them became points
 BULGE_COSINE = (
-    14  # of the radius, in 1/4096: by how much it grows along the picture's axes, and along its diagonals
+    14  # of the radius, in 1/4096: how much it grows along the picture's axes, and along its diagonals
 )
 BULGE_SINE = 15
 RISE_SUM = 16  # of the rises of all outlines, each times its steepness
-SQUARE_SUM = 17  # so, times the square of how far each is from the greatest, in px
+SQUARE_SUM = 17  # the same, times the square of its distance from the greatest, in px
 FIT_WORDS = 18
 BULGE_BITS = 12
-FARTHEST_OFF = 511  # px from the principal point; two squares of it have room above BULGE_BITS
+FARTHEST_OFF = 511  # px from the principal point; two squares of it fit above BULGE_BITS
 
-# Of the variance of a place, in parts of PLACE^2: an eighth of a pixel, to which points of sharp outlines scatter.
-NOISE = 256  # (2 grey levels / PLACE)^2; by steepness squared
-SHADE = 16  # (1/2 px / PLACE)^2: what is gained over the next pixel is half a pixel further in
+# Parts of the variance of a place, relative to PLACE^2: an eighth of a pixel, the scatter of points of sharp outlines.
+NOISE = 256  # (2 grey levels / PLACE)^2; divided by steepness squared
+SHADE = 16  # (1/2 px / PLACE)^2: a gain over the next pixel is half a pixel further in
 
-# What a point counts, 255 at most: inside the circle, and outside in the bits above.
+# The weight of a point, 255 at most: inside the circle, and outside in the bits above.
 OUTSIDE_BITS = 8
 MOST = 255
 
-TAPER = 64  # so much of it counts on the circle, and less to both sides
+TAPER = 64  # the weight on the circle, falling to both sides
 TAPER_BITS = 16
 WEIGHT_BITS = (
     9  # are left out of the product: 32 at most, so that the sums over 3 rows of edges stay in 32 bits
@@ -78,15 +78,15 @@ NORMAL_BITS = 7
 # Edges stand on whole pixels, and smoothing moves them by up to one; perspective makes ellipses of near balls.
 NEAR = FINE
 NEAR_BITS = 4  # a sixteenth of the radius
-NEAR_POINTS = 37  # 4.7 times PLACE: of points that scatter normally, a mean so weighted has 95 % of the efficiency of the best one
+NEAR_POINTS = 37  # 4.7 times PLACE: for normal scatter, this weighted mean has 95 % of the best efficiency
 
-# A rise is a pixel wide and lies up to half a pixel off the middle of the outline: a twelfth of a px^2 each.
+# A rise is a pixel wide and up to half a pixel off the middle of the outline: a twelfth of a px^2 each.
 OWN_SQUARE = FINE // 6
 
-STILL = FINE // SUBPIXELS // 2  # half a step of what is told of a circle
+STILL = FINE // SUBPIXELS // 2  # half a step of a circle's stored numbers
 
 # The product of the variances of the unit vectors, along and across, is 1/4 on a whole circle and 1/1000 on an arc of
-# 80 degrees. A shorter one hardly tells a far centre from a near one: it moves the radius only.
+# 80 degrees. A shorter arc hardly tells a far centre from a near one: it only moves the radius.
 SHORTEST_ARC = 1 << 10  # in parts of 1 << 20
 
 SECTOR_BITS = 3  # of the 8 of an angle: a circle has 32 sectors of 8
@@ -102,10 +102,10 @@ def distance(x: i32, y: i32, fit: i32[:]) -> i32:
 
 @kernel
 def expect_bulge(fit: i32[:], geometry: i32[:], width: i32, height: i32) -> None:
-    """Set the bulge of a sphere whose image has its centre where the circle has, in a picture of `width` by `height`.
+    """Set the bulge of a sphere whose image is centred on the circle's centre, in a picture of `width` by `height`.
 
-    With the distance r from the principal point and the focal length f the half axes are (1 + e) and (1 - e) of their mean,
-    e = r^2 / (f + sqrt(f^2 + r^2))^2.
+    With the distance r from the principal point and the focal length f, the half axes are (1 + e) and (1 - e) times
+    their mean, e = r^2 / (f + sqrt(f^2 + r^2))^2.
     """
     focal = geometry[GEOMETRY_FOCAL] // SUBPIXELS
     middle_x = (width - 1) * (FINE >> 1) + geometry[GEOMETRY_SHIFT_X] * (FINE // SUBPIXELS)
@@ -120,7 +120,7 @@ def expect_bulge(fit: i32[:], geometry: i32[:], width: i32, height: i32) -> None
 
 @kernel
 def outside_of(nx: i32, ny: i32, away: i32, fit: i32[:]) -> i32:
-    """Return how far outside the outline a point is, in 1/64 px, that is `away` from the centre along a unit vector in 1/128."""
+    """Return how far outside the outline a point is, in 1/64 px, `away` from the centre along a unit vector in 1/128."""
     bulge = fit[BULGE_COSINE] * (nx * nx - ny * ny) + 2 * fit[BULGE_SINE] * nx * ny >> 2 * NORMAL_BITS
     return away - fit[RADIUS] - (fit[RADIUS] * bulge >> BULGE_BITS)
 
@@ -133,7 +133,7 @@ def near_of(radius: i32) -> i32:
 
 @kernel
 def weigh(weights: u16[:], fit: i32[:]) -> None:
-    """Make of how steep the outline is at each point what the point counts, inside the circle and outside."""
+    """Convert the steepness of the outline at each point into its weights, inside the circle and outside."""
     count = fit[REFINED]
     squares = 0
     for number in range(count):
@@ -148,7 +148,7 @@ def weigh(weights: u16[:], fit: i32[:]) -> None:
 
 @kernel
 def sum_up(points: u32[:], weights: u16[:], count: i32, fit: i32[:], fit_range: i32) -> None:
-    """Sum up what the fit needs of the points nearer to the circle than `fit_range` 1/64 px."""
+    """Sum up the fit's inputs over the points nearer to the circle than `fit_range` 1/64 px."""
     widest = fit_range * fit_range
     scale = (TAPER << TAPER_BITS) // widest
     for word in range(WEIGHT, SUM_NYE + 1):
@@ -177,9 +177,9 @@ def sum_up(points: u32[:], weights: u16[:], count: i32, fit: i32[:], fit_range: 
 
 @kernel
 def move_circle(fit: i32[:], fit_range: i32) -> i32:
-    """Move centre and radius to where the sums have them, the centre by `fit_range` at most along each axis.
+    """Move centre and radius to where the sums have them, the centre by at most `fit_range` along each axis.
 
-    Without points both stay. Returns how far the farthest of the three numbers moves.
+    Without points both stay. Returns the largest change of the three numbers.
     """
     weight = fit[WEIGHT]
     if weight == 0:
@@ -209,7 +209,7 @@ def move_circle(fit: i32[:], fit_range: i32) -> i32:
 
 @kernel
 def take_off_blur(fit: i32[:]) -> None:
-    """Make the radius larger by how far blur has moved the outline of a circle in."""
+    """Enlarge the radius by how far blur has moved the outline of a circle inwards."""
     square = fit[SQUARE_SUM] // max(fit[RISE_SUM] // FINE, 1) - OWN_SQUARE
     if square > 0:
         radius = max(fit[RADIUS], FINE)
@@ -218,9 +218,9 @@ def take_off_blur(fit: i32[:]) -> None:
 
 @kernel
 def fit_circle(points: u32[:], weights: u16[:], fit: i32[:], fit_range: i32, rounds: i32) -> None:
-    """Fit centre and radius to the points near the circle, until they stay or `rounds` times. `weights` has how steep each is before.
+    """Fit centre and radius to the points near the circle, until they stay or `rounds` times; `weights` has steepnesses.
 
-    Near is `fit_range` pixels at first, then half as far each time, but not less than points of a circle may be.
+    Near is `fit_range` pixels at first, then half as far each time, but not less than points of a circle may scatter.
     """
     weigh(weights, fit)
     near = FINE * fit_range
@@ -236,7 +236,7 @@ def fit_circle(points: u32[:], weights: u16[:], fit: i32[:], fit_range: i32, rou
 
 @kernel
 def arc_of(points: u32[:], fit: i32[:], atan: u8[:]) -> i32:
-    """Return how much of the circle has outline on it, of 256: its sectors with a point not further than a pixel."""
+    """Return how much of the circle has outline on it, in 256ths: its sectors with a point within a pixel."""
     sectors: u32 = 0
     for number in range(fit[REFINED]):
         x = i32(points[number] & 0xFFFF)

@@ -1,4 +1,4 @@
-"""What becomes of a circle while it is looked for: opened as a record, judged by its centre, radius and outline, and closed."""
+"""The record of a circle during the search: opened, judged by its centre, radius and outline, and closed."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def sixteenths(sum: u32, pixels: u32) -> i32:
 
 @kernel
 def open_circle(blob_data: u32[:], blob: i32, edges: i32, circles: i16[:], number: i32) -> None:
-    """Begin the record of a circle with its blob's centre of mass, and no test passed yet."""
+    """Begin the record of a circle with its blob's centre of mass, and no test passed."""
     at = number * CIRCLE_WORDS
     base = blob * BLOB_WORDS
     circles[at + CIRCLE_X] = sixteenths(blob_data[base + SUM_X], blob_data[base + PIXELS])
@@ -78,10 +78,10 @@ def judge_centre(
     circles: i16[:],
     number: i32,
 ) -> i32:
-    """Find the peak of the votes of `edges` edges and return 1 if it passes T_c; else 0 (T Eq. 5.6).
+    """Find the peak of the votes of `edges` edges and return 1 if it passes T_c, else 0 (T Eq. 5.6).
 
-    `fit` gets the centre. A line through the middle of a square leaves a vote in each of its columns or rows, so
-    the peak counts as its votes by its side.
+    `fit` gets the centre. A line through the middle of a square leaves a vote in each of its columns or rows, so the
+    peak counts as its votes divided by its side.
     """
     side = 2 * area[REACH] + 1
     reach = min(peak_reach, area[REACH])
@@ -110,7 +110,7 @@ def judge_radius(
     circles: i16[:],
     number: i32,
 ) -> i32:
-    """Find the peak of the distances of `edges` edges and return 1 if it passes T_r; else 0 (T Eq. 5.7).
+    """Find the peak of the distances of `edges` edges and return 1 if it passes T_r, else 0 (T Eq. 5.7).
 
     `fit` gets the radius.
     """
@@ -140,9 +140,9 @@ def judge_consensus(
     circles: i16[:],
     number: i32,
 ) -> i32:
-    """Find the circle that most of `count` edges agree on, and return 1 if the circle has passed T_c and T_r, or does by that.
+    """Find the circle that most of `count` edges agree on, and return 1 if the circle has passed T_c and T_r, or now does.
 
-    Edges at the blob's border that look elsewhere agree on nothing, and count as well.
+    Edges at the blob's border that look elsewhere agree on nothing, but count as well.
     """
     if passed == 0:
         fit[RADIUS] = 0

@@ -1,10 +1,10 @@
-"""The outline of a ball finer than a pixel [ours]: where the luma steps, beside the edges near the circle.
+"""The outline of a ball finer than a pixel [ours]: the steps of the luma beside the edges near the circle.
 
 The smoothing before the edge detection moves an edge by more than half a pixel where the ball's luma falls off towards
-it. So each edge is looked up again in the camera's lines, along the axis that is nearer to its gradient. The greatest rise
-of luma from pixel to pixel and its flanks, the rises beside it, say where the outline is: their centre, after the slope that the
-luma has on either side is taken off all. A blurred outline has wider flanks, and all of them count. How wide it is is summed up
-for the fit.
+it. So each edge is looked up again in the camera's lines, along the axis that is nearer to its gradient. The greatest
+rise of luma from pixel to pixel and its flanks, the rises beside it, tell where the outline is: at their centre, after
+subtracting the slope of the luma on either side. A blurred outline has wider flanks, which all count. Its width is
+summed up for the fit.
 
 The luma of the latest LUMA_LINES lines lies in one array, line y in place y modulo LUMA_LINES. A point is one word, x
 in the low half and y in the high one, in 1/64 px.
@@ -18,19 +18,19 @@ from tinyphoon.stages.circle_fit import NEXT_EDGE, RADIUS, REFINED, RISE_SUM, SQ
 from tinyphoon.stages.line_segments import is_flat
 
 LUMA_LINES = 16
-REACH_LINES = 8  # of a profile, behind its edge; before it is one less
+REACH_LINES = 8  # of a profile, behind its edge; one less before it
 BEFORE = REACH_LINES - 1
 
 # The rises of a profile: from pixel BEFORE before the edge to the next one, and so on.
 RISES = 2 * REACH_LINES - 1
-FIRST_PLACE = BEFORE - 2  # where the greatest is looked for: two pixels to each side of the edge
+FIRST_PLACE = BEFORE - 2  # where to look for the greatest: two pixels on each side of the edge
 LAST_PLACE = BEFORE + 1
 MOST_BESIDE = 4
 
 
 @kernel
 def clear_points(fit: i32[:]) -> None:
-    """Begin with the first edge, and no point yet."""
+    """Begin with the first edge, and no points."""
     fit[NEXT_EDGE] = 0
     fit[REFINED] = 0
     fit[RISE_SUM] = 0
@@ -39,7 +39,7 @@ def clear_points(fit: i32[:]) -> None:
 
 @kernel
 def luma_row(uyvy: u8[:], luma: u8[:], y: i32, area: i32[:]) -> None:
-    """Take the luma of line `y` as far as profiles reach round the area."""
+    """Take the luma of line `y` as far as profiles reach around the area."""
     width = len(luma) // LUMA_LINES
     at = y % LUMA_LINES * width
     for x in range(max(area[LEFT] - REACH_LINES, 0), min(area[RIGHT] + REACH_LINES, width - 1) + 1):
@@ -59,7 +59,7 @@ def profile_pixel(luma: u8[:], x: i32, y: i32, step: i32, flat: i32, height: i32
 
 @kernel
 def fill_rises(luma: u8[:], x: i32, y: i32, way: i32, flat: i32, height: i32, rises: i32[:]) -> None:
-    """Take by how much the luma rises from pixel to pixel along the profile through (x, y); `way` is 1 or -1."""
+    """Take the rises of luma from pixel to pixel along the profile through (x, y); `way` is 1 or -1."""
     here = profile_pixel(luma, x, y, -way * BEFORE, flat, height)
     for place in range(RISES):
         ahead = profile_pixel(luma, x, y, way * (place + 1 - BEFORE), flat, height)
@@ -69,7 +69,7 @@ def fill_rises(luma: u8[:], x: i32, y: i32, way: i32, flat: i32, height: i32, ri
 
 @kernel
 def steepest(rises: i32[:]) -> i32:
-    """Return the place of the greatest rise near the edge, with half of each rise beside it; of equal ones the first."""
+    """Return the place of the greatest rise near the edge, counting half of each neighbour; of equal ones the first."""
     best = FIRST_PLACE
     most = rises[best - 1] + 2 * rises[best] + rises[best + 1]
     for place in range(FIRST_PLACE + 1, LAST_PLACE + 1):
@@ -82,7 +82,7 @@ def steepest(rises: i32[:]) -> i32:
 
 @kernel
 def flank(rises: i32[:], at: i32, way: i32) -> i32:
-    """Return how many rises beside the one at a place are of one outline with it: those above half of it, and the next one.
+    """Return how many rises beside the one at a place belong to its outline: those above half of it, and the next one.
 
     `way` is 1 or -1; MOST_BESIDE at most.
     """
@@ -94,10 +94,10 @@ def flank(rises: i32[:], at: i32, way: i32) -> i32:
 
 @kernel
 def outline_offset(rises: i32[:], at: i32, before: i32, after: i32, fit: i32[:]) -> i32:
-    """Return how far towards the bright side of an edge the luma steps, in 1/64 px, and sum up how wide the step is.
+    """Return how far towards the bright side of an edge the luma steps, in 1/64 px, and sum up the width of the step.
 
-    That is the centre of the rise at place `at`, `before` rises before it and `after` behind. An outline that bends has a rise that
-    is larger on one side and smaller on the other, the more the further off, slopes and all: so much each adds to the sum.
+    This is the centre of the rise at place `at`, `before` rises before it and `after` behind. A curved outline has a rise
+    that is larger on one side and smaller on the other, the more the further off, slopes included: each adds this to the sum.
     """
     dark_slope = max(rises[at - before - 1], 0)
     bright_slope = max(rises[at + after + 1], 0)
@@ -137,9 +137,9 @@ def refine_row(
     rises: i32[:],
     steepness: u16[:],
 ) -> None:
-    """Make points of the selected edges of row `y` that are not further than `fit_range` pixels from the circle.
+    """Make points of the selected edges of row `y` that are within `fit_range` pixels of the circle.
 
-    The points take the place of edges that came before, from the first on; `steepness` gets how steep the outline is there.
+    The points replace earlier edges, from the first on; `steepness` gets how steep the outline is there.
     """
     number = fit[NEXT_EDGE]
     while number < count and edge_y(selected[number]) == y:

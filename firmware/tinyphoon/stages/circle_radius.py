@@ -21,7 +21,7 @@ def fill_histogram(selected: u32[:], count: i32, fit: i32[:], histogram: u16[:])
 
 @kernel
 def edges_round(histogram: u16[:], radius: i32, peak_reach: i32) -> i32:
-    """Return how many edges are not further than `peak_reach` bins from a radius."""
+    """Return how many edges are within `peak_reach` bins of a radius."""
     total = 0
     for each in range(max(radius - peak_reach, 0), min(radius + peak_reach, len(histogram) - 1) + 1):
         total = total + histogram[each]
@@ -30,7 +30,7 @@ def edges_round(histogram: u16[:], radius: i32, peak_reach: i32) -> i32:
 
 @kernel
 def find_radius(histogram: u16[:], peak_reach: i32) -> i32:
-    """Return the middle bin of those with the most edges; of equal ones the first."""
+    """Return the middle of the bins with the most edges; of equal ones the first."""
     best = 0
     peak = 0
     for radius in range(len(histogram)):
@@ -43,7 +43,7 @@ def find_radius(histogram: u16[:], peak_reach: i32) -> i32:
 
 @kernel
 def mean_radius(histogram: u16[:], radius: i32, peak_reach: i32) -> i32:
-    """Return the mean of the bins round a radius, in 1/64 px. There must be an edge in one."""
+    """Return the mean of the bins around a radius, in 1/64 px. One of them must have an edge."""
     total = 0
     moment = 0
     for each in range(max(radius - peak_reach, 0), min(radius + peak_reach, len(histogram) - 1) + 1):

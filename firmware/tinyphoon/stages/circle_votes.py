@@ -1,6 +1,6 @@
-"""The centre of a circle: a Hough transformation in a small patch round a blob's centre of mass (T §2.2.2, §5.2.4).
+"""The centre of a circle: a Hough transform in a small patch around a blob's centre of mass (T §2.2.2, §5.2.4).
 
-Each edge adds one to the cells on the line along its gradient, one cell for each column or, of steep lines, for each
+Each edge adds one to the cells on the line along its gradient, one cell for each column or, for steep lines, for each
 row. A peak is the square of cells with the most votes: with a reach of 0 a single cell, as in the thesis; with 1 three
 by three, where lines that miss each other by a pixel still meet.
 """
@@ -25,7 +25,7 @@ def clear_votes(votes: u16[:], area: i32[:]) -> None:
 
 @kernel
 def gradient_slope(direction: i32, tangents: u16[:]) -> i32:
-    """Return the slope of the line along a gradient against the nearer axis, of y by x or, if steep, of x by y."""
+    """Return the slope of the line along a gradient against the nearer axis: y over x or, if steep, x over y."""
     turn = (direction + 32 & 63) - 32
     if is_flat(direction) != 0:
         turn = -turn
@@ -65,7 +65,7 @@ def draw_lines(selected: u32[:], count: i32, votes: u16[:], area: i32[:], tangen
 
 @kernel
 def votes_round(votes: u16[:], side: i32, at: i32, peak_reach: i32) -> i32:
-    """Return the sum of the votes in the square round cell `at`."""
+    """Return the sum of the votes in the square around cell `at`."""
     total = 0
     for row in range(-peak_reach, peak_reach + 1):
         for column in range(-peak_reach, peak_reach + 1):
@@ -75,7 +75,7 @@ def votes_round(votes: u16[:], side: i32, at: i32, peak_reach: i32) -> i32:
 
 @kernel
 def find_peak(votes: u16[:], reach: i32, peak_reach: i32) -> i32:
-    """Return the cell in the middle of the square with the most votes; of equal ones the first."""
+    """Return the middle cell of the square with the most votes; of equal ones the first."""
     side = 2 * reach + 1
     best = 0
     peak = reach * side + reach
@@ -90,7 +90,7 @@ def find_peak(votes: u16[:], reach: i32, peak_reach: i32) -> i32:
 
 @kernel
 def mean_offset(votes: u16[:], at: i32, along: i32, across: i32, peak_reach: i32) -> i32:
-    """Return how far the votes in the square round cell `at` lie off it in the mean, along one axis, in 1/64 px.
+    """Return the mean offset of the votes in the square around cell `at`, along one axis, in 1/64 px.
 
     `along` and `across` are the strides of this axis and of the other.
     """

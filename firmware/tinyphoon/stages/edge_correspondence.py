@@ -1,22 +1,22 @@
-"""Which edge of the other picture shows the same as an edge of this one (T §5.2.8).
+"""Which edge of the other picture corresponds to an edge of this one (T §5.2.8).
 
-The pictures are rectified, so both show a point in one row. The plain way of the thesis (`thesis_edges.py`) takes the nearest
-edge, which is the one with the least disparity. The better way, ours, asks the rows around: what has a disparity has it in the
-next rows too, along the edge. A pair's score is how unlike its gradients are, and for each of four rows around how unlike the most
-similar pair of that disparity is that lies beside the edge. The pair with the least score must be the best of both its
-edges, by a margin, must have support in one row at least, and be on the path through the row. What is on the path and fails the
-rest is an unsure pair. Which pairs are believed, and what else is, say the disparities around (`edge_following.py`).
+The pictures are rectified, so both show a point in the same row. The plain way of the thesis (`thesis_edges.py`) takes the
+nearest edge, which has the least disparity. The better way, ours, asks the rows around: a disparity continues in the next
+rows, along the edge. A pair's score is the difference of its gradients plus, for each of four rows around, that of the most
+similar pair of the same disparity beside the edge. The pair with the least score must be the best for both its edges, by a
+margin, must have support in at least one row, and must be on the path through the row. A pair on the path that fails the rest
+is unsure. Which pairs are believed, and which others are added, is decided by the disparities around (`edge_following.py`).
 
-The *path* is what pairs of a row there can be in one order in both pictures, as many as possible (stereo by dynamic programming,
-as Ohta and Kanade have it). What lies side by side is seen in the same order by both cameras, unless something thin stands far
-before the rest. So where one square of a board is like the next, their number tells them apart, and what lies beyond the
-board. Left edges nearer to the border than the disparity of the path's first pair are beyond the right picture's, and so are right
-edges beyond the left picture's by the last one's: they have no partner and need none. Without that, a board that one picture cuts
-would have as many pairs a square further on, and more beyond. Of paths with as many pairs the better one has pairs that are more
-alike, and smaller steps of disparity between them.
-It is found as the pairs come in, left edges from left to right, the right ones of each from right to left: for each right edge,
-`values` says how good the best path is that ends there or before, and `ends` with which link; behind the last one they say so of
-whole paths. A link is a pair and the link before it; link 0 is none.
+The *path* is the largest set of pairs of a row that are in the same order in both pictures (stereo by dynamic
+programming, as Ohta and Kanade have it). Things side by side are seen in the same order by both cameras, unless
+something thin stands far before the rest. So if one square of a board is like the next, their number tells them apart,
+and so does what lies beyond the board. Left edges nearer to the border than the disparity of the path's first pair are
+beyond the right picture's, and right edges likewise beyond the left picture's by the last pair's: they have no partner
+and need none. Without that, a board that one picture cuts would have as many pairs a square further on, and more
+beyond. Of paths with equally many pairs, the better one has more similar pairs, and smaller steps of disparity between
+them. The path is found while the pairs come in, left edges from left to right, the right ones of each from right to
+left: for each right edge, `values` tells how good the best path is that ends there or before, and `ends` with which
+link; after the last edge they tell it of whole paths. A link is a pair and the link before it; link 0 is none.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LINK_BEFORE, LINK_LEFT, LINK_RIGHT = 0, 1, 2
 LINK_WORDS = 3
 
 STEP = 4
-"""What a path pays for each pixel that the disparity changes by from a pair to the next: for 8 px as for a row that lacks support."""
+"""The cost on a path of each pixel of change in disparity from a pair to the next: 8 px cost as much as a row without support."""
 
 UNSEEN = WORST // 4
 """What a path gains by an edge beyond the other picture's border: half of what one in a pair is worth. It is explained, but nothing
@@ -41,7 +41,7 @@ speaks for it as for a pair: with as much as in a pair, a board without ends wou
 
 @kernel
 def unlike(edge: i32, other: i32, direction_range: i32) -> i32:
-    """Return how unlike two edges are, both gradient and direction, or WORST if their directions differ too much."""
+    """Return how different two edges are, in gradient and direction, or WORST if their directions differ too much."""
     turn = abs(turn_between(other >> 8 & 255, edge >> 8 & 255))
     if turn > direction_range:
         return WORST
@@ -59,9 +59,9 @@ def unlike_around(
     direction_range: i32,
     lack: i32,
 ) -> i32:
-    """Return how unlike the pairs around are that have this disparity, `lack` at most for each row.
+    """Return how different the pairs around are that have this disparity, at most `lack` for each row.
 
-    `slot` is the row of the windows that the edge in column `x` is in, `pitch` the columns of each row.
+    `slot` is the row of the windows with the edge in column `x`, `pitch` the columns of each row.
     """
     total = 0
     for step in range(WINDOW_ROWS):
@@ -88,7 +88,7 @@ def unlike_around(
 def offer(
     left_row: u32[:], left: i32, right: i32, score: i32, bests: u16[:], rivals: u16[:], owners: u16[:]
 ) -> None:
-    """Let a right edge see its pair with a left one, as they come from left to right."""
+    """Offer a right edge its pair with a left one; left edges come from left to right."""
     owner = owners[right]
     is_apart = 1
     if owner != 0 and i32(left_row[left] >> 16) - i32(left_row[owner - 1] >> 16) <= 1:
@@ -104,7 +104,7 @@ def offer(
 
 @kernel
 def first_behind(row: u32[:], first: i32, count: i32, x: i32) -> i32:
-    """Return the place, from `first` on, of the first edge of a row that lies to the right of column `x`."""
+    """Return the place, from `first` on, of the first edge of a row to the right of column `x`."""
     while first < count and i32(row[first] >> 16) <= x:
         first = first + 1
     return first
@@ -139,12 +139,12 @@ def add_pair(
     links: u16[:],
     used: i32,
 ) -> i32:
-    """Take a pair into the paths that are better with it; `used` links are taken. Returns how many are now.
+    """Add a pair to the paths that it improves; `used` links are taken. Return how many are taken then.
 
-    `unseen_left` and `unseen_right` are how many edges of each picture lie beyond the other one's border at the pair's disparity.
-    A pair that finds no room for its link is in no path.
+    `unseen_left` and `unseen_right` are how many edges of each picture lie beyond the other's border at the pair's
+    disparity. A pair without room for its link is in no path.
     """
-    gain = WORST - score  # so much that the path with more pairs wins
+    gain = WORST - score  # large enough for the path with more pairs to win
     value = gain + UNSEEN * unseen_left
     before = 0
     if right > 0 and ends[right - 1] != 0:
@@ -176,7 +176,7 @@ def add_pair(
 
 @kernel
 def columns_apart(row: u32[:], one: i32, other: i32) -> i32:
-    """Return how many columns two edges of a row are apart."""
+    """Return how many columns apart two edges of a row are."""
     return abs(i32(row[one] >> 16) - i32(row[other] >> 16))
 
 
@@ -193,7 +193,7 @@ def take_path(
     links: u16[:],
     end: i32,
 ) -> None:
-    """Give left edges the partners of the path that ends with link `end`, negative if unsure: not the best of both, or a pixel beside.
+    """Give left edges their partners on the path ending with link `end`; unsure ones, off the best, are negative.
 
     `partners` comes with the best of each left edge, or 0 where that has a rival.
     """
@@ -234,11 +234,11 @@ def match_edges(
     lack: i32,
     margin: i32,
 ) -> None:
-    """Set for each left edge the place of its partner in the right row, from 1 on, negative if that is unsure, or 0.
+    """Set for each left edge the place of its partner in the right row, from 1 on, negative if it is unsure, or 0.
 
-    `bests`, `rivals` and `owners` are room for the right row: least score, that of the rival, and whose the least is;
-    `values`, `ends` and `links` for the path. A rival is the best of the others that are more than a pixel away. Pairs farther
-    away than is wanted take part: an edge whose true partner is there must not get another.
+    `bests`, `rivals` and `owners` are room for the right row: the least score, the rival's score, and the owner of the
+    least; `values`, `ends` and `links` are for the path. A rival is the best of the others more than a pixel away.
+    Pairs beyond the wanted depth take part: an edge whose true partner is there must not get another.
     """
     for right in range(right_count):
         bests[right] = WORST

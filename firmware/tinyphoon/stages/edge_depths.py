@@ -1,7 +1,7 @@
-"""3-D edges of a row of disparities: how far away the edges are, to fractions of a pixel of disparity.
+"""3-D edges from a row of disparities: the depths of the edges, to fractions of a pixel of disparity.
 
-Edges lie in whole pixels, so the disparity of a pair is whole, and up to a pixel off. The rows around show the same contour at
-other fractions of a pixel: where it goes on, the mean of their disparities is nearer to the truth than one alone.
+Edges lie in whole pixels, so the disparity of a pair is whole, and up to a pixel off. The rows around show the same contour
+at other fractions of a pixel: where it continues, the mean of their disparities is more accurate than a single one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def mean_disparities(
     below2: i16[:],
     means: i16[:],
 ) -> None:
-    """Set for each left edge the mean of its disparity and those like it beside in the rows around, in 1/16 px, or 0 for none."""
+    """Set for each left edge the mean of its disparity and similar ones beside it in the rows around, in 1/16 px, or 0."""
     for left in range(left_count):
         x = i32(left_row[left] >> 16)
         disparity = i32(here[x])
@@ -54,10 +54,10 @@ def store_edges3d_row(
     edges_3d: i16[:],
     found: i32,
 ) -> i32:
-    """Store the 3-D edges of row `y`: left edges whose disparity, by their place and in 1/16 px, is above `farthest`.
+    """Store the 3-D edges of row `y`: left edges whose disparity, in 1/16 px, is above `farthest`.
 
-    `found` is how many the rows before gave; returns it with this row. Those beyond the length of `edges_3d` are counted,
-    not stored.
+    `found` is how many the rows before gave; returns the number with this row. Those beyond the length of `edges_3d`
+    are counted but not stored.
     """
     place = i32(edge_index[y])
     for left in range(left_count):

@@ -1,8 +1,8 @@
 """Edge detection: the scan-line Canny (T §2.1.4, §5.2.1), with the colour reduction.
 
-Every kernel makes one row. The task reads the picture once, top to bottom; each
-step lags behind the step that it reads from. The fifth step is in `hysteresis.py`;
-`edge_thinning.py` says what becomes of more edges than there is room for.
+Every kernel makes one row. The task reads the picture once, top to bottom; each step lags behind the step that
+it reads from. The fifth step is in `hysteresis.py`; `edge_thinning.py` handles edges for which there is no
+room.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class EdgeThresholds:
 
     @property
     def is_balanced(self) -> bool:
-        """Whether all gains leave the colours as the camera has them."""
+        """Whether all gains leave the colours as the camera sends them."""
         return set(self.gains) == {AS_IT_IS}
 
 
@@ -84,7 +84,7 @@ def gauss3_row(above: u8[:], here: u8[:], below: u8[:], smooth: u8[:]) -> None:
 
 @kernel
 def across5(line: u8[:], x: i32) -> i32:
-    """Return 1-4-6-4-1 times the pixels round `x`."""
+    """Return 1-4-6-4-1 times the pixels around `x`."""
     return line[x - 2] + line[x + 2] + 4 * (line[x - 1] + line[x + 1]) + 6 * line[x]
 
 
@@ -127,8 +127,8 @@ def sobel_row(above: u8[:], here: u8[:], below: u8[:], gx: i16[:], gy: i16[:]) -
 def magnitude_row(gx: i16[:], gy: i16[:], magnitude: u8[:]) -> None:
     """Gradient magnitude of one row (T Eq. 2.3), a quarter of it, 255 at most.
 
-    A Sobel gradient can be 255 * sqrt(20) = 1140 long, but only at a corner: an edge of 255 grey levels has
-    1020, and 765 behind the Gauss. So a quarter is the finest unit that 8 bits hold.
+    A Sobel gradient can be 255 * sqrt(20) = 1140 long, but only at a corner: an edge of 255 grey levels has 1020, and
+    765 after the Gauss. So a quarter is the finest unit that 8 bits hold.
     """
     for x in range(len(magnitude)):
         square = gx[x] * gx[x] + gy[x] * gy[x]
@@ -176,7 +176,7 @@ def suppress_row(
 
 @kernel
 def clear_rim(edges: u8[:], first: u16[:], last: u16[:], y: i32, x: i32) -> None:
-    """Remove the edges of a row that lie at the rim of a rectified picture; the row begins at column `x` of its row `y`."""
+    """Remove a row's edges at the rim of a rectified picture; the row begins at column `x` of that picture's row `y`."""
     for column in range(min(first[y] - x, len(edges))):
         edges[column] = 0
     for column in range(max(last[y] + 1 - x, 0), len(edges)):
@@ -184,7 +184,7 @@ def clear_rim(edges: u8[:], first: u16[:], last: u16[:], y: i32, x: i32) -> None
 
 
 class FoundEdges(Protocol):
-    """What takes the edges of a scan, row by row."""
+    """Receives the edges of a scan, row by row."""
 
     def row(self) -> Generator[Any, Any, Row]:
         """Return a row for the gradients of the next line."""
@@ -195,7 +195,7 @@ class FoundEdges(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Slopes:
-    """What makes length and direction of a row's gradients, which are in `gx` and `gy` meanwhile."""
+    """Makes length and direction of a row's gradients, which are in `gx` and `gy` meanwhile."""
 
     core: Core
     gx: Row
@@ -204,7 +204,7 @@ class Slopes:
 
     @classmethod
     def of(cls, core: Core) -> Self:
-        """Return that of a core."""
+        """Return the maker for a core."""
         return cls(core, core.array("gx"), core.array("gy"), core.array("atan"))
 
     def row(self, smooth: Sequence[Row], magnitude: Row, direction: Row, _: int) -> Generator[Any, Any, None]:
@@ -218,7 +218,7 @@ class Slopes:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSteps:
-    """How a scan reduces the colours of a row, makes its gradients, and suppresses what is no edge: these ways, or others with the same results.
+    """How a scan reduces a row's colours, makes its gradients, and suppresses non-edges; all ways have the same results.
 
     `slopes.row` takes the smoothed lines, the rows of lengths and directions to be made, and the threshold.
     """
@@ -300,7 +300,7 @@ def scan_buffers(size: FrameSize) -> Sequence[Buffer]:
 
 
 Scan = Callable[[Core, Frame, EdgeThresholds, Area, Candidates], Generator[Any, Any, None]]
-"""How a picture is read, once: `scan`, or one that leaves the same."""
+"""How a picture is read, once: `scan`, or another way with the same results."""
 
 
 def edge_detection(
@@ -310,11 +310,11 @@ def edge_detection(
     area: Area = WHOLE_PICTURE,
     scanned: Scan = scan,
 ) -> Generator[Any, Any, int]:
-    """Detect the edges of a picture, an area of a larger one, and reduce its colours, in one pass of DMA lines (T Figure 5.3).
+    """Detect the edges of a picture or an area of it, and reduce its colours, in one pass of DMA lines (T Figure 5.3).
 
     Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store; returns how many edges are stored and
-    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, with the
-    rows of the camera's picture in which most were, and `edge_groups_shared`, how many groups had to share a label.
+    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all,
+    with the rows of the camera's picture that lost most, and `edge_groups_shared`, how many groups had to share a label.
     """
     run, at, candidates = core.run, core.at, Candidates.of(core, frame.height)
     yield from candidates.begin()

@@ -1,14 +1,14 @@
-"""What the disparities around say of an edge's: most things go on in the next rows, at nearly the depth that they have here.
+"""Decide disparities by those around: most things continue in the next rows, at nearly the same depth.
 
-A pair that matched by itself (`edge_correspondence.py`) is believed if pairs in two of the four rows around have its disparity,
-to a pixel. An unsure pair, which is on its row's path but has rivals, is believed if the next pair in its row that is believed has
-its disparity, to a pixel, and all four rows have it on their paths. An edge that is left then follows those that are believed, in
-its row and the two below: it takes the most similar of the right edges at their disparities. The rows above it must not follow:
-whether they are believed is not known yet, and what is wrong there would be followed here and then believed for it. There are few
-disparities to choose from, so its gradient may be turned farther than that of a pair which had the whole row, and they may lie
-farther beside it: contours lean, and many things are as deep a little farther on.
+A pair that matched by itself (`edge_correspondence.py`) is believed if pairs in two of the four rows around have its
+disparity, to a pixel. An unsure pair, on its row's path but with rivals, is believed if the next believed pair in its
+row has its disparity, to a pixel, and all four rows have it on their paths. A remaining edge then follows believed ones
+in its row and the two below: it takes the most similar right edge at their disparities. It must not follow rows above,
+which are not decided yet: an error there would be followed and then believed for it. There are few disparities to
+choose from, so its gradient may be turned farther than that of a pair which had the whole row, and they may lie farther
+beside it: contours lean, and many things keep their depth.
 
-A row of disparities holds by the column of each left edge its disparity in pixels and 1, negative if that is unsure, or 0 for none.
+A row of disparities holds, at the column of each left edge, its disparity in pixels plus 1 (negative: unsure), or 0.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ OFFER_BITS = 12
 NO_OFFER = WORST << OFFER_BITS
 
 LEAST_SUPPORT = 2
-"""Rows around that must have a disparity: chance gives one of the four easily, but seldom two."""
+"""Rows around that must have a disparity: by chance, one of the four often has it, but seldom two."""
 
 BESIDE = 16
-"""How much more alike a pair must be that differs from the disparity it follows by a pixel: most things go on at the same."""
+"""How much more similar a pair must be that differs from the followed disparity by a pixel: most things keep theirs."""
 
 FOLLOW_REACH = 12
-"""Columns to both sides of an edge in which it finds disparities to follow."""
+"""Columns on both sides of an edge in which it finds disparities to follow."""
 
 
 @kernel
@@ -53,7 +53,7 @@ def place_disparities(
 
 @kernel
 def is_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
-    """Return 1 if an edge `away` from column `x` at most has a sure disparity (and 1) that is this one to a pixel; else 0."""
+    """Return 1 if an edge within `away` of column `x` has a sure disparity (plus 1) like this, to a pixel; else 0."""
     for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
         known = i32(disparities[column])
         if known > 0 and abs(known - disparity) <= 1:
@@ -63,7 +63,7 @@ def is_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
 
 @kernel
 def like_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
-    """Return the disparity (and 1), sure or not, of an edge `away` from column `x` at most that is this one to a pixel; else 0."""
+    """Return a disparity (plus 1), sure or not, like this, to a pixel, of an edge within `away` of column `x`; else 0."""
     for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
         known = abs(i32(disparities[column]))
         if known != 0 and abs(known - disparity) <= 1:
@@ -82,7 +82,7 @@ def believe_edges(
     below2: i16[:],
     right_edges: u16[:],
 ) -> None:
-    """Take the sure disparities of a row away that the rows around do not believe, and from `right_edges` the edges of the others.
+    """Remove a row's sure disparities that the rows around do not confirm, and from `right_edges` the edges of the rest.
 
     `right_edges` has the row's gradients and directions by column, or 0, as a window of `spread_edges`.
     """
@@ -109,9 +109,9 @@ def believe_unsure(
     below2: i16[:],
     right_edges: u16[:],
 ) -> None:
-    """Make the unsure disparities of a row sure that all rows around have, and the nearest sure one on a side of the row.
+    """Make unsure disparities of a row sure if all rows around have them, and the nearest sure one beside them, too.
 
-    Those to the right of what is believed come first, then those to the left of it. A right edge belongs to one only.
+    Those to the right of believed pairs come first, then those to the left. A right edge belongs to only one.
     """
     for side in range(2):
         beside = 0
@@ -146,11 +146,11 @@ def best_offer(
     follow_range: i32,
     max_disparity: i32,
 ) -> i32:
-    """Return how unlike `edge` the right edge is that is most like it of those that a row offers.
+    """Return the difference between `edge` and the most similar right edge that a row offers.
 
-    These are those at the disparities of the edges FOLLOW_REACH from its column at most, and a pixel beside; `row` has the
-    row's `count` edges, of which those before place `first` are farther away. The lower OFFER_BITS are the disparity and 1;
-    without an offer it is NO_OFFER or more.
+    Offered are those at the disparities of the edges within FOLLOW_REACH of its column, and a pixel beside; `row` has
+    the row's `count` edges, of which those before place `first` are farther away. The lower OFFER_BITS are the
+    disparity plus 1; without an offer it is NO_OFFER or more.
     """
     x = i32(edge >> 16)
     most = min(x, max_disparity) + 1
@@ -174,7 +174,7 @@ def best_offer(
 
 @kernel
 def first_in_reach(row: u32[:], first: i32, count: i32, x: i32) -> i32:
-    """Return the place, from `first` on, of the first edge of a row that is not too far to the left of column `x`."""
+    """Return the place, from `first` on, of a row's first edge that is not too far to the left of column `x`."""
     while first < count and i32(row[first] >> 16) < x - FOLLOW_REACH:
         first = first + 1
     return first
@@ -195,7 +195,7 @@ def follow_edges(
     follow_range: i32,
     max_disparity: i32,
 ) -> None:
-    """Give the left edges of a row that have no sure disparity one of those around; a right edge belongs to one only."""
+    """Give left edges of a row without a sure disparity one of those around; a right edge belongs to only one."""
     first = 0
     first_below = 0
     first_below2 = 0

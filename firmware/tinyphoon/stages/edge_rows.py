@@ -1,6 +1,6 @@
 """Rows of both edge stores, without level edges: one as a list, and those around it in windows.
 
-Edges whose gradient looks up or down belong to lines along the row, all of whose edges are alike.
+Edges whose gradient looks up or down belong to lines along the row, whose edges are all alike.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from bfsim.api import i32, kernel, u16, u32
 
 REACH = 2
-"""Rows above and below that support a pair; as many columns to both sides: an edge that leans by 45 degrees."""
+"""Rows above and below that support a pair; as many columns on both sides: an edge that leans by 45 degrees."""
 
 WINDOW_ROWS = 2 * REACH + 1
 
@@ -16,7 +16,7 @@ WINDOW_ROWS = 2 * REACH + 1
 @kernel
 def is_level(edge: u32, level_range: i32) -> i32:
     """Return 1 for an edge whose gradient looks up or down, to less than `level_range`; else 0."""
-    # half a turn is 128: above 0 and below twice the range, counted from as far before straight down
+    # half a turn is 128: above 0 and below twice the range, counted from this much before straight down
     return 1 if (i32(edge >> 8) + level_range - 65 & 127) < 2 * level_range - 1 else 0
 
 
@@ -73,7 +73,7 @@ def spread_left_row(
     slot: i32,
     level_range: i32,
 ) -> None:
-    """Put row `y` of the edge store into a window; rows that the picture does not have are empty."""
+    """Put row `y` of the edge store into a window; rows outside the picture are empty."""
     first = 0
     count = 0
     if 0 <= y < len(edge_counts):
@@ -86,7 +86,7 @@ def spread_left_row(
 def spread_right_row(
     right_edges: u32[:], right_rows: u32[:], y: i32, window: u16[:], slot: i32, level_range: i32
 ) -> None:
-    """Put row `y` of the edge store that core B shares into a window; rows that the picture does not have are empty."""
+    """Put row `y` of the edge store that core B shares into a window; rows outside the picture are empty."""
     here: u32 = 0
     if 0 <= y < len(right_rows):
         here = right_rows[y]

@@ -1,4 +1,4 @@
-"""What a scan leaves of a row, as words of the edge store (T Listing 5.1)."""
+"""Store a scanned row as words of the edge store (T Listing 5.1)."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Thinning: where a picture has more edges than the store, the weakest are left out, in every part of it alike [ours].
+"""Thinning: if a picture has more edges than the store, the weakest are left out, equally in every part of it [ours].
 
-The thesis fills its store from the top, so that a cluttered picture loses its lower part: the floor before the robot. Here
-the scan keeps every edge as a candidate, row by row in SDRAM, and counts the candidates of each band of rows by gradient.
-Then each band gets its share of the store, by the part of the candidates that it has, and a least gradient that keeps to
-it. A second, short pass over the candidates fills the store. A picture whose edges have room keeps them all.
+The thesis fills its store from the top, so that a cluttered picture loses its lower part: the floor before the robot.
+Here the scan keeps every edge as a candidate, row by row in SDRAM, and counts the candidates of each band of rows by
+gradient. Then each band gets its share of the store, in proportion to its candidates, and a least gradient that keeps
+to it. A second, short pass over the candidates fills the store. If there is room, a picture keeps all its edges.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ BANDS = 8
 LEVELS = 256
 """Gradients are bytes."""
 
-# A band in `band_edges`: what is left out, for the report.
+# A band in `band_edges`: counts for the report of what is left out.
 CANDIDATES, KEPT = 0, 1
 TALLY_WORDS = 2
 
@@ -56,10 +56,10 @@ def count_levels(candidates: u32[:], count: i32, levels: u16[:], band: i32) -> N
 
 @kernel
 def share_out(levels: u16[:], capacity: i32, least: u8[:]) -> i32:
-    """Set the least gradient that each band keeps, so that no more than `capacity` edges stay; return how many do not.
+    """Set the least gradient that each band keeps, so that at most `capacity` edges stay; return how many do not.
 
-    A band may keep as large a part of its candidates as there is room for all that are still to come. What a band leaves of
-    its share, since edges of one gradient stay or go together, is for the bands below it.
+    A band may keep as large a part of its candidates as there is room for all that are still to come. What a band
+    leaves of its share, since edges of equal gradient stay or go together, goes to the bands below it.
     """
     to_come = 0
     for place in range(len(levels)):
@@ -98,9 +98,9 @@ def take_candidates(
     y: i32,
     found: i32,
 ) -> i32:
-    """Store the candidates of row `y`, `edge_counts[y]` of them, that reach the least gradient of their band.
+    """Store those of row `y`'s `edge_counts[y]` candidates that reach the least gradient of their band.
 
-    `found` edges are stored before; returns how many are with this row. Both counts are added up in `band_edges`.
+    `found` edges are stored before; return the number with this row. Both counts are added up in `band_edges`.
     """
     edge_index[y] = found
     before = found
@@ -118,7 +118,7 @@ def take_candidates(
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """The candidates of a picture: written row by row, then taken into the edge store. `bands`: the band that each row belongs to."""
+    """The candidates of a picture: written row by row, then taken into the edge store. `bands`: the band of each row."""
 
     core: Core
     bands: Sequence[int]
@@ -131,7 +131,7 @@ class Candidates:
 
     @classmethod
     def of(cls, core: Core, height: int) -> Candidates:
-        """Return those of a picture of `height` rows of a core's camera."""
+        """Return the candidates of a picture of `height` rows of a core's camera."""
         outward = core.output_ring("candidate_ring", core.rows("edge_candidates"))
         levels, *_ = core.overlay("segments", u16, BANDS * LEVELS)  # the lines come later
         tables = levels, core.array("least_gradients"), core.array("band_edges")
@@ -144,7 +144,7 @@ class Candidates:
         yield self.core.run(clear_levels, self.band_edges)
 
     def row(self) -> Generator[Any, Any, Row]:
-        """Return the row for gradients: the same one for each line, since they go no further."""
+        """Return the row for gradients: the same one for each line, since they are not kept."""
         yield from ()
         return self.gradients
 
@@ -166,7 +166,7 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class ThinnedBand:
-    """A band of rows, from `top` to `bottom`, and how many of its edges there was no room for."""
+    """A band of rows, from `top` to `bottom`, and the number of its edges without room."""
 
     top: int
     bottom: int
@@ -175,12 +175,12 @@ class ThinnedBand:
 
     @property
     def share(self) -> float:
-        """The part of its edges that was left out, 0 to 1."""
+        """The share of its edges that was left out, 0 to 1."""
         return self.lost / self.edges if self.edges else 0.0
 
 
 def thinned_bands(band_edges: NDArray[np.uint16], height: int) -> list[ThinnedBand]:
-    """Return the bands of a picture of `height` rows from which edges were left out: what `band_edges` says of them."""
+    """Return the bands of a picture of `height` rows that lost edges, according to `band_edges`."""
     tallies = band_edges.reshape(-1, TALLY_WORDS).astype(int).tolist()
     firsts = [-(-band * height // BANDS) for band in range(BANDS + 1)]
     bands = (

@@ -1,8 +1,8 @@
-"""Colour reduction and edges with the instructions for four pixels at once, the same to the bit as `edge_detection.py`.
+"""Colour reduction and edges with instructions for four pixels at once, bit-identical to `edge_detection.py`.
 
-Most pixels are no edge. So a row is scanned in words of four pixels (`fast_gradients.py`), whose gradients are two pairs of 16-bit
-numbers; a root is taken, from a table, where the sum of both components says that the gradient may reach the threshold, and a direction
-only of edges. A gradient below the threshold counts as 0: no pixel that reaches it loses or gains by that.
+Most pixels are no edge. So a row is scanned in words of four pixels (`fast_gradients.py`), whose gradients are two pairs
+of 16-bit numbers; a root is looked up only if the sum of both components says that the gradient may reach the threshold,
+and a direction only for edges. A gradient below the threshold counts as 0: this changes nothing for pixels that reach it.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ GREY_PAIR = 0x00800080
 """The U and V of no colour."""
 
 SMALL = 256
-"""Squares below have a root of their own in the table."""
+"""Smaller squares have a root of their own in the table."""
 
 LONGEST = 255
 """The greatest magnitude, in the unit of `magnitude_row`."""
 
 FLAT = int((arctangent_table() < 16).sum())
-"""The least slope, in 256ths, whose angle is a sixteenth of a turn, where neighbours are no longer those of the row."""
+"""The least slope, in 256ths, with an angle of a sixteenth of a turn: neighbours are no longer in the row."""
 
 FLATTER = int((arctangent_table() < 17).sum())
-"""The least slope whose angle is more than that."""
+"""The least slope with a greater angle than that."""
 
 
 @kernel
 def root8(square: i32, roots: u8[:]) -> i32:
-    """Return the root of `square`, below 65,536, rounded down: that of its 16th, which may lack 1. A small square is in the table."""
+    """Return the root of `square`, below 65,536, rounded down: from its 16th, which may be 1 too low. Small ones are in the table."""
     if square < SMALL:
         return roots[square]
     root = roots[SMALL + (square >> 4)] + 1
@@ -61,13 +61,13 @@ def root8(square: i32, roots: u8[:]) -> i32:
 
 @kernel
 def slope8(minor: i32, major: i32, reciprocals: u32[:]) -> i32:
-    """Return `minor / major` in 256ths, rounded down, of 0 <= minor <= major <= 1020, by a multiplication; 0 of 0 and 0."""
+    """Return `minor / major` in 256ths, rounded down, for 0 <= minor <= major <= 1020, by a multiplication; 0 for 0 / 0."""
     return i32(u32(minor) * reciprocals[major] >> 20)
 
 
 @kernel
 def fast_angle8(x: i32, y: i32, atan: u8[:], reciprocals: u32[:]) -> i32:
-    """Return what `angle8` does, of a vector with components up to 1020."""
+    """Return the same as `angle8`, for a vector with components up to 1020."""
     ax = abs(x)
     ay = abs(y)
     if ax >= ay:
@@ -93,7 +93,7 @@ def hue_of(
     eps_white: i32,
     least_chroma: i32,
 ) -> u32:
-    """Return the word of the hue of a pair of V and U, or 0 if it has none; `brightness`: luma less chroma of its two pixels."""
+    """Return the word of a V and U pair's hue, or 0 if it has none; `brightness`: luma minus chroma of its two pixels."""
     brightest = max(low_of_fr2x16(brightness), high_of_fr2x16(brightness))
     darker = min(low_of_fr2x16(brightness), high_of_fr2x16(brightness))
     if chroma < least_chroma or brightest < darkest or darker > eps_white:
@@ -111,7 +111,7 @@ def chroma_square(word: i32) -> i32:
 
 @kernel
 def brightness_of(word: i32, chroma: i32) -> i32:
-    """Return the luma of both pixels of a UYVY word, less its chroma."""
+    """Return the luma of both pixels of a UYVY word, minus its chroma."""
     return sub_i2x16(word >> 8 & EVEN_BYTES, compose_fr2x16(chroma, chroma))
 
 
@@ -129,8 +129,8 @@ def colour_words(
 ) -> None:
     """Reduce the colours of one row as `colour_row` does.
 
-    Most pairs have little chroma and are black: a run of these has a loop of its own, which needs few registers. Of
-    the others, most are neither black nor white.
+    Most pairs have little chroma and are black: a run of these has a loop of its own, which needs few registers. Of the
+    others, most are neither black nor white.
     """
     grey = min(least_chroma * least_chroma, SMALL)
     black = compose_fr2x16(eps_black - 1, eps_black - 1)
@@ -187,7 +187,7 @@ def colour_words(
 
 @kernel
 def magnitude8(gx: i32, gy: i32, roots: u8[:], least: i32) -> i32:
-    """Return the magnitude of a gradient as `magnitude_row` has it, or 0 if its square is below `least`."""
+    """Return the magnitude of a gradient as in `magnitude_row`, or 0 if its square is below `least`."""
     square = gx * gx + gy * gy >> 4
     if square < least:
         return 0
@@ -200,7 +200,7 @@ def magnitude8(gx: i32, gy: i32, roots: u8[:], least: i32) -> i32:
 def magnitude_words(
     gx: i32[:], gy: i32[:], roots: u8[:], threshold: i32, last: i32, magnitude: i32[:]
 ) -> None:
-    """Magnitudes of one row, those that reach the threshold, in place of how steep its words are."""
+    """Replace the steepness of a row's words by the magnitudes that reach the threshold."""
     limit = (4 * threshold - 1) * 0x00010001
     least = threshold * threshold
     words = len(magnitude) - 1
@@ -226,7 +226,7 @@ def magnitude_words(
 
 @kernel
 def octant_of(x: i32, y: i32) -> i32:
-    """Return where the neighbours across an edge of gradient (x, y) are, as `suppress_row` numbers it by the direction.
+    """Return where the neighbours across an edge of gradient (x, y) are, numbered as in `suppress_row`.
 
     0: left and right, 1: above left and below right, 2: above and below, 3: above right and below left.
     """
@@ -300,11 +300,11 @@ def peak_words(
 
 @kernel
 def first_sighted(first: u16[:], y: i32, x: i32) -> i32:
-    """Return the first column of row `y` behind the rim of a rectified picture and behind the border; a row begins at column `x`."""
+    """Return the first column of row `y` inside the rim of a rectified picture and the border; a row begins at column `x`."""
     return max(first[y] - x, 1)
 
 
 @kernel
 def after_sighted(last: u16[:], y: i32, x: i32, border: i32) -> i32:
-    """Return the column behind the last one of row `y` before the rim, or `border` if that comes first."""
+    """Return the column after the last one of row `y` before the rim, or `border` if that comes first."""
     return min(last[y] + 1 - x, border)

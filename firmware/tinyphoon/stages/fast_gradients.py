@@ -1,6 +1,6 @@
-"""Gradients of rows of words, each of four pixels: luma, smoothed, and how steep it is.
+"""Gradients of rows of words of four pixels: luma, smoothed luma, and steepness.
 
-A row of words has one word more than its pixels need, so that a loop may look ahead. What lies behind the last pixel is of no account.
+A row has one word more than its pixels need, so that a loop may look ahead. Anything after the last pixel does not matter.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from bfsim.api import (
 )
 
 EVEN_BYTES = 0x00FF00FF
-"""Where U and V of a UYVY word are, and its two lumas, when it is shifted by a byte."""
+"""Selects U and V of a UYVY word, or its two lumas if it is shifted by a byte."""
 
 
 def words_of(width: int) -> int:
-    """Return how many words a row of `width` pixels has."""
+    """Return the number of words of a row of `width` pixels."""
     return -(-width // 4) + 1
 
 
 @kernel
 def grey_words(uyvy: i32[:], grey: i32[:]) -> None:
-    """Take the luma of one UYVY row, of two pixels a word, to words of four."""
+    """Take the luma of one UYVY row, with two pixels a word, into words of four."""
     whole = len(uyvy) >> 1
     for i in range(whole):
         grey[i] = bytepack((uyvy[2 * i] >> 8) & EVEN_BYTES, (uyvy[2 * i + 1] >> 8) & EVEN_BYTES)
@@ -69,10 +69,10 @@ def gauss3_words(above: i32[:], here: i32[:], below: i32[:], smooth: i32[:], las
 def sobel_words(
     above: i32[:], here: i32[:], below: i32[:], gx: i32[:], gy: i32[:], steepness: i32[:]
 ) -> None:
-    """Sobel gradients of one smoothed row, two words of `gx` and of `gy` for a word of pixels, and how steep its words are at most.
+    """Sobel gradients of a smoothed row, two words of `gx` and `gy` for a word of pixels, and the most steepness of its words.
 
-    That is, of pixels 0 and 2 and of 1 and 3, the greater sum of both components. What pixels in a column have
-    goes from word to word, as in `gauss3_words`.
+    That is the greater sum of both components, for pixels 0 and 2 and for 1 and 3. What pixels in a column have goes
+    from word to word, as in `gauss3_words`.
     """
     outer_upper, outer_lower = add_i4x8(above[0], here[0])
     inner_upper, inner_lower = add_i4x8(here[0], below[0])

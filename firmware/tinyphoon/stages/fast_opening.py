@@ -1,4 +1,4 @@
-"""Open & closing column by column, the same to the bit as `open_closing.py`: what three pixels one above the other have is computed once."""
+"""Open & closing column by column, bit-identical to `open_closing.py`: three pixels in a column are combined only once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scan of `edge_detection.py` by the kernels of `fast_gradients.py` and `fast_edges.py`: the same colours and candidates."""
+"""The scan of `edge_detection.py` by the kernels of `fast_gradients.py` and `fast_edges.py`: same colours, same candidates."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def fast_scan_buffers(size: FrameSize) -> Sequence[Buffer]:
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """Lines on their way through L1: words, for kernels that take several pixels at once, and the elements that these hold."""
+    """Lines on their way through L1: as words, for kernels that take several pixels at once, and as elements."""
 
     words: Lines
     elements: Lines
@@ -63,7 +63,7 @@ class Ring:
 
 @dataclass(frozen=True, slots=True)
 class FastScan:
-    """The rings of a scan, what kernels take from three and more lines of them, and what becomes of a row in each step."""
+    """The rings of a scan, the lines of them that kernels use together, and the steps of a row."""
 
     core: Core
     frame: Frame
@@ -84,7 +84,7 @@ class FastScan:
     def of(
         cls, core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area, candidates: Candidates
     ) -> FastScan:
-        """Return that of an area of a picture."""
+        """Return the scan of an area of a picture."""
         rim = [core.array(name) for name in ("sighted_first", "sighted_last") if core.has_buffer(name)]
         # the opening comes later: two lines of its ring are enough for the larger Gauss
         grey = Ring.of(core, ["grey_ring", "opened_ring"], u8, frame)
@@ -142,7 +142,7 @@ class FastScan:
         candidates.outward.send()
 
     def _sighted(self, y: int) -> Generator[Any, Any, tuple[int, int]]:
-        """Return where the edges of a row may begin, and before where they must end."""
+        """Return where the edges of a row may begin, and where they must end."""
         begin, end = 1, self.frame.width - 1
         if self.rim:
             first, last = self.rim
@@ -184,5 +184,5 @@ def fast_scan(
 def fast_edge_detection(
     core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area = WHOLE_PICTURE
 ) -> Generator[Any, Any, int]:
-    """Leave and publish what `edge_detection` does, by the fast scan."""
+    """Leave and publish the same as `edge_detection`, by the fast scan."""
     return (yield from edge_detection(core, frame, thresholds, area, fast_scan))

@@ -1,4 +1,4 @@
-"""Features rectified in place of pictures (T §7.2): fewer points to move, and edges and colours of pictures as sharp as they came.
+"""Features rectified in place of pictures (T §7.2): fewer points to move, and unchanged sharpness of edges and colours.
 
 [said] Objects and lines are looked for in the pictures as the cameras have them, and the features are rectified for 3-D lines and for
 the verification of objects. [implied] So all that these two read is moved: the edges, for they vote on 3-D lines and are 3-D edges
@@ -36,7 +36,7 @@ def picture_as_it_came(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> 
 
 
 def feature_rectification(core: Core, area: Area, found: Features) -> Generator[Any, Any, Features]:
-    """Move the features of an area of a picture to where they lie in the rectified one; returns them."""
+    """Move the features of an area of a picture to their places in the rectified one; return them."""
     if not core.has_buffer("places"):
         return found
     with core.stage("Line detection"), core.stage("Rectification"):

@@ -19,8 +19,8 @@ from typing import Any
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
 from tinyphoon.stores.edges import edge_columns, edge_store
 
-# Noise makes most of the groups: the rendered scenes of the thesis ask for up to 724 labels. Only where the edge store is
-# full of specks of 5 edges and less are these too few.
+# Noise makes most of the groups: the rendered scenes of the thesis need up to 724 labels. These are too few only if the
+# edge store is full of specks of 5 edges and less.
 LABELS = 1536
 
 
@@ -45,13 +45,13 @@ def known_label(above: u16[:], here: u16[:], x: i32) -> i32:
 
 @kernel
 def new_label(given: i32, last: i32) -> i32:
-    """Return the label after `given` others. Labels that are too many share the last one."""
+    """Return the label after `given` others. When there are too many, labels share the last one."""
     return min(given + 1, last)
 
 
 @kernel
 def group_of(groups: u16[:], label: i32) -> i32:
-    """Return the group of a label, and shorten the way there (path compression)."""
+    """Return the group of a label, and shorten the path to it (path compression)."""
     group = label
     while groups[group] != group:
         group = groups[group]
@@ -64,7 +64,7 @@ def group_of(groups: u16[:], label: i32) -> i32:
 
 @kernel
 def join_groups(groups: u16[:], strongest: u8[:], one: i32, other: i32) -> None:
-    """Make one group of two labels."""
+    """Join the groups of two labels."""
     one = group_of(groups, one)
     other = group_of(groups, other)
     low = min(one, other)
@@ -85,7 +85,7 @@ def group_edges_row(
     strongest: u8[:],
     given: i32,
 ) -> i32:
-    """Label the stored edges of row `y` and join what meets there; return how many labels the picture has asked for.
+    """Label the stored edges of row `y` and join groups that meet there; return how many labels the picture has needed.
 
     `above` and `here` are the labels of the row before and of this one, `given` is the number before this row. When
     `groups` is full, all further labels are its last one. No edge lies in the first or the last column.
@@ -122,7 +122,7 @@ def label_edges_row(
     last: i32,
     given: i32,
 ) -> i32:
-    """Give the stored edges of row `y` the labels of `group_edges_row` once more; return how many there are so far."""
+    """Give the stored edges of row `y` the labels of `group_edges_row` again; return how many there are so far."""
     clear_labels(here)
     first = i32(edge_index[y])
     for position in range(first, first + edge_counts[y]):
@@ -148,9 +148,9 @@ def keep_edges_row(
     y: i32,
     kept: i32,
 ) -> i32:
-    """Keep the stored edges of row `y` whose group has a strong one, and write them to `edges`, the rest 0.
+    """Keep the stored edges of row `y` whose group has a strong one, and write them to `edges`, with 0 elsewhere.
 
-    The store closes up in place: `kept` is the number of edges that the rows before keep; returns it with this row.
+    The store closes up in place: `kept` is the number of edges that the rows before keep; return it with this row.
     """
     for x in range(len(edges)):
         edges[x] = 0
@@ -189,17 +189,17 @@ class EdgeGroups:
 
     @classmethod
     def of(cls, core: Core, width: int) -> EdgeGroups:
-        """Return those of a core. The lines lie over a ring that only later stages use."""
+        """Return those of a core. The lines share a ring that only later stages use."""
         even, odd, *_ = core.overlay("eroded_ring", u16, width)
         tables = core.array("edge_groups"), core.array("edge_strongest")
         return cls(core, edge_store(core), tables, ((odd, even), (even, odd)))
 
 
 def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Generator[Any, Any, int]:
-    """Remove the stored edges without a strong one in their group; leaves `edge_image`, returns how many are kept.
+    """Remove the stored edges without a strong one in their group; leave `edge_image`, return how many are kept.
 
-    The edge image is written from the store. Clearing what was removed in a picture written during the scan would take
-    the same lines of DMA twice more, there and back, and leave edges in it that the store had no room for.
+    The edge image is written from the store. Clearing removed edges in a picture written during the scan would need the
+    same lines of DMA twice more, there and back, and leave edges in it that the store had no room for.
     """
     run, at, store = groups.core.run, groups.core.at, groups.store
     edges = groups.core.output_ring("edge_ring", groups.core.rows("edge_image"))

@@ -1,7 +1,7 @@
 """Connectors of line segments: near ones by their ends, far ones by their Muff parameters (T §5.2.2, steps 2 and 3).
 
-Both connect the end of a segment with the start of another that has the same direction. Of several that fit
-they take the nearest. The last segment of the table fills the place of one that was connected.
+Both connect the end of a segment with the start of another that has the same direction. If several fit, they take the
+nearest. The last segment of the table fills the place of one that was connected.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def is_ahead(segments: i32[:], first: i32, second: i32) -> i32:
 
 @kernel
 def join_segments(segments: i32[:], first: i32, second: i32) -> None:
-    """Make `first` go on to the end of `second`, with the edges of both and the direction of the one with more."""
+    """Extend `first` to the end of `second`, with the edges of both and the direction of the one with more."""
     a = first * SEGMENT_WORDS
     b = second * SEGMENT_WORDS
     if segments[b + EDGES] > segments[a + EDGES]:
@@ -91,7 +91,7 @@ def connect_near(segments: i32[:], count: i32, near_gap: i32, angle_range: i32) 
 
 @kernel
 def around(position: i32, other: i32, perimeter: i32) -> i32:
-    """Return how far apart two positions on the border of a picture are, the shorter way round."""
+    """Return how far apart two positions on the border of a picture are, the shorter way around."""
     apart = abs(position - other)
     return min(apart, perimeter - apart)
 
@@ -107,10 +107,10 @@ def connect_far(
     far_gap: i32,
     muff_range: i32,
 ) -> i32:
-    """Connect segments on one line, not more than `far_gap` pixels apart, and return how many of `count` are left.
+    """Connect segments on one line, at most `far_gap` pixels apart, and return how many of `count` are left.
 
-    `lines` are their lines. Two are on one line if both Muff parameters differ by `muff_range` at most; as they
-    go from start to end, lines in opposite directions have them exchanged.
+    `lines` are their lines. Two are on one line if both Muff parameters differ by at most `muff_range`; as they go from
+    start to end, lines in opposite directions have them exchanged.
     """
     perimeter = 2 * (width + height - 2)
     first = 0

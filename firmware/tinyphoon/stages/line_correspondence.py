@@ -1,8 +1,8 @@
-"""Which line of the other picture shows the same as a line of this one (T §5.2.7).
+"""Which line of the other picture corresponds to a line of this one (T §5.2.7).
 
-The pictures are rectified, so both show a point in one row. The plain way of the thesis takes the nearest line that
-crosses the row of the line's middle and has nearly its angle. The better way, ours, takes the line whose rows agree
-best with the line's own: the ends of a whole line lie in the same rows of both pictures, however far apart they are.
+The pictures are rectified, so both show a point in the same row. The plain way of the thesis takes the nearest line
+that crosses the row of the line's middle and has nearly its angle. The better way, ours, takes the line whose rows
+agree best with its own: a whole line ends in the same rows of both pictures, however far apart.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from tinyphoon.stores.lines import LINE_ANGLE, LINE_WORDS, LINE_X0, LINE_X1, LIN
 
 SLOPE_BITS = 12
 LEVEL = -(1 << 31)
-"""In place of the slope of a line that is too near to a row of the picture: rows say nothing about it."""
+"""Replaces the slope of a line that is too nearly level: rows say nothing about it."""
 
 SHARE_BITS = 8
 UNLIKE = 1 << SHARE_BITS
-"""The disagreement of lines that have nothing in common, and all above."""
+"""The disagreement of lines with nothing in common, which is above all others."""
 
 
 @kernel
@@ -71,7 +71,7 @@ def nearest_line(
 
 @kernel
 def disagreement(lines: i16[:], line: i32, others: i16[:], other: i32) -> i32:
-    """Return the share of rows that only one of two lines has, of those that either has: 0..UNLIKE."""
+    """Return the share of rows that only one of two lines has, among those that either has: 0..UNLIKE."""
     a = line * LINE_WORDS
     b = other * LINE_WORDS
     top_a = min(lines[a + LINE_Y0], lines[a + LINE_Y1])
@@ -101,8 +101,8 @@ def best_line(
 ) -> i32:
     """Return the one of `count` other lines that agrees best with a line, or NONE.
 
-    `side` is 1 for a line of the left picture and others of the right one, -1 for the reverse. The disparity counts
-    in the middle of the line; of two that agree as well the angle decides.
+    `side` is 1 for a line of the left picture and others of the right one, -1 for the reverse. The disparity counts in
+    the middle of the line; among lines that agree equally well, the angle decides.
     """
     row = middle_row(lines, line)
     column = column_at(lines, line, slopes, row)

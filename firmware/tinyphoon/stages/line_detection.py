@@ -66,12 +66,12 @@ def fit_lines(segments: i32[:], count: i32, lines: i16[:], atan: u8[:], width: i
 
 @kernel
 def unplaced_edges(scan: i32[:]) -> i32:
-    """Return how many edges found the table of segments full."""
+    """Return how many edges found no place in the table of segments."""
     return scan[UNPLACED]
 
 
 def scan_by_labels(core: Core, frame: Frame, thresholds: LineThresholds) -> Generator[Any, Any, None]:
-    """Scan the edge store, row by row; leaves segments in their table."""
+    """Scan the edge store, row by row; leave segments in their table."""
     store = edge_store(core)
     segments, scan, labels = core.array("segments"), core.array("line_scan"), core.rows("line_labels")
     yield core.run(clear_segments, segments, scan, *labels)
@@ -93,9 +93,9 @@ LineScan = Callable[[Core, Frame, LineThresholds], Generator[Any, Any, None]]
 def line_detection(
     core: Core, frame: Frame, thresholds: LineThresholds, scanned: LineScan = scan_by_labels
 ) -> Generator[Any, Any, int]:
-    """Find the lines in the edge store. Leaves them in `lines` and returns how many there are.
+    """Find the lines in the edge store, leave them in `lines`, and return how many there are.
 
-    Publishes `lines`, that number, and `line_edges_lost`, the edges that found the table of segments full.
+    Publishes `lines`, that number, and `line_edges_lost`, the edges without a place in the table of segments.
     """
     yield from scanned(core, frame, thresholds)
     segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")

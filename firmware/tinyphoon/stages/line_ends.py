@@ -1,4 +1,4 @@
-"""The scan for line segments as T §5.2.2 describes it: each edge is compared with the ends of the lines in the table.
+"""The scan for line segments as in T §5.2.2: each edge is compared with the ends of the lines in the table.
 
 [said] An edge that lies next to the end of a line, and is within the angle range of its mean
 direction, becomes its new end; on lines that become flat from the right to the left it is
@@ -41,7 +41,7 @@ from tinyphoon.stores.edges import edge_columns, edge_store
 
 @kernel
 def is_next_to(x: i32, y: i32, end_x: i32, end_y: i32) -> i32:
-    """Return 1 if a pixel is another one's neighbour, or the same; else 0."""
+    """Return 1 if a pixel is a neighbour of another one, or the same; else 0."""
     return 1 if abs(x - end_x) <= 1 and abs(y - end_y) <= 1 else 0
 
 
@@ -87,7 +87,7 @@ def lines_row(
     angle_range: i32,
     mean_edges: i32,
 ) -> None:
-    """Put the edges of row `y` into lines, one by one."""
+    """Add the edges of row `y` to lines, one by one."""
     first = i32(edge_index[y])
     for position in range(first, first + edge_counts[y]):
         x = i32(edge_data[position] >> 16)
@@ -102,7 +102,7 @@ def lines_row(
 
 
 def scan_by_ends(core: Core, frame: Frame, thresholds: LineThresholds) -> Generator[Any, Any, None]:
-    """Scan the edge store, row by row; leaves segments in their table, as `scan_by_labels` does."""
+    """Scan the edge store, row by row; leave segments in their table, as `scan_by_labels` does."""
     store, segments, scan = edge_store(core), core.array("segments"), core.array("line_scan")
     yield core.run(clear_segments, segments, scan, *core.rows("line_labels"))
     for y in range(frame.height):

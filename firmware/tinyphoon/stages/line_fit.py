@@ -34,7 +34,7 @@ from tinyphoon.stores.lines import (
 HALF_PIXEL = SUBPIXELS // 2
 SLOPE_BITS = 12
 WIDEST = 1 << 30 - SLOPE_BITS
-"""A spread below this can be shifted up by SLOPE_BITS."""
+"""Smaller spreads can be shifted up by SLOPE_BITS."""
 
 
 @kernel
@@ -69,8 +69,8 @@ def foot(along: i32, across: i32, rise: i32) -> i32:
 def border_position(x: i32, y: i32, dx: i32, dy: i32, right: i32, bottom: i32) -> i32:
     """Return where on the border a line through (x, y) leaves the picture in the direction (dx, dy), in pixels.
 
-    All in sixteenths of a pixel; the border goes clockwise from the upper left corner round the rectangle with
-    the lower right corner (`right`, `bottom`). (T §2.2.1, Figure 2.4.)
+    All are in sixteenths of a pixel; the border goes clockwise from the upper left corner around the rectangle with the
+    lower right corner (`right`, `bottom`). (T §2.2.1, Figure 2.4.)
     """
     to_side = max(right - x if dx > 0 else x, 0)
     to_level = max(bottom - y if dy > 0 else y, 0)
@@ -108,9 +108,9 @@ def store_ends(
 def fit_line(
     segments: i32[:], place: i32, lines: i16[:], line: i32, atan: u8[:], width: i32, height: i32
 ) -> None:
-    """Make line number `line` of the segment at `place`.
+    """Make line number `line` from the segment at `place`.
 
-    Its ends are the feet of the segment's outermost edges, and half a pixel further: n edges are n pixels long.
+    Its ends are the feet of the segment's outermost edges, extended by half a pixel: n edges are n pixels long.
     """
     base = place * SEGMENT_WORDS
     edges = segments[base + EDGES]

@@ -1,4 +1,4 @@
-"""Where lines lie in the picture, for `core.at`: nothing on the chip reads them here."""
+"""The pixels of lines, for `core.at`: nothing on the chip reads them here."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Pixels = Callable[[], NDArray[np.int64]]
 
 
 def segment_pixels(segments: Row, count: int) -> Pixels:
-    """Return what tells the pixels (row, column) between the outermost edges of the first `count` places of the table."""
+    """Return a function for the pixels (row, column) between the outermost edges of the table's first `count` places."""
 
     def pixels() -> NDArray[np.int64]:
         table = segments.array[: count * SEGMENT_WORDS].reshape(-1, SEGMENT_WORDS)
@@ -25,7 +25,7 @@ def segment_pixels(segments: Row, count: int) -> Pixels:
 
 
 def line_pixels(lines: Row, count: int) -> Pixels:
-    """Return what tells the pixels (row, column) under the first `count` lines."""
+    """Return a function for the pixels (row, column) under the first `count` lines."""
 
     def pixels() -> NDArray[np.int64]:
         table = lines.array[: count * LINE_WORDS].reshape(-1, LINE_WORDS)
@@ -35,7 +35,7 @@ def line_pixels(lines: Row, count: int) -> Pixels:
 
 
 def _between(ends: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the pixels from one end of each line to the other, one in each row or in each column; `ends`: rows and columns of both."""
+    """Return the pixels between the ends of each line, one in each row or column; `ends`: rows and columns of both."""
     starts, stops = ends[:, :2], ends[:, 2:]
     steps = np.abs(stops - starts).max(axis=1, initial=0).round().astype(int)
     line = np.repeat(np.arange(len(ends)), steps + 1)

@@ -1,4 +1,4 @@
-"""Line refinement [ours]: lines to a fraction of a pixel, for the depth that is made of the difference of two.
+"""Line refinement [ours]: lines to a fraction of a pixel, for depths computed from the difference of two.
 
 Edges lie on whole pixels, so a line that is nearly upright is off by up to half of one;
 at 350 mm that is 2 % of the depth. Here the picture is read once more, row by row: in
@@ -22,14 +22,14 @@ from tinyphoon.stages.line_pixels import line_pixels
 from tinyphoon.stages.line_segments import SEGMENT_WORDS
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 
-# What is summed up of a line, in words of the place of its segment.
+# The sums of a line, in words of the place of its segment.
 FIRST_ROW = 0  # the rows to look at, none if the last is above the first
 LAST_ROW = 1
 MIDDLE_ROW = 2
 BRIGHTENS = 3  # 1 if it becomes brighter to the right, -1 if darker
 RISE = 4  # columns by rows, in 1 / (1 << SLOPE_BITS)
 ROWS = 5  # rows with an edge in them
-SUM_OFF = 6  # of how far right of the line it is there, in STEPS of a pixel
+SUM_OFF = 6  # of how far right of the line the edge is there, in STEPS of a pixel
 SUM_DOWN = 7  # of the rows, from the middle row
 SUM_OFF_DOWN = 8
 SUM_DOWN_DOWN = 9
@@ -38,17 +38,17 @@ STEPS = 128
 END_ROWS = 2
 """Rows left out at both ends, where another line may begin."""
 LEAST_ROWS = 4
-"""A line is not refined by fewer, nor by fewer than half of its rows."""
+"""Fewer rows do not refine a line, nor do fewer than half of its rows."""
 FARTHEST = 3 * SUBPIXELS // 2
-"""A line that would move by more than this at an end stays where it is: what was seen is something else."""
+"""A line that would move by more at an end stays where it is: what was seen is something else."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefinementThresholds:
     """How lines are refined.
 
-    `reach`: how many pixels to both sides of a line are looked at; 0 leaves all lines as they are. `min_step`: how
-    many grey levels a pixel's neighbours must differ by to be of the edge: more than the noise.
+    `reach`: how many pixels on both sides of a line are looked at; 0 leaves all lines as they are. `min_step`: how many
+    grey levels a pixel's neighbours must differ by to belong to the edge: more than the noise.
     """
 
     reach: int = allowed(0, 8)
@@ -78,7 +78,7 @@ def begin_sums(lines: i16[:], count: i32, sums: i32[:]) -> None:
 
 @kernel
 def first_row(sums: i32[:], count: i32, height: i32) -> i32:
-    """Return the first row that one of the lines is looked at in; `height` without any."""
+    """Return the first row in which one of the lines is looked at; `height` if there is none."""
     first = height
     for line in range(count):
         base = line * SEGMENT_WORDS
@@ -89,7 +89,7 @@ def first_row(sums: i32[:], count: i32, height: i32) -> i32:
 
 @kernel
 def last_row(sums: i32[:], count: i32) -> i32:
-    """Return the last row that one of the lines is looked at in; -1 without any."""
+    """Return the last row in which one of the lines is looked at; -1 if there is none."""
     last = -1
     for line in range(count):
         base = line * SEGMENT_WORDS
@@ -109,7 +109,7 @@ def line_column(lines: i16[:], line: i32, rise: i32, row: i32) -> i32:
 def look_at_row(
     uyvy: u8[:], y: i32, lines: i16[:], count: i32, sums: i32[:], reach: i32, min_step: i32
 ) -> None:
-    """Add to the sums of each line what a row of the picture shows of it."""
+    """Add the edges in a row of the picture to the sums of each line."""
     width = len(uyvy) >> 1
     for line in range(count):
         base = line * SEGMENT_WORDS
@@ -166,7 +166,7 @@ def refine_lines(lines: i16[:], count: i32, sums: i32[:], atan: u8[:], width: i3
 
 
 def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> list[int]:
-    """Return the columns in which `look_at_row` looks at row `y`, for `core.at`: nothing on the chip reads them here."""
+    """Return the columns that `look_at_row` looks at in row `y`, for `core.at`: nothing on the chip reads them here."""
     first, last, rise = _columns(sums, SEGMENT_WORDS, count, FIRST_ROW, LAST_ROW, RISE)
     x0, y0 = _columns(lines, LINE_WORDS, count, LINE_X0, LINE_Y0)
     middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
@@ -184,7 +184,7 @@ def line_refinement(
 ) -> Generator[Any, Any, None]:
     """Refine the first `count` of `lines` by one pass of DMA lines over the rows that they cross.
 
-    Publishes `lines_refined`, how many were.
+    Publishes `lines_refined`, their number.
     """
     if thresholds.reach == 0:
         return

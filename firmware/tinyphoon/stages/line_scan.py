@@ -1,7 +1,7 @@
 """The scan of the edge store for line segments: connected edges of one gradient direction (T §5.2.2, step 1).
 
-Edges that lie side by side in a row make a run; a run goes to the first segment of the row above that it
-touches and agrees with, or starts one.
+Adjacent edges in a row form a run; a run goes to the first segment of the row above that it touches and agrees with, or
+starts a new one.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from tinyphoon.stages.line_segments import (
 
 @kernel
 def run_length(edge_data: u32[:], begin: i32, stop: i32, angle_range: i32, mean_edges: i32) -> i32:
-    """Return how many edges from `begin` on lie side by side, each within `angle_range` of the mean before it.
+    """Return how many edges from `begin` on are adjacent, each within `angle_range` of the mean before it.
 
-    The mean is that of the run's first `mean_edges` edges: a curve leaves it sooner than one that follows.
+    The mean is that of the run's first `mean_edges` edges: a curve leaves it sooner than a mean that follows it.
     """
     x = i32(edge_data[begin] >> 16)
     direction = i32(edge_data[begin] >> 8 & 255)
@@ -69,7 +69,7 @@ def touched_segment(
 ) -> i32:
     """Return the place of the segment that a run from `left` to `right` continues, or NONE.
 
-    Its direction is the mean `direction + turns / averaged`; both means are compared without dividing.
+    Its direction is the mean `direction + turns / averaged`; both means are compared without division.
     """
     label = 0
     for x in range(max(left - 1, 0), min(right + 1, len(above) - 1) + 1):
@@ -95,7 +95,7 @@ def close_segments(
     y: i32,
     min_length: i32,
 ) -> None:
-    """Wipe the labels of the row above row `y`, and empty what ended in it shorter than `min_length`."""
+    """Clear the labels of the row above row `y`, and empty segments that ended in it shorter than `min_length`."""
     for edge in range(begin, stop):
         x = i32(edge_data[edge] >> 16)
         if above[x] != 0:
@@ -123,10 +123,10 @@ def segments_row(
     mean_edges: i32,
     min_length: i32,
 ) -> None:
-    """Put the edges of row `y` into segments.
+    """Add the edges of row `y` to segments.
 
-    `above` and `here` hold for each x the segment of the edge there, counted from 1, in the row above and in
-    this one. Afterwards `above` is empty, ready to be `here` of the next row.
+    `above` and `here` hold for each x the segment of the edge there, counted from 1, in the row above and in this one.
+    Afterwards `above` is empty, ready to be `here` of the next row.
     """
     begin = i32(edge_index[y])
     stop = begin + edge_counts[y]

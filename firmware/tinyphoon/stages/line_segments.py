@@ -1,15 +1,15 @@
-"""The table of line segments (T §5.2.2): where the edges of a line are collected while the rows are scanned.
+"""The table of line segments (T §5.2.2), which collects the edges of each line while the rows are scanned.
 
-It takes the place of a look-up table of labels: a segment's place in it is the label of its edges.
+It replaces a look-up table of labels: a segment's place in it is the label of its edges.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i32, kernel, u8
 
-# A segment is a struct of 32-bit words. The sums make the line through any edges a closed form, and two
-# segments are joined by adding them. With up to 4096 edges in pictures of up to 724 pixels they keep in 32 bits.
-EDGES = 0  # how many edges it has; 0 is an empty place
+# A segment is a struct of 32-bit words. The sums give the line through any edges in closed form, and adding them joins
+# two segments. With up to 4096 edges in pictures of up to 724 pixels they fit in 32 bits.
+EDGES = 0  # number of edges; 0 is an empty place
 SUM_X = 1
 SUM_Y = 2
 SUM_XX = 3
@@ -20,8 +20,8 @@ START_Y = 7
 END_X = 8
 END_Y = 9
 DIRECTION = 10  # gradient direction of its first edge, an 8-bit angle
-TURN = 11  # sum of the differences from DIRECTION of its first edges, which the mean direction is made of
-LAST_ROW = 12  # of its latest edge; of an empty place: the next empty one, or NONE
+TURN = 11  # sum of the differences of its first edges from DIRECTION, for the mean direction
+LAST_ROW = 12  # of its latest edge; in an empty place: the next empty one, or NONE
 SEGMENT_WORDS = 13
 
 # 10 KB, and u8 labels would do for 255. The edge store full of clutter has at most 200 segments at a time.
@@ -30,13 +30,13 @@ NONE = -1
 
 # The counters of the scan.
 FREE = 0  # first empty place of the table
-UNPLACED = 1  # edges that are in no segment because the table was full
+UNPLACED = 1  # edges without a segment because the table was full
 SCAN_WORDS = 2
 
 
 @kernel
 def turn_between(angle: i32, reference: i32) -> i32:
-    """Return how far `reference` turns to `angle`, both 8-bit angles: -128..127."""
+    """Return the turn from `reference` to `angle`, both 8-bit angles: -128..127."""
     return ((angle - reference + 128) & 255) - 128
 
 
@@ -63,7 +63,7 @@ def clear_segments(segments: i32[:], scan: i32[:], above: u8[:], here: u8[:]) ->
 
 @kernel
 def new_segment(segments: i32[:], scan: i32[:], x: i32, y: i32, direction: i32) -> i32:
-    """Take an empty place for a segment that starts at an edge; return the place, or NONE if none is empty."""
+    """Take an empty place for a segment that starts at an edge; return the place, or NONE if there is none."""
     place = scan[FREE]
     if place == NONE:
         return NONE
@@ -81,10 +81,10 @@ def new_segment(segments: i32[:], scan: i32[:], x: i32, y: i32, direction: i32) 
 
 @kernel
 def add_edge(segments: i32[:], place: i32, x: i32, y: i32, direction: i32, mean_edges: i32) -> None:
-    """Add an edge of the row now scanned to a segment.
+    """Add an edge of the current row to a segment.
 
-    The rows come from above and their edges from the left. So the edge is a new end, except on a flat line:
-    there it is the new start if it lies to the left of that, as on lines that fall from the right to the left.
+    The rows come from above and their edges from the left. So the edge is a new end, except on a flat line: there it is
+    the new start if it lies to the left of the old one, as on lines that fall from right to left.
     """
     base = place * SEGMENT_WORDS
     if segments[base + EDGES] < mean_edges:
@@ -108,7 +108,7 @@ def add_edge(segments: i32[:], place: i32, x: i32, y: i32, direction: i32, mean_
 
 @kernel
 def line_length(segments: i32[:], base: i32) -> i32:
-    """Return how long a segment is: its edges, but not more than have room between its outermost ones."""
+    """Return the length of a segment: its edges, but at most as many as fit between its outermost ones."""
     dx = segments[base + END_X] - segments[base + START_X]
     dy = segments[base + END_Y] - segments[base + START_Y]
     return min(segments[base + EDGES], max(abs(dx), abs(dy)) + 1)
@@ -134,17 +134,17 @@ def turn_round(segments: i32[:], base: i32) -> None:
 
 @kernel
 def keep_segments(segments: i32[:], min_length: i32, mean_edges: i32) -> i32:
-    """Move the segments of `min_length` and more to the front of the table and return how many they are.
+    """Move the segments of at least `min_length` to the front of the table and return how many they are.
 
-    Start and end are placed so that each has its bright side on the left and its dark side on the right: it
-    goes a quarter turn on from the gradient. DIRECTION becomes the mean, for the connectors.
+    Start and end are placed so that each has its bright side on the left and its dark side on the right: its direction
+    is a quarter turn on from the gradient. DIRECTION becomes the mean, for the connectors.
     """
     count = 0
     for place in range(len(segments) // SEGMENT_WORDS):
         if line_length(segments, place * SEGMENT_WORDS) >= min_length:
             copy_segment(segments, place, count)
             base = count * SEGMENT_WORDS
-            # The scan has led flat lines to the right and the others downwards: wrong for two of four sides.
+            # The scan has led flat lines to the right and the others downwards: wrong for two of four directions.
             first = segments[base + DIRECTION]
             if 32 <= first < 160:
                 turn_round(segments, base)

@@ -1,8 +1,8 @@
-"""Which 3-D lines to believe: the 3-D edges that lie on a line vote on its depth [ours].
+"""Which 3-D lines to believe: the 3-D edges on a line vote on its depth [ours].
 
-Lines are few and alike: two of one pattern agree in rows and angle though they show different things. Edges are many, and
-each was matched without knowing of the line. In every row that a line crosses, an edge with a partner that lies on it is for
-the line if it has the line's disparity there, and against it if it has another.
+Lines are few and similar: two lines of one pattern agree in rows and angle though they show different things. Edges are
+many, and each was matched independently of the line. In every row that a line crosses, an edge with a partner that lies
+on the line votes for it if it has the line's disparity there, and against it if it has another.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ def majority_at(
     disparity: i32,
     edge_range: i32,
 ) -> i32:
-    """Return how many more edges of a row are for a line than against it: those `edge_range` from its `column` at most.
+    """Return by how many the edges of a row within `edge_range` of a line's `column` are for it rather than against it.
 
-    They are for it if their disparity is that of the line as nearly. All in 1/16 px, but `disparities`: by column, in
-    pixels and 1, or 0 or less for none.
+    They are for it if their disparity is within the same range of the line's. All in 1/16 px, except `disparities`: by
+    column, in pixels plus 1, or 0 or less for none.
     """
     majority = 0
     for left in range(left_count):
@@ -66,7 +66,7 @@ def vote_row(
 ) -> None:
     """Add the votes of row `y` for each of `count` 3-D lines that cross it.
 
-    `left_row` has the row's edges, and `disparities` by column theirs and 1, in pixels, or 0 or less for none.
+    `left_row` has the row's edges, and `disparities` theirs by column plus 1, in pixels, or 0 or less for none.
     """
     row = SUBPIXELS * y
     for number in range(count):
@@ -84,7 +84,7 @@ def vote_row(
 
 @kernel
 def keep_elected(lines_3d: i16[:], count: i32, votes: i32[:]) -> i32:
-    """Leave out those of `count` 3-D lines that have no majority; return how many stay."""
+    """Leave out those of `count` 3-D lines without a majority; return how many stay."""
     kept = 0
     for number in range(count):
         if votes[number] > 0:
@@ -98,7 +98,7 @@ def keep_elected(lines_3d: i16[:], count: i32, votes: i32[:]) -> i32:
 class LineVote:
     """The vote on the first `count` 3-D lines: opened, given the edges row by row, and closed.
 
-    `left` and `right` are the lines of each picture and their slopes. With an `edge_range` of 0 there is none.
+    `left` and `right` are the lines of each picture and their slopes. With an `edge_range` of 0 there is no vote.
     """
 
     core: Core
@@ -113,13 +113,13 @@ class LineVote:
         yield self.core.run(clear_votes, self.votes)
 
     def add(self, y: int, row: tuple[Row, int, Row]) -> Generator[Any, Any, None]:
-        """Let the edges of row `y` vote: those of the left picture, how many, and their disparities by column."""
+        """Let the edges of row `y` vote: those of the left picture, their number, and their disparities by column."""
         if self.count and self.edge_range:
             lines = self.core.array("lines_3d"), self.count, *self.left, *self.right
             yield self.core.run(vote_row, *lines, y, *row, self.votes, self.edge_range)
 
     def close(self) -> Generator[Any, Any, int]:
-        """Keep what was elected in `lines_3d`. Publishes `lines_3d`, how many that is, and returns it."""
+        """Keep the elected lines in `lines_3d`. Publishes `lines_3d`, their number, and returns it."""
         kept = self.count
         if self.edge_range:
             kept = yield self.core.run(keep_elected, self.core.array("lines_3d"), self.count, self.votes)

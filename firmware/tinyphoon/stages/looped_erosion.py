@@ -1,4 +1,4 @@
-"""Erosion as T Eq. 2.14 is written: for each pixel a loop over the rows around it, and in it a loop over the columns.
+"""Erosion as T Eq. 2.14 is written: for each pixel, a loop over the rows around it contains a loop over the columns.
 
 [said] "For all neighbours", k from i - 1 to i + 1 and l from j - 1 to j + 1 (T §2.3.1). [said] DMA brings the lines into a ring in
 L1, and takes the finished ones back (T §5.2). [assumed] The ring's lines are found by a table of where they begin.
@@ -22,7 +22,7 @@ def looped_buffers() -> Sequence[Buffer]:
 
 @kernel
 def start_lines(starts: i32[:], above: i32, here: i32, below: i32) -> None:
-    """Say where the lines around a row begin in their ring."""
+    """Store where the lines around a row begin in their ring."""
     starts[0] = above
     starts[1] = here
     starts[2] = below
@@ -45,7 +45,7 @@ def erode_pixels(lines: u32[:], starts: i32[:], eroded: u32[:]) -> None:
 def looped_row(
     core: Core, kernel: Kernel, ring: str, y: int, height: int, target: Row
 ) -> Generator[Any, Any, None]:
-    """Make row `y` of a picture with `height` of them from the lines around it in a ring, which line y lies in row y modulo its rows."""
+    """Make row `y` of a picture of `height` rows from the lines around it; line y lies in row y modulo the ring's rows."""
     rows = core.rows(ring)
     width = len(rows[0].array)
     starts = core.array("line_starts")

@@ -1,7 +1,7 @@
 """Object detection (T §5.2.6): what each camera sees by itself, the same from both cameras, and the object history.
 
-The first part runs on both cores, each on its own picture; the rest on core A, once core B has left what it sees in
-`right_seen`.
+The first part runs on both cores, each on its own picture; the rest runs on core A, once core B has left what it sees
+in `right_seen`.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ LARGEST_ACCURACY = 255
 class ObjectThresholds:
     """What makes an object, and how accurate it is.
 
-    `*_weight`: what passing a test adds to the accuracy; together at most 255. `shortest_side`: of a blob in pixels, for
-    the dimension test. `size_range`: by what factor, of 16, its height may be off that of the model where it stands.
-    `ball_area`: how far the share of its square that a ball fills may be from pi/4, of 256. `circle_area`: whether the test of
-    area is that of T Eq. 2.13 instead, which compares with the circle that was found: then it is how far P_a may be from 1.
-    `rectangle_area`: the least share of its rectangle that another object fills, of 256. `hidden_arc`: the least share of its
-    circle that must be seen of a ball that is hidden in part, of 256; 0: its size is never taken from that.
+    `*_weight`: what a passed test adds to the accuracy; together at most 255. `shortest_side`: of a blob in pixels, for the
+    dimension test. `size_range`: the factor, in 16ths, by which its height may differ from that of the model at its place.
+    `ball_area`: how far the share of its square that a ball fills may be from pi/4, in 256ths. `circle_area`: whether the
+    area test is instead that of T Eq. 2.13, which compares with the circle found: then `ball_area` is how far P_a may be
+    from 1. `rectangle_area`: the least share of its rectangle that another object fills, in 256ths. `hidden_arc`: the least
+    share of its circle that must be seen of a partly hidden ball, in 256ths; 0: its size is never taken from that.
 
-    `row_range`: how many pixels the two images of an object may be apart in row. `disparity_max`: in column.
-    `disparity_range`: by how many pixels its disparity may be off that of its place. `refined`: whether the disparity helps
-    to measure, a ball is taken for the sphere that it is, and a goal for the box; without it the distance is that of the
-    thesis (T Eq. 4.1, the mean of both cameras).
+    `row_range`: how many pixels apart in row the two images of an object may be. `disparity_max`: in column.
+    `disparity_range`: by how many pixels its disparity may differ from that of its place. `refined`: whether the
+    disparity helps to measure, a ball is treated as a sphere, and a goal as a box; without it the distance is that of
+    the thesis (T Eq. 4.1, the mean of both cameras).
 
-    `age_max`: for how many frames an object that is not seen stays in the history. `apart_max`: how far it may have moved
-    in the picture since the last frame, of 256 for a focal length; a goal, the only one of its model, may have moved more.
+    `age_max`: for how many frames an unseen object stays in the history. `apart_max`: how far it may have moved in the
+    picture since the last frame, in 256ths of a focal length; a goal, the only one of its model, may have moved more.
     """
 
     colour_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
@@ -83,14 +83,14 @@ class ObjectThresholds:
 
     @property
     def limits(self) -> tuple[int, ...]:
-        """What kernels read of them, in the order of `object_limits`."""
+        """The thresholds that kernels read, in the order of `object_limits`."""
         sizes = self.shortest_side, self.size_range, self.ball_area, self.rectangle_area
         return *self.weights, *sizes, int(self.refined), self.hidden_arc, int(self.circle_area)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outlines:
-    """How many blobs, with merged ones, circles and rectangles a picture has in their stores."""
+    """How many blobs, including merged ones, circles and rectangles a picture has in their stores."""
 
     blobs: int
     circles: int
@@ -103,7 +103,7 @@ def object_buffers() -> Sequence[Buffer]:
 
 
 def left_object_buffers() -> Sequence[Buffer]:
-    """Return the buffers of the stage for core A alone."""
+    """Return the buffers of the stage that only core A has."""
     return (
         Buffer("left_seen", i16, SEEN_CAPACITY * OBJECT_WORDS, "data1"),
         Buffer("objects", i16, OBJECT_CAPACITY * OBJECT_WORDS, "data1"),
@@ -125,14 +125,14 @@ def store_limit(limits: i32[:], number: i32, value: i32) -> None:
 def left_sight(
     core: Core, frame: Frame, outlines: Outlines, thresholds: ObjectThresholds
 ) -> Generator[Any, Any, None]:
-    """Leave the objects that the left camera sees in `left_seen`; publishes `seen` and `seen_lost`."""
+    """Leave the objects that the left camera sees in `left_seen`; publish `seen` and `seen_lost`."""
     yield from _sight(core, frame, outlines, thresholds, core.array("left_seen"), SEEN_LEFT)
 
 
 def right_sight(
     core: Core, frame: Frame, outlines: Outlines, thresholds: ObjectThresholds
 ) -> Generator[Any, Any, None]:
-    """Leave the objects that the right camera sees in `right_seen`; publishes `seen` and `seen_lost`."""
+    """Leave the objects that the right camera sees in `right_seen`; publish `seen` and `seen_lost`."""
     yield from _sight(core, frame, outlines, thresholds, core.array("right_seen"), SEEN_RIGHT)
 
 
@@ -157,7 +157,7 @@ def object_detection(
 ) -> Generator[Any, Any, None]:
     """Verify `left_seen` by `right_seen` and take both into the history, `objects`.
 
-    `box_lines`: by how many 3-D lines boxes are placed; 0 where there are none to place, or none to see.
+    `box_lines`: the number of 3-D lines by which boxes are placed; 0 if there are none to place, or none to see.
     Publishes `verified`, how many objects both cameras see, and what `remember` does.
     """
     tables = core.array("left_seen"), core.array("right_seen")
@@ -175,7 +175,7 @@ def object_detection(
 
 
 def remember(core: Core, tables: Sequence[Row], thresholds: ObjectThresholds) -> Generator[Any, Any, None]:
-    """Take the objects of some tables into the history; publishes `objects_lost`, how many found no room there."""
+    """Take the objects of some tables into the history; publish `objects_lost`, how many found no room there."""
     objects = core.array("objects")
     yield core.run(age_objects, objects, thresholds.age_max)
     lost = 0

@@ -1,10 +1,10 @@
-"""The object history: what was seen in the last frames, each object once (T §5.2.6).
+"""The object history: everything seen in the last frames, each object once (T §5.2.6).
 
-An object seen now takes the place of the one of its model that was seen nearest to it before. Objects are compared by their
-bearing, which is known of all of them. There is only one goal of a model, so a goal seen now takes the place of the earlier
-one however far apart they are. If several are seen in a frame, the most accurate one stays [ours]: the cameras may see
-different parts of the goal, and other things of its colour may look like one. An object that is not seen any more stays
-with its age until it is too old, and its image moves when the area of interest does.
+An object seen now replaces the nearest earlier one of its model. Objects are compared by their bearing, which is always
+known. There is only one goal of a model, so a goal seen now replaces the earlier one however far apart they are. If a
+frame has several, the most accurate one stays [ours]: the cameras may see different parts of the goal, and other things
+of its colour may look like one. An object that is no longer seen stays with its age until it is too old, and its image
+moves when the area of interest does.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from tinyphoon.stores.objects import (
 BEARING_BITS = 8
 NOWHERE = -1
 
-# `history_area`: what the images of the history count from.
+# `history_area`: the origin of the images in the history.
 AREA_X = 0  # px
 AREA_Y = 1
 AREA_HALVINGS = 2  # of the pictures' size
@@ -44,7 +44,7 @@ AREA_WORDS = 3
 
 @kernel
 def bearing(aside: i32, depth: i32) -> i32:
-    """Return the tangent of the angle to a place from the axis of the camera, in 1/256."""
+    """Return the tangent of a place's angle from the axis of the camera, in 1/256."""
     return (aside << BEARING_BITS) // max(depth, 1)
 
 
@@ -62,7 +62,7 @@ def apart(one: i16[:], number: i32, other: i16[:], to: i32) -> i32:
 
 @kernel
 def age_objects(objects: i16[:], age_max: i32) -> None:
-    """Begin a frame: all objects are a frame older, and those older than `age_max` are forgotten."""
+    """Begin a frame: all objects become a frame older, and those older than `age_max` are forgotten."""
     for at in range(0, len(objects), OBJECT_WORDS):
         if objects[at + OBJECT_MODEL] != NO_MODEL:
             objects[at + OBJECT_AGE] = objects[at + OBJECT_AGE] + 1
@@ -72,7 +72,7 @@ def age_objects(objects: i16[:], age_max: i32) -> None:
 
 @kernel
 def record_for(objects: i16[:], seen: i16[:], number: i32, apart_max: i32) -> i32:
-    """Return the record of an object that is seen: where it was before, or a free one, or that of the oldest one.
+    """Return the record for an object that is seen: its earlier one, a free one, or the oldest one's.
 
     NOWHERE if all records are of this frame.
     """
@@ -104,7 +104,7 @@ def record_for(objects: i16[:], seen: i16[:], number: i32, apart_max: i32) -> i3
 
 @kernel
 def only_record(objects: i16[:], model: i32) -> i32:
-    """Return the record of the model with a number, of which there is one thing, or NOWHERE."""
+    """Return the record of model number `model`, of which there is only one thing, or NOWHERE."""
     for record in range(len(objects) // OBJECT_WORDS):
         if objects[record * OBJECT_WORDS + OBJECT_MODEL] == model:
             return record
@@ -113,9 +113,9 @@ def only_record(objects: i16[:], model: i32) -> i32:
 
 @kernel
 def remember_objects(objects: i16[:], seen: i16[:], models: i32[:], apart_max: i32) -> i32:
-    """Take the objects that are seen into the history; returns how many found no record.
+    """Take the objects that are seen into the history; return how many found no record.
 
-    Of the goals of a model in this frame the most accurate one stays, of equal ones the first; the others are not lost.
+    Of a model's goals in this frame the most accurate stays, of equal ones the first; the others are not lost.
     """
     lost: i32 = 0
     for number in range(len(seen) // OBJECT_WORDS):
@@ -139,15 +139,15 @@ def remember_objects(objects: i16[:], seen: i16[:], models: i32[:], apart_max: i
 
 @kernel
 def rescaled(length: i32, before: i32, now: i32) -> i32:
-    """Return a length in pictures that were halved `before` times as it is in those that are `now` times."""
+    """Convert a length in pictures that were halved `before` times to those halved `now` times."""
     return length << before >> now
 
 
 @kernel
 def move_images(objects: i16[:], area: i32[:], x: i32, y: i32, halvings: i32) -> None:
-    """Let the images of all objects count from another area, whose corner is (x, y), and keep that in `area`.
+    """Move the images of all objects to another area, whose corner is (x, y), and store that in `area`.
 
-    Nothing is done if it is the same.
+    Do nothing if the area is the same.
     """
     before = area[AREA_HALVINGS]
     if area[AREA_X] == x and area[AREA_Y] == y and before == halvings:
@@ -165,6 +165,6 @@ def move_images(objects: i16[:], area: i32[:], x: i32, y: i32, halvings: i32) ->
 
 
 def follow_area(core: Core, area: Area, halvings: int) -> Generator[Any, Any, None]:
-    """Let the images of the history count from the area that is seen now, in pictures that were halved so often."""
+    """Move the images of the history to the area seen now, in pictures that were halved `halvings` times."""
     corner = area.x, area.y, halvings
     yield core.run(move_images, core.array("objects"), core.array("history_area"), *corner)

@@ -1,12 +1,12 @@
-"""Where an object is, from what a camera sees of it: by its known size, or by the floor it stands on (T §4.1).
+"""The place of an object, from what a camera sees: by its known size, or by the floor it stands on (T §4.1).
 
-Both measure the object by an extent in the picture, in 1/16 px, and both are a length over it: T Eq. 4.1 is
-d = f s_model / s_obj; and with the tilt t of the camera, the height h between camera and point, and the point's row
-y below the principal point, T Eq. 4.4 and 4.5 become
+Both measure the object by an extent in the picture, in 1/16 px, and both divide a length by it: T Eq. 4.1 is d = f
+s_model / s_obj; and with the tilt t of the camera, the height h between camera and point, and the point's row y below
+the principal point, T Eq. 4.4 and 4.5 become
 
     Z = f h / (y cos t + f sin t),
 
-the depth along the axis of the camera instead of the distance along the floor. No angle is needed, only the sine and the
+the depth along the axis of the camera instead of the distance along the floor. No angle is needed, only the sine and
 cosine of the tilt, which are part of the geometry.
 
 Heights up to 1 m and focal lengths up to 2000 px fit in 32 bits.
@@ -50,7 +50,7 @@ def principal(pixels: i32) -> i32:
 
 @kernel
 def depth_by_size(geometry: i32[:], size_mm: i32, extent: i32) -> i32:
-    """Return the depth in mm of what is `size_mm` large and looks `extent` large (T Eq. 4.1), rounded.
+    """Return the depth in mm of a thing `size_mm` large that looks `extent` large (T Eq. 4.1), rounded.
 
     0 if it has no extent or is beyond FARTHEST_MM.
     """
@@ -62,9 +62,9 @@ def depth_by_size(geometry: i32[:], size_mm: i32, extent: i32) -> i32:
 
 @kernel
 def depth_of_sphere(depth: i32, radius_mm: i32) -> i32:
-    """Return the depth in mm of a sphere on the axis that T Eq. 4.1 takes for a disc at `depth`, rounded, FARTHEST_MM at most.
+    """Return the depth in mm of a sphere on the axis that T Eq. 4.1 takes for a disc at `depth`, at most FARTHEST_MM.
 
-    Its outline is not its equator but where the rays touch it: f r / sqrt(Z^2 - r^2) from the middle and not f r / Z.
+    It is rounded. The outline is where rays touch the sphere: f r / sqrt(Z^2 - r^2) from the middle rather than f r / Z.
     """
     square = u32(depth * depth + radius_mm * radius_mm)
     root = isqrt32(square)
@@ -75,7 +75,7 @@ def depth_of_sphere(depth: i32, radius_mm: i32) -> i32:
 
 @kernel
 def see_sphere(geometry: i32[:], objects: i16[:], number: i32, size: i32, width: i32, height: i32) -> i32:
-    """Move a ball's image to where its centre is, and return how large it looks across: it is seen as an ellipse `size` in the mean.
+    """Move a ball's image to its centre, and return its extent across: it is seen as an ellipse with the mean `size`.
 
     Its outline is longer along the way to the principal point, at a distance of r, by 1 over the cosine there; across, it looks as on
     the axis: b = f r_ball / sqrt(Z^2 - r_ball^2). And the middle of the ellipse is farther out than the centre, by
@@ -100,7 +100,7 @@ def see_sphere(geometry: i32[:], objects: i16[:], number: i32, size: i32, width:
 def floor_extent(geometry: i32[:], row: i32) -> i32:
     """Return y cos t + f sin t in 1/16 px of a point `row` 1/16 px below the principal point, rounded.
 
-    It is how far below the horizon a row is.
+    This is how far below the horizon a row is.
     """
     rounding = 1 << SINE_BITS - 1
     below = row * geometry[GEOMETRY_COSINE] + geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_SINE]
@@ -109,10 +109,10 @@ def floor_extent(geometry: i32[:], row: i32) -> i32:
 
 @kernel
 def depth_by_floor(geometry: i32[:], row: i32, floor_mm: i32) -> i32:
-    """Return the depth in mm of a point `floor_mm` over the floor seen in `row` (T Eq. 4.4, 4.5), rounded.
+    """Return the depth in mm of a point `floor_mm` above the floor seen in `row` (T Eq. 4.4, 4.5), rounded.
 
-    `row` is counted in 1/16 px from the principal point. 0 if no such point is there: it is not on the same side of
-    the horizon as the camera looks from, or beyond FARTHEST_MM.
+    `row` is counted in 1/16 px from the principal point. 0 if no such point exists: if it is not on the camera's side
+    of the horizon, or beyond FARTHEST_MM.
     """
     extent = floor_extent(geometry, row)
     height = geometry[GEOMETRY_HEIGHT] - HEIGHT_STEPS * floor_mm

@@ -1,4 +1,4 @@
-"""What one camera can tell of objects by itself: for each blob the model that fits it best, and where it is."""
+"""What one camera can tell of objects by itself: the best model for each blob, and its place."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def outline_of(outlines: i16[:], count: i32, words: i32, blob_word: i32, blob: i
 
 @kernel
 def see_blob(blob_data: u32[:], blob: i32, seen: i16[:], place: i32) -> None:
-    """Set where a blob is in the picture, and how large: middle, width and height."""
+    """Set the place and the size of a blob in the picture: middle, width and height."""
     source = blob * BLOB_WORDS
     at = place * OBJECT_WORDS
     across = blob_data[source + ACROSS]
@@ -88,9 +88,9 @@ def see_ball(
     width: i32,
     height: i32,
 ) -> None:
-    """Set where a ball is: by its circle's size if it passed all tests, else the way to its circle's centre.
+    """Set the place of a ball: by its circle's size if it passed all tests, else the direction of its circle's centre.
 
-    A circle whose centre was not found has that of its blob's mass.
+    A circle without a found centre has that of its blob's mass.
     """
     at = place * OBJECT_WORDS
     depth: i32 = 0
@@ -127,9 +127,9 @@ def best_model(
     width: i32,
     height: i32,
 ) -> i32:
-    """Return the tests that a blob passes for the model that it fits best, and above bit 8 where its words begin.
+    """Return the tests that a blob passes for its best model, and above bit 8 where the model's words begin.
 
-    Of equal ones the first is taken: models come in the order of importance.
+    Of equal ones the first is taken: models are in the order of importance.
     """
     best: i32 = 0
     accuracy: i32 = -1
@@ -151,7 +151,7 @@ def best_model(
 def place_for(seen: i16[:], found: i32, accuracy: i32) -> i32:
     """Return the record for one more object when `found` were found before: a free one, or the least accurate one.
 
-    The length of `seen` in records if none is less accurate.
+    Return the length of `seen` in records if none is less accurate.
     """
     room = len(seen) // OBJECT_WORDS
     if found < room:
@@ -182,7 +182,7 @@ def see_objects(
     width: i32,
     height: i32,
 ) -> i32:
-    """Make an object of each blob that has a model and is no part of another, as one camera sees it; returns how many there are.
+    """Make an object of each blob that has a model and is not part of another, for one camera; return their number.
 
     When `seen` is full the least accurate ones make way.
     """

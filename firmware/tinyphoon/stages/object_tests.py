@@ -1,8 +1,8 @@
-"""The tests that a blob goes through to become an object of a model (T §5.2.6, Figure 5.7).
+"""The tests by which a blob becomes an object of a model (T §5.2.6, Figure 5.7).
 
-They come in order: colour, dimension, area, centre of the shape, size of the shape. The first one that fails is the last
-one that is tried. Each one passed adds its weight to the accuracy. [ours] is what becomes of a ball that is hidden in part:
-its blob has not the form of a ball, but the circle of the outline that is left may tell its size all the same.
+They come in order: colour, dimension, area, centre of the shape, size of the shape. The first failure ends the tests.
+Each passed test adds its weight to the accuracy. The handling of a partly hidden ball is [ours]: its blob does not have
+the form of a ball, but the circle of the remaining outline may still tell its size.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ from tinyphoon.strategy.models import (
     Shape,
 )
 
-BALL = int(Shape.BALL)  # kernels know integers
+BALL = int(Shape.BALL)  # kernels know only integers
 GOAL = int(Shape.GOAL)
 BOX = int(Shape.BOX)
 
-# `object_limits`: the thresholds of the stage as kernels read them. The weights come in the order of the tests' bits.
+# `object_limits`: the thresholds of the stage for kernels. The weights are in the order of the tests' bits.
 TESTS = 6
 SHORTEST_SIDE = 6  # px
 SIZE_RANGE = 7  # 1/16
@@ -84,7 +84,7 @@ DISC_AREA = 201  # of its square: pi/4 (T §2.2.2)
 
 @kernel
 def shape_of(models: i32[:], number: i32) -> i32:
-    """Return the shape of the model with a number, or 0 if there is none."""
+    """Return the shape of model number `number`, or 0 if there is none."""
     for at in range(0, len(models), MODEL_WORDS):
         if models[at + MODEL_NUMBER] == number:
             return models[at + MODEL_SHAPE]
@@ -93,13 +93,13 @@ def shape_of(models: i32[:], number: i32) -> i32:
 
 @kernel
 def is_goal(models: i32[:], number: i32) -> i32:
-    """Return 1 if the model with a number is a goal; else 0."""
+    """Return 1 if model number `number` is a goal; else 0."""
     return 1 if shape_of(models, number) == GOAL else 0
 
 
 @kernel
 def has_form(across: u32, down: u32, aspect_min: i32, aspect_max: i32, width: i32, height: i32) -> i32:
-    """Return 1 if a blob is neither too narrow for a model nor too flat; else 0.
+    """Return 1 if a blob is neither too narrow nor too flat for a model; else 0.
 
     A blob that leaves the picture of `width` by `height` is wider, or higher, than it looks.
     """
@@ -114,10 +114,10 @@ def has_form(across: u32, down: u32, aspect_min: i32, aspect_max: i32, width: i3
 
 @kernel
 def has_size(extent: i32, row: i32, geometry: i32[:], height_mm: i32, floor_mm: i32, size_range: i32) -> i32:
-    """Return 1 if what looks `extent` high is about as high as a model is where its lower border is over the floor; else 0.
+    """Return 1 if something `extent` high is about as high as a model is there, `floor_mm` above the floor; else 0.
 
-    That border is in `row`, counted from the principal point; both in 1/16 px. About is to a factor of `size_range`
-    sixteenths.
+    That border is in `row`, counted from the principal point; both are in 1/16 px. About means within a factor of
+    `size_range` sixteenths.
     """
     looks = extent * depth_by_floor(geometry, row, floor_mm) // SUBPIXELS
     model = geometry[GEOMETRY_FOCAL] * height_mm // SUBPIXELS
@@ -143,10 +143,10 @@ def cut_size_passes(
     width: i32,
     height: i32,
 ) -> i32:
-    """Return 1 if a blob that leaves the picture above or below has a size that its model may have; else 0.
+    """Return 1 if a blob that leaves the picture above or below has a possible size for its model; else 0.
 
-    How deep it stands is told by its lower border, or by its upper one if that alone is in the picture. What is seen of it
-    is not larger than the model there, and not narrower than one of its height may be. In a corner of the picture, or with
+    Its lower border tells how deep it stands, or its upper one if only that is in the picture. The part seen is not
+    larger than the model there, and not narrower than one of its height may be. In a corner of the picture, or with
     neither border, too little is known of it.
     """
     above_mm = models[model + MODEL_FLOOR]
@@ -167,7 +167,7 @@ def cut_size_passes(
     )
     least = (
         SIZE_UNITS * unit * narrowest_mm + size_range - 1
-    ) // size_range  # so that no product leaves 32 bits
+    ) // size_range  # so that no product exceeds 32 bits
     if depth == 0 or wide < least:
         return 0
     if SIZE_UNITS * wide > size_range * unit * models[model + MODEL_WIDTH]:
@@ -186,7 +186,7 @@ def dimension_passes(
     width: i32,
     height: i32,
 ) -> i32:
-    """Return 1 if a blob is neither small nor unformed for a model nor stands where it would have another size; else 0."""
+    """Return 1 if a blob is not too small, misshapen, or standing where its model would differ in size; else 0."""
     across = blob_data[blob * BLOB_WORDS + ACROSS]
     down = blob_data[blob * BLOB_WORDS + DOWN]
     if min(extent_of(across), extent_of(down)) < limits[SHORTEST_SIDE]:
@@ -207,7 +207,7 @@ def dimension_passes(
 def area_passes(blob_data: u32[:], blob: i32, shape: i32, ball_area: i32, rectangle_area: i32) -> i32:
     """Return 1 if a blob fills its rectangle as its model does; else 0.
 
-    A disc must come as near to pi/4 as `ball_area`; a rectangle must fill `rectangle_area` of it.
+    A disc must be within `ball_area` of pi/4; a rectangle must fill `rectangle_area` of it.
     """
     at = blob * BLOB_WORDS
     box = extent_of(blob_data[at + ACROSS]) * extent_of(blob_data[at + DOWN])
@@ -230,7 +230,7 @@ def circle_area_passes(blob_data: u32[:], blob: i32, circles: i16[:], circle: i3
 
 @kernel
 def circle_tests(blob_data: u32[:], blob: i32, circles: i16[:], circle: i32) -> i32:
-    """Return which tests of its shape a ball passes. A circle out of which its blob looks has not the size of the ball."""
+    """Return which tests of its shape a ball passes. If the blob extends beyond its circle, the size test fails."""
     if circle == NO_OUTLINE:
         return 0
     passed = circles[circle * CIRCLE_WORDS + CIRCLE_TESTS]
@@ -256,7 +256,7 @@ def hidden_ball_tests(
     """Return the tests of its shape if a blob is part of a ball whose circle is seen well enough to be trusted; else 0.
 
     The circle has passed its own tests, has outline on a good part of it, and stands on the floor where a ball of the
-    model looks so large.
+    model looks as large.
     """
     at = circle * CIRCLE_WORDS
     if limits[HIDDEN_ARC] == 0 or circle_tests(blob_data, blob, circles, circle) & SIZE_TEST == 0:
@@ -278,7 +278,7 @@ def hidden_ball_tests(
 
 @kernel
 def rectangle_tests(rectangles: i16[:], rectangle: i32) -> i32:
-    """Return which tests of its shape a rectangle passes: its bottom line, and the lines to its left and right."""
+    """Return which tests of its shape a rectangle passes: its bottom line, and its left and right lines."""
     if rectangle == NO_OUTLINE:
         return 0
     at = rectangle * RECTANGLE_WORDS
@@ -305,7 +305,7 @@ def tests_passed(
 ) -> i32:
     """Return the tests that a blob passes for the model whose words begin at `model`; 0 if not even its colour fits.
 
-    `outline` is the number of its circle or its rectangle, by the shape of the model.
+    `outline` is the number of its circle or its rectangle, depending on the model's shape.
     """
     if blob_data[blob * BLOB_WORDS + COLOURS] & u32(models[model + MODEL_COLOURS]) == 0:
         return 0
@@ -332,7 +332,7 @@ def tests_passed(
 
 @kernel
 def accuracy_of(tests: i32, limits: i32[:]) -> i32:
-    """Return the accuracy of an object, the weights of the tests it passed."""
+    """Return the accuracy of an object: the sum of the weights of its passed tests."""
     accuracy: i32 = 0
     for test in range(TESTS):
         if tests >> test & 1:

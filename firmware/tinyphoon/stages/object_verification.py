@@ -1,15 +1,15 @@
 """The second camera: an object that both see is more certain, and better placed (T §5.2.6).
 
-The thesis takes the mean of what the cameras measure. [ours] is `refined`: where both have found the circle, the disparity
-of its two images measures the depth once more. Of two depths the one counts more that is measured by more pixels: an error
-of a pixel is then a smaller part of it, so each has the weight of its pixels squared. Where they disagree, the thing has not
-the size of its model; the disparity, which knows no model, places it then, and it is less certain.
+The thesis takes the mean of both cameras' measurements. [ours] is `refined`: if both have found the circle, the
+disparity of its two images measures the depth once more. Of two depths, the one measured by more pixels counts more: an
+error of a pixel is then a smaller part of it, so each has the weight of its pixels squared. If they disagree, the thing
+does not have the size of its model; then the disparity, which needs no model, places it, and it is less certain.
 
-That is for balls, whose circles have a middle even where part of them is hidden. The middle of a rectangle's image is that
-of what is seen of it, which the border of one picture may cut and that of the other not: it has no disparity. The floor
-places it in each picture. Where the cameras disagree by more than an eighth, the one counts that passed more tests, unless
-the border cuts the image in both: then the tests tell of what is left, and the nearer place counts, since what cuts or hides the
-lower end of a thing only ever moves it up, and the place away.
+That is for balls, whose circles have a middle even if they are partly hidden. The middle of a rectangle's image is that
+of its visible part, which the border of one picture may cut and that of the other not: it has no disparity. The floor
+places it in each picture. If the cameras disagree by more than an eighth, the one counts that passed more tests, unless
+the border cuts the image in both: then the tests only tell of what is left, and the nearer place counts, since cutting
+or hiding the lower end of a thing only ever moves it up, and the place away.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from tinyphoon.stores.objects import (
 
 NOBODY = -1
 LARGEST_ACCURACY = 255
-MOST_PIXELS = 128  # squared, times a depth of 16 bits and the two weights of a sum, it stays in 32 bits
+MOST_PIXELS = 128  # squared, times a depth of 16 bits and the two weights of a sum, it fits in 32 bits
 
 
 @kernel
@@ -57,11 +57,11 @@ def baseline_mm(geometry: i32[:]) -> i32:
 
 @kernel
 def mismatch(left: i16[:], one: i32, right: i16[:], other: i32, row_range: i32, disparity_max: i32) -> i32:
-    """Return how unlike an object in both pictures is, in 1/16 px of row and width; NOBODY if it cannot be the same.
+    """Return how different an object is in both pictures, in 1/16 px of row and width; NOBODY if it cannot be the same.
 
-    It must be of one model, at most `row_range` from its epipolar row, and farther left in the right picture by at most
-    `disparity_max`; but `row_range` more or less is no reason. What one picture lacks of it above or below moves its
-    middle by half as much: its upper ends count, or its lower ones.
+    It must have the same model, be at most `row_range` from its epipolar row, and at most `disparity_max` farther left
+    in the right picture, give or take `row_range`. If one picture lacks a part above or below, its middle moves by half
+    as much: its upper ends count, or its lower ones.
     """
     at = one * OBJECT_WORDS
     to = other * OBJECT_WORDS
@@ -77,7 +77,7 @@ def mismatch(left: i16[:], one: i32, right: i16[:], other: i32, row_range: i32, 
 
 @kernel
 def partner_of(left: i16[:], one: i32, right: i16[:], row_range: i32, disparity_max: i32) -> i32:
-    """Return the object of the right camera that is most like one of the left camera, or NOBODY; of equal ones the first."""
+    """Return the right camera's object most like one of the left camera, or NOBODY; of equal ones the first."""
     best: i32 = NOBODY
     least: i32 = 0
     for other in range(len(right) // OBJECT_WORDS):
@@ -91,7 +91,7 @@ def partner_of(left: i16[:], one: i32, right: i16[:], row_range: i32, disparity_
 
 @kernel
 def shift_right_object(geometry: i32[:], right: i16[:], other: i32) -> None:
-    """Move the place of an object from the frame of the right camera to that of the left one. A direction stays."""
+    """Move an object's place from the frame of the right camera to that of the left one. A direction stays."""
     at = other * OBJECT_WORDS
     if right[at + OBJECT_MEASURES] != 0:
         right[at + OBJECT_X] = right[at + OBJECT_X] + baseline_mm(geometry)
@@ -139,7 +139,7 @@ def is_cut_aside(objects: i16[:], number: i32, width: i32) -> i32:
 
 @kernel
 def take_better(left: i16[:], one: i32, right: i16[:], other: i32, width: i32) -> None:
-    """Place an object where that camera has it that is to be believed, of two that disagree."""
+    """Place an object where the more reliable camera has it, of two that disagree."""
     at = one * OBJECT_WORDS
     to = other * OBJECT_WORDS
     better = right[to + OBJECT_ACCURACY] - left[at + OBJECT_ACCURACY]
@@ -167,7 +167,7 @@ def weighted(one: i32, weight: i32, other: i32, other_weight: i32) -> i32:
 
 @kernel
 def move_to(left: i16[:], one: i32, depth: i32) -> None:
-    """Move an object along the way to it to a depth; it must have one."""
+    """Move an object along its direction to a depth; it must have one."""
     at = one * OBJECT_WORDS
     before = i32(left[at + OBJECT_Z])
     left[at + OBJECT_X] = (left[at + OBJECT_X] * depth + (before >> 1)) // before
@@ -177,10 +177,10 @@ def move_to(left: i16[:], one: i32, depth: i32) -> None:
 
 @kernel
 def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32, disparity_range: i32) -> i32:
-    """Move a measured object to where its disparity and its own measure together have it; returns 1, or 0 if they disagree.
+    """Move a measured object to its place by disparity and its own measure together; return 1, or 0 if they disagree.
 
-    They do if the disparity is more than `disparity_range` off that of its depth. Then the disparity alone places it, if it
-    is one of any depth. Both in 1/16 px.
+    They do if the disparity is more than `disparity_range` away from that of its depth. Then the disparity alone places
+    it, if it corresponds to a depth. Both are in 1/16 px.
     """
     at = one * OBJECT_WORDS
     depth = i32(left[at + OBJECT_Z])
@@ -202,7 +202,7 @@ def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32, dispa
 
 @kernel
 def has_disparity(left: i16[:], one: i32, right: i16[:], other: i32) -> i32:
-    """Return 1 if both cameras have found the circle of a ball, so that the middles of its images are one point; else 0."""
+    """Return 1 if both cameras have found a ball's circle, so that the middles of its images are one point; else 0."""
     shape_in_both = left[one * OBJECT_WORDS + OBJECT_TESTS] & right[other * OBJECT_WORDS + OBJECT_TESTS]
     if shape_in_both & SIZE_TEST == 0:
         return 0
@@ -222,7 +222,7 @@ def unite(
     refined: i32,
     width: i32,
 ) -> None:
-    """Make an object of the left camera and its partner of the right one a single one, in `left`."""
+    """Unite an object of the left camera and its partner of the right one, in `left`."""
     at = one * OBJECT_WORDS
     to = other * OBJECT_WORDS
     agree: i32 = 1
@@ -260,11 +260,11 @@ def verify_objects(
     refined: i32,
     width: i32,
 ) -> i32:
-    """Make one object of each pair that both cameras see, in `left`; returns how many pairs there are.
+    """Unite each pair of objects that both cameras see, in `left`; return how many pairs there are.
 
-    The other ones of the right camera stay in `right`. All are in the frame of the left camera then. A verified object
-    is as accurate as the better of the two, and `weight` more; one whose disparity or places disagree is `size_weight` less.
-    Lengths in 1/16 px, but for the `width` of the pictures in pixels.
+    The other objects of the right camera stay in `right`. All are in the frame of the left camera then. A verified
+    object is as accurate as the better of the two, plus `weight`; one whose disparity or places disagree loses
+    `size_weight`. Lengths are in 1/16 px, except the `width` of the pictures in pixels.
     """
     pairs: i32 = 0
     for other in range(len(right) // OBJECT_WORDS):

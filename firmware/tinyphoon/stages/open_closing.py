@@ -1,9 +1,9 @@
 """Open & closing: noise removal in the colour image, all 32 colours at once (T §2.3.1, §5.2.3).
 
-The thesis names the stage after both operations. What its robot applies is the opening, erosion and then dilation (T §5.2.3): single
-pixels go. The closing, dilation and then erosion, fills gaps of single pixels; one after the other does both (T Figure 2.6). Each
-is a pass over the picture. Either may be applied many times for a larger effect, the thesis says; but one that follows itself changes
-nothing more, so that is not offered.
+The thesis names the stage after both operations. Its robot applies the opening, erosion and then dilation (T §5.2.3),
+which removes single pixels. The closing, dilation and then erosion, fills gaps of single pixels; one after the other
+does both (T Figure 2.6). Each is a pass over the picture. The thesis says that either may be applied many times for a
+larger effect; but repeating one changes nothing more, so that is not offered.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tinyphoon.scan_lines import line_ring, windows
 
 
 class NoiseOrder(IntEnum):
-    """Which operations are applied, one after the other."""
+    """Which operations are applied, in order."""
 
     OPENING = 0  # T §5.2.3
     CLOSING = 1
@@ -32,7 +32,7 @@ CLOSES = {
     NoiseOrder.CLOSING_OPENING: (True, False),
     NoiseOrder.OPENING_CLOSING: (False, True),
 }
-"""For each pass over the picture whether it is a closing."""
+"""For each pass over the picture, whether it is a closing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +48,7 @@ class NoiseRemoval:
         return tuple(zip(images, CLOSES[self.order], strict=False))
 
 
-# Erosion and dilation each need one line below theirs, so the finished line trails the one that comes in.
+# Erosion and dilation each need one line below theirs, so the finished line trails the incoming one.
 LAG_LINES = 2
 
 
@@ -80,7 +80,7 @@ def dilate_row(above: u32[:], here: u32[:], below: u32[:], dilated: u32[:]) -> N
 
 @kernel
 def repeat_border(row: u32[:]) -> None:
-    """Give the border pixels of a dilated row the colours beside them, or the erosion behind takes them for gaps."""
+    """Give the border pixels of a dilated row the colours beside them, or the next erosion takes them for gaps."""
     last = len(row) - 1
     row[0] = row[1]
     row[last] = row[last - 1]

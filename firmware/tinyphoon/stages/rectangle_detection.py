@@ -1,16 +1,16 @@
 """Rectangle detection: the lines that border the blob of a rectangular model (T §6.4).
 
-The thesis has the stage and says little of it; the rules are [ours]. A border line runs along its side of the blob for
-a good part of it, and the outermost point of that part is near the blob's border. Of several the nearest is taken.
-A line with its bright side outside counts as farther off: things on the field are brighter than the floor, though not than
-the lines on it.
+The thesis has the stage but says little of it; the rules are [ours]. A border line runs along its side of the blob for
+a good part of it, and the outermost point of that part is near the blob's border. If there are several, the nearest is
+taken. A line with its bright side outside counts as farther away: things on the field are brighter than the floor,
+though not than the lines on it.
 
-A line may be longer than the side, as where the background carries it on (T Figure 6.9); only its part beside the
-blob is looked at.
+A line may be longer than the side, for example where the background continues it (T Figure 6.9); only its part beside
+the blob counts.
 
 A goal's blob is mostly its back, which ends below where the back does, farther from the camera than the mouth, and its
-posts are so thin that their colour gets lost. Their border lines do not: a goal's bottom line is looked for below the
-lower end of those first.
+posts are so thin that their colour gets lost. Their border lines do not: a goal's bottom line is first sought below the
+lower end of those.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ SHARE_BITS = 8
 
 LEVEL = 0  # which coordinate runs along a border
 UPRIGHT = 1
-TOWARDS_0 = -1  # which way is out
+TOWARDS_0 = -1  # which direction is outwards
 AWAY = 1
 
 FAR = 1 << 20  # 1/16 px: farther than any picture is wide
@@ -58,8 +58,8 @@ FAR = 1 << 20  # 1/16 px: farther than any picture is wide
 class RectangleThresholds:
     """What makes a border line.
 
-    `border_px`: so far it may be from the blob's border. `dark_px`: so much farther off counts a line that is bright
-    outside when there are several. `overlap`: the share of the blob's side that it runs along, of 256.
+    `border_px`: how far it may be from the blob's border. `dark_px`: how much farther away a line counts that is bright
+    outside, if there are several. `overlap`: the share of the blob's side that it must run along, in 256ths.
     """
 
     border_px: int = allowed(0, 64)
@@ -74,7 +74,7 @@ def rectangle_buffers() -> Sequence[Buffer]:
 
 @kernel
 def crossing(along0: i32, across0: i32, along1: i32, across1: i32, along: i32) -> i32:
-    """Return where across a line is at `along`; its ends must differ in that."""
+    """Return where a line is across at `along`; its ends must differ in that."""
     run = along1 - along0
     return across0 + ((across1 - across0) * (along - along0) + (run >> 1)) // run
 
@@ -94,8 +94,8 @@ def border_distance(
 ) -> i32:
     """Return how far a line is from being the border of a blob, in 1/16 px; FAR if it cannot be.
 
-    The blob reaches from `first` to `last` along the border, which is at `border` across, and the line must be `reach`
-    from it at most. One that is bright outside counts as `dark` farther away.
+    The blob reaches from `first` to `last` along the border, which is at `border` across, and the line must be within
+    `reach` of it. A line that is bright outside counts as `dark` farther away.
     """
     start = line * LINE_WORDS + LINE_X0
     end = line * LINE_WORDS + LINE_X1
@@ -149,9 +149,9 @@ def border_line(
 
 @kernel
 def open_rectangles(blob_data: u32[:], parents: u8[:], blobs: i32, colours: u32, rectangles: i16[:]) -> i32:
-    """Begin a record of each blob that has some of `colours` and is no part of another; returns how many there are, also beyond the room.
+    """Begin a record for each blob with some of `colours` that is not part of another; return how many there are.
 
-    Both of its ends have the rows of the blob.
+    Blobs without room are counted. Both ends have the rows of the blob.
     """
     found: i32 = 0
     room = len(rectangles) // RECTANGLE_WORDS
@@ -183,10 +183,10 @@ def lower(rows: u32) -> i32:
 def post_foot(
     lines: i16[:], count: i32, outward: i32, rows: u32, border: i32, reach: i32, overlap: i32
 ) -> i32:
-    """Return where a goal's post ends: with the rows that its blob has at that end, or farther down with a border line there.
+    """Return where a goal's post ends: with its blob's rows at that end, or farther down with a border line there.
 
-    What crosses a post breaks its lines: of all of them the one that goes farthest counts. A line that goes on by more than
-    half of the rows is also something else's. All but the rows in 1/16 px.
+    Things that cross a post break its lines: of all of them, the one that goes farthest counts. A line that extends by
+    more than half of the rows belongs also to something else. All but the rows are in 1/16 px.
     """
     top = upper(rows)
     bottom = lower(rows)
@@ -278,8 +278,8 @@ def rectangle_detection(
 ) -> Generator[Any, Any, int]:
     """Look for the border lines of the blobs of rectangular models, merged ones too, and leave them in `rectangles`.
 
-    `blobs` and `lines` are how many are in their stores, `colours` those of the models, `goals` those of goals, whose ends are looked
-    at, too. Publishes `rectangles`, how many are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
+    `blobs` and `lines` are how many are in their stores, `colours` those of the models, `goals` those of goals, whose ends are also
+    examined. Publishes `rectangles`, how many are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
     """
     limits = SUBPIXELS * thresholds.border_px, thresholds.overlap, SUBPIXELS * thresholds.dark_px
     blob_data, table = core.array("blob_data"), core.array("rectangles")

@@ -1,10 +1,10 @@
-"""Both ends of a goal's blob: which rows they have, and whether something before the goal hides what stands there [ours].
+"""Both ends of a goal's blob: their rows, and whether something in front of the goal hides what stands there [ours].
 
-A goal stands on its posts, at both ends of its blob. Seen at an angle its blob is no rectangle: the farther post ends above
-the nearer one. So the opened image tells which rows an end has, unless the picture's border cuts it off: there is no post
-there, and it has those of the blob. Where another thing stands before an end, the blob ends at
-that thing's border, and with the goal's back, which is farther away. But the border goes on down below the blob, where
-beneath a post there is only floor: so edges tell.
+A goal stands on its posts, at both ends of its blob. Seen at an angle, its blob is no rectangle: the farther post ends
+above the nearer one. So the opened image tells which rows an end has, unless the picture's border cuts it off: there is
+no post there, and it has the rows of the blob. If another thing stands in front of an end, the blob ends at that
+thing's border, and with the goal's back, which is farther away. But the border continues below the blob, where beneath
+a post there is only floor: so edges tell.
 """
 
 from __future__ import annotations
@@ -36,20 +36,20 @@ from tinyphoon.stores.rectangles import (
 
 NONE = -1
 
-# A post leans by five columns at most where the camera looks down by 10 degrees, and pairs of pixels share their colour.
+# A post leans by at most five columns if the camera looks down by 10 degrees, and pairs of pixels share their colour.
 END_PX = 8
-LEAN_PX = 2  # from row to row; what goes in faster is the goal's bottom, seen at an angle
+LEAN_PX = 2  # from row to row; a faster slope is the goal's bottom, seen at an angle
 
 LEFT_HIDDEN = 1
 RIGHT_HIDDEN = 2
 
-FOOT_PX = 3  # so far below its colour there are edges of a post's foot
+FOOT_PX = 3  # how far below its colour there are edges of a post's foot
 BESIDE_PX = 2  # the opening rounds a blob's border, and an edge lies where the colours change
 
 
 @kernel
 def next_goal(rectangles: i16[:], rectangle: i32, count: i32, blob_data: u32[:], goals: u32) -> i32:
-    """Return the first rectangle from number `rectangle` on that has a colour of `goals`, or `count`."""
+    """Return the first rectangle from number `rectangle` on with a colour of `goals`, or `count`."""
     while rectangle < count:
         blob = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB])
         if blob_data[blob * BLOB_WORDS + COLOURS] & goals != 0:
@@ -60,7 +60,7 @@ def next_goal(rectangles: i16[:], rectangle: i32, count: i32, blob_data: u32[:],
 
 @kernel
 def open_end(rectangles: i16[:], rectangle: i32, end: i32, blob_data: u32[:], width: i32) -> i32:
-    """Begin an end of a rectangle without rows, and return its first column; NONE if a picture `width` pixels wide cuts it off."""
+    """Begin a rectangle's end without rows, and return its first column; NONE if a picture `width` wide cuts it off."""
     blob = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB])
     across = blob_data[blob * BLOB_WORDS + ACROSS]
     down = blob_data[blob * BLOB_WORDS + DOWN]
@@ -82,9 +82,9 @@ def rows_of_blob(rectangles: i16[:], rectangle: i32, blob_data: u32[:]) -> u32:
 def see_end_row(
     opened: u32[:], y: i32, rectangles: i16[:], rectangle: i32, end: i32, blob_data: u32[:], inside: i32
 ) -> i32:
-    """Add row `y` to the rows of an end if its border is there: the outermost pixel of the blob's colours in the end's columns.
+    """Add row `y` to an end's rows if its border is there: the outermost pixel of the blob's colours in its columns.
 
-    In the row above the border was `inside` columns from the outermost one; returns how many it is in this row.
+    In the row above, the border was `inside` columns from the outermost one; return the number for this row.
     """
     colours = blob_data[rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB] * BLOB_WORDS + COLOURS]
     farthest = min(inside + LEAN_PX, END_PX - 1)
@@ -110,7 +110,7 @@ def has_upright_edge(edge_data: u32[:], edge_index: u32[:], edge_counts: u16[:],
 
 @kernel
 def goes_on_below(edge_data: u32[:], edge_index: u32[:], edge_counts: u16[:], column: i32, rows: u32) -> i32:
-    """Return 1 if upright edges go on below an end of a blob near a column, in most of half as many rows as it has; else 0.
+    """Return 1 if upright edges continue below an end near a column, in most of half as many rows as it has; else 0.
 
     Rows beyond the picture have none.
     """
@@ -133,9 +133,9 @@ def mark_hidden_ends(
     edge_counts: u16[:],
     width: i32,
 ) -> None:
-    """Store which ends of the first `count` rectangles are hidden, of those that have a colour of `goals`.
+    """Store which ends of the first `count` rectangles are hidden, for those with a colour of `goals`.
 
-    What the border of a picture `width` pixels wide cuts off is not hidden.
+    Ends that the border of a picture `width` pixels wide cuts off are not hidden.
     """
     for number in range(count):
         at = number * RECTANGLE_WORDS
@@ -155,7 +155,7 @@ def mark_hidden_ends(
 
 
 def rows_of_ends(core: Core, frame: Frame, rectangles: int, goals: int) -> Generator[Any, Any, None]:
-    """Store which rows both ends of the first `rectangles` rectangles have, of those that are `goals` by their colours."""
+    """Store the rows of both ends of the first `rectangles` rectangles, for those that are `goals` by colour."""
     table, blobs = core.array("rectangles"), core.array("blob_data")
     goal = yield core.run(next_goal, table, 0, rectangles, blobs, goals)
     while goal < rectangles:
@@ -177,7 +177,7 @@ def rows_of_ends(core: Core, frame: Frame, rectangles: int, goals: int) -> Gener
 
 
 def hidden_ends(core: Core, frame: Frame, rectangles: int, goals: int) -> Generator[Any, Any, None]:
-    """Say of the first `rectangles` rectangles which of their ends something hides, if they are `goals` by their colours."""
+    """Store which ends of the first `rectangles` rectangles are hidden, for those that are `goals` by colour."""
     limits = core.array("blob_data"), goals
     yield core.run(
         mark_hidden_ends, core.array("rectangles"), rectangles, *limits, *edge_store(core), frame.width

@@ -1,8 +1,8 @@
-"""Where a rectangle is, by the floor below its bottom (T §4.1.2): a mark over the floor, and a goal.
+"""The place of a rectangle, by the floor below its bottom (T §4.1.2): a mark above the floor, or a goal.
 
-A goal is a box open to the front, so that its back fills most of its blob, and seen at an angle it is no rectangle
-(T §6.4). What stands on the floor at its mouth are its posts: the feet at both ends of its blob are a goal's width apart,
-and the middle of the mouth is between them [ours].
+A goal is a box open to the front, so its back fills most of its blob, and seen at an angle it is no rectangle (T §6.4).
+At its mouth its posts stand on the floor: the feet at both ends of its blob are a goal's width apart, and the middle of
+the mouth is between them [ours].
 """
 
 from __future__ import annotations
@@ -63,16 +63,16 @@ from tinyphoon.strategy.models import (
     MODEL_WIDTH,
 )
 
-OPENING_LOSS = SUBPIXELS  # so far above its bottom line the opening may end a blob [ours]
-FLOOR_LINE = 4 * SUBPIXELS  # so far below the feet the line may be that is painted along the goal [ours]
-FAR_APART = 4 * LARGEST_MM  # mm: farther than any goal is wide; three squares of it stay in 32 bits
+OPENING_LOSS = SUBPIXELS  # how far above its bottom line the opening may end a blob [ours]
+FLOOR_LINE = 4 * SUBPIXELS  # how far below the feet a line painted along the goal may be [ours]
+FAR_APART = 4 * LARGEST_MM  # mm: farther than any goal is wide; three squares of it fit in 32 bits
 
 
 @kernel
 def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32) -> i32:
     """Return where a rectangle ends below at `column`, in 1/16 px: at its bottom line, or else at the end of its blob.
 
-    `down` are the rows of its blob, or of the part of it that is there.
+    `down` are the rows of its blob, or of the part that is there.
     """
     if rectangle != NO_OUTLINE:
         line = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BOTTOM])
@@ -88,7 +88,7 @@ def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], col
 def foot_row(
     down: u32, rectangles: i16[:], rectangle: i32, foot: i32, lines: i16[:], column: i32, cut: i32
 ) -> i32:
-    """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
+    """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part there.
 
     That is the goal's bottom line, with two exceptions. If the part ends a little above that line, the part's end is the
     foot of a post, and the line is one that is painted on the floor: its front edge is nearer to the camera, and the blur
@@ -121,7 +121,7 @@ def on_the_way(from_mm: i32, to_mm: i32, part: i32, whole: i32) -> i32:
 
 @kernel
 def lift(geometry: i32[:], models: i32[:], model: i32, row: i32, objects: i16[:], number: i32) -> None:
-    """Move an object from its lower border, seen in `row`, up to its middle; its place has been measured by the floor."""
+    """Move an object from its lower border, seen in `row`, up to its middle; its place was measured by the floor."""
     at = number * OBJECT_WORDS
     up = models[model + MODEL_HEIGHT]
     objects[at + OBJECT_Y] = objects[at + OBJECT_Y] - scaled(up, geometry[GEOMETRY_COSINE])
@@ -190,7 +190,7 @@ def stand_between_feet(
         elif hidden == LEFT_HIDDEN:
             objects[at + OBJECT_X] = right_x - (wide >> 1)
         return
-    # how far from the left corner the middle is, as a part of the way to the right one
+    # position of the middle from the left corner, as a part of the way to the right one
     part = apart
     if cut_left < cut_right:
         part = wide
@@ -203,7 +203,7 @@ def stand_between_feet(
 
 @kernel
 def go_inside(geometry: i32[:], further: i32, objects: i16[:], number: i32) -> None:
-    """Move an object that stands on the floor away over it, by `further` mm: from the nearest point of a box towards its middle."""
+    """Move an object on the floor `further` mm away over it: from the nearest point of a box towards its middle."""
     at = number * OBJECT_WORDS
     depth = i32(objects[at + OBJECT_Z])
     objects[at + OBJECT_X] = objects[at + OBJECT_X] * (depth + further) // max(depth, 1)
@@ -227,9 +227,9 @@ def see_rectangle(
     width: i32,
     height: i32,
 ) -> None:
-    """Set where the centre of a rectangle is: by the floor below its bottom, or else the way to its blob's middle.
+    """Set the place of a rectangle's centre: by the floor below its bottom, or else the direction of its blob's middle.
 
-    That of a box is a quarter of width and depth together behind what is seen there, until its upright edges tell (`box_places.py`).
+    For a box, it is a quarter of width and depth together behind what is seen there, until its upright edges tell (`box_places.py`).
 
     The floor tells only if the blob has the dimension of the model and is seen down to its bottom. The centre of a goal is
     that of its mouth if `refined`.

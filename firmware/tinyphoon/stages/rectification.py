@@ -1,9 +1,9 @@
-"""Rectification: every pixel from where a look-up table says that the lens put it (T §3.4, §5.2.5).
+"""Rectification: every pixel is taken from where a look-up table says that the lens put it (T §3.4, §5.2.5).
 
-`dst[i] = src[lut[i]]`, one table per camera and no weights. The thesis takes its pixels from SDRAM, each from another
-page at worst. Here DMA keeps a window of camera lines near the core, as deep as one line of the rectified picture
-reaches up and down in the camera's, and the table comes line by line through a ring of its own. A table's entry is
-the place of a pixel in the window, so the kernel computes no address.
+`dst[i] = src[lut[i]]`, one table per camera and no weights. The thesis takes its pixels from SDRAM, at worst each from
+another page. Here DMA keeps a window of camera lines near the core, as deep as one line of the rectified picture
+reaches up and down in the camera's, and the table comes line by line through a ring of its own. A table's entry is the
+place of a pixel in the window, so the kernel computes no address.
 
 Of the two pixels of a pair each has its own luma, and both the colour of the left one. A pixel without a source is
 black: the window ends with a black pair, which stands for all of them. What borders on them is the rim of the camera's
@@ -24,8 +24,8 @@ from bfsim.api import Buffer, Buffers, Core, FirmwareError, Frame, SourcePixels,
 from tinyphoon.areas import WHOLE_PICTURE, Area, area_in, cropped
 
 BLACK_PAIR = (128, 0, 128, 0)  # U Y V Y
-PLACES = 1 << 16  # an entry has 16 bits
-GRADIENT_REACH = 4  # pixels: the larger Gauss 2, Sobel 1, the neighbour that a maximum is compared with 1
+PLACES = 1 << 16  # entries have 16 bits
+GRADIENT_REACH = 4  # pixels: the larger Gauss 2, Sobel 1, the neighbour for the maximum 1
 
 
 @kernel
@@ -42,23 +42,23 @@ def rectify_row(window: u8[:], places: u16[:], rectified: u8[:]) -> None:
 
 @kernel
 def load_lines(lines: u16[:], y: i32) -> i32:
-    """Return how many lines of the camera rows 0 to `y` of the rectified picture reach down."""
+    """Return how many lines of the camera rows 0 to `y` of the rectified picture need."""
     return i32(lines[y])
 
 
 def lines_reached(rows: NDArray[np.int32]) -> NDArray[np.int64]:
-    """Return for each row of a table how many camera lines must have come for it: those down to its lowest, and to any before."""
+    """Return for each row of a table how many camera lines must have come: down to its lowest, and any row's before."""
     return np.maximum.accumulate(rows.max(axis=1).astype(np.int64) + 1)
 
 
 def window_lines(rows: NDArray[np.int32]) -> int:
-    """Return how many lines a ring must have for a table: the most that any row reaches over, and one on its way."""
+    """Return the lines that a ring needs for a table: the most that any row reaches over, and one on its way."""
     highest = np.where(rows >= 0, rows, np.iinfo(np.int32).max).min(axis=1)
     return max(2, int((lines_reached(rows) - highest).max()) + 1)
 
 
 def places_in_window(sources: SourcePixels, depth: int) -> NDArray[np.int64]:
-    """Return the place of each source pixel in a window of `depth` lines; beyond the last line is the black pair."""
+    """Return the place of each source pixel in a window of `depth` lines; after the last line comes the black pair."""
     width = sources.rows.shape[1]
     return np.where(sources.rows >= 0, sources.rows % depth * width + sources.columns, depth * width)
 
@@ -66,7 +66,7 @@ def places_in_window(sources: SourcePixels, depth: int) -> NDArray[np.int64]:
 def sighted_columns(rows: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the first and the last column of each row whose gradient depends on no pixel without a source.
 
-    Of a row with several stretches of such columns it is the longest; one with none begins behind its end.
+    For a row with several stretches of such columns it is the longest; one without any begins after its end.
     """
     height, width = rows.shape
     blind = np.pad(rows < 0, GRADIENT_REACH, mode="edge")
@@ -81,7 +81,7 @@ def sighted_columns(rows: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray
 
 
 def rectification_buffers(sources: Mapping[str, SourcePixels]) -> Buffers:
-    """Return what the tables of a recording take in the memory of each core."""
+    """Return the buffers for a recording's tables in the memory of each core."""
     return {core: _core_buffers(core, each) for core, each in sources.items()}
 
 
@@ -108,9 +108,9 @@ def _core_buffers(core: str, sources: SourcePixels) -> Sequence[Buffer]:
 
 
 def rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Generator[Any, Any, Frame]:
-    """Rectify an area of a picture in one pass of DMA lines; leaves `rectified_image` in SDRAM and returns it as a frame.
+    """Rectify an area of a picture in one pass of DMA lines; leave `rectified_image` in SDRAM and return it as a frame.
 
-    A picture of a recording without tables is taken as rectified: its area is returned.
+    If a recording has no tables, its pictures count as rectified: the area is returned.
     """
     area = area_in(frame, area)
     if not core.has_buffer("camera_window"):
@@ -123,7 +123,7 @@ def rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Gener
     )
     image = core.overlay("rectified_image", u8, 2 * area.width)[: area.height]
     rectified = core.output_ring("camera_ring", image)
-    # Line n of the camera lies in row n modulo the depth: so the window begins with a line that has row 0.
+    # Line n of the camera lies in row n modulo the depth, so the window begins with a line that has row 0.
     lines = yield core.run(load_lines, reached, area.y)
     above = max(0, lines - depth + 1) // depth * depth
     camera = core.window_ring(frame.rows[above:], core.overlay("camera_window", u8, 2 * frame.width)[:depth])

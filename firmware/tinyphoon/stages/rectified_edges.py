@@ -1,4 +1,4 @@
-"""Edges, moved to where they lie in the rectified picture (T §7.2).
+"""Edges, moved to their places in the rectified picture (T §7.2).
 
 An edge of the store has a whole column and its row, so its new place is rounded both ways,
 and the store is in the order of rows: the edges of a camera's row go to several. They are
@@ -34,7 +34,7 @@ NO_CELL = -1
 
 @kernel
 def level_at(places: i16[:], node: i32, under: i32, below: i32) -> i32:
-    """Return what lies `below` pixels below the word of a node, on the way to that `under` it, in 1/16 px / NODE_PX."""
+    """Return the value `below` pixels below a node's word, interpolated to that `under` it, in 1/16 px / NODE_PX."""
     return NODE_PX * places[node] + (places[under] - places[node]) * below
 
 
@@ -49,10 +49,10 @@ def move_edges_row(
     moved_counts: u16[:],
     width: i32,
 ) -> None:
-    """Append the edges of row `y` to the rows of `moved` where they lie; `moved_counts` are the edges of each.
+    """Append the edges of row `y` to the rows of `moved` where they now lie; `moved_counts` are the edges of each.
 
-    A row has room for `width` edges. What lies outside of the picture is left out. The table's columns are interpolated once for all
-    edges of a row that lie between them.
+    A row has room for `width` edges. Edges outside of the picture are left out. The table's columns are interpolated
+    once for all edges of a row between them.
     """
     corner_x = i32(places[CORNER_X])
     corner_y = i32(places[CORNER_Y])
@@ -88,7 +88,7 @@ def move_edges_row(
 
 @kernel
 def longest_row(counts: u16[:]) -> i32:
-    """Return the most edges that a row has, 1 at least."""
+    """Return the most edges that a row has, at least 1."""
     most = 1
     for y in range(len(counts)):
         most = max(most, i32(counts[y]))
@@ -117,9 +117,9 @@ def store_moved_row(
     y: i32,
     kept: i32,
 ) -> i32:
-    """Store the edges that were moved to row `y`, from left to right, of several in a column the strongest.
+    """Store the edges that were moved to row `y`, from left to right; if several share a column, the strongest.
 
-    `kept` edges are stored before; returns how many are with this row.
+    `kept` edges are stored before; return the number with this row.
     """
     count = i32(moved_counts[y])
     sort_words(moved, count)
@@ -139,7 +139,7 @@ def store_moved_row(
 
 
 def rectified_edges(core: Core, frame: Frame) -> Generator[Any, Any, int]:
-    """Move the edges of the store; returns how many are in the rectified picture, and publishes it as `edges_rectified`."""
+    """Move the edges of the store; return how many are in the rectified picture, and publish it as `edges_rectified`."""
     store, places = edge_store(core), core.array("places")
     moved = as_words(core, "edge_candidates")
     counts, *_ = core.overlay("segments", u16, frame.height)  # the lines have been fitted

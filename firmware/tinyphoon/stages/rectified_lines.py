@@ -1,8 +1,8 @@
-"""Lines, moved to where they lie in the rectified picture (T §7.2).
+"""Lines, moved to their places in the rectified picture (T §7.2).
 
-A lens bends a line, and what was fitted to it is a straight one: right in the mean, off inwards in the middle and outwards at
-both ends. So not its ends alone are moved but points all along it, and a straight line is fitted to these. What the
-first fit left, the second takes back: both are least squares over the same length.
+A lens bends a line, and the line fitted to it is straight: right on average, too far in at the middle and too far out
+at both ends. So not only its ends are moved but points all along it, and a straight line is fitted to these. The error
+of the first fit is undone by the second: both are least squares over the same length.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from tinyphoon.stages.rectified_places import ACROSS, DOWN, rectified
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
 
 PARTS = 8
-"""A line is moved by the middles of so many equal parts: with as few the squares of their places are right to 2 %."""
+"""A line is moved by the middles of this many equal parts: with them, the squares of their places are right to 2 %."""
 PART_BITS = 4  # two steps a part
 
 
 @kernel
 def rectify_line(lines: i16[:], line: i32, places: i16[:], atan: u8[:], width: i32, height: i32) -> None:
-    """Move a line; its ends are the feet of where its ends lie."""
+    """Move a line; its ends are the feet of its moved ends."""
     base = line * LINE_WORDS
     x0 = i32(lines[base + LINE_X0])
     y0 = i32(lines[base + LINE_Y0])

@@ -1,7 +1,7 @@
-"""Outlines of objects, moved to where they lie in the rectified picture (T §7.2): circles, blobs, and the ends of rectangles.
+"""Outlines of objects, moved to their places in the rectified picture (T §7.2): circles, blobs, ends of rectangles.
 
-What is told of an object's size and place is told of an ideal camera's picture, so nothing bent may reach it. A circle goes by the
-four points of it that are above, below and beside its centre; a blob by the middles of the sides of its box.
+An object's size and place are computed for an ideal camera's picture, so nothing bent may reach them. A circle is moved
+by its four points above, below and beside its centre; a blob by the middles of the sides of its box.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ HALF_PIXEL = SUBPIXELS // 2
 
 @kernel
 def rectify_circles(circles: i16[:], count: i32, places: i16[:]) -> None:
-    """Move the first `count` circles. One without a radius is its centre."""
+    """Move the first `count` circles. One without a radius is just its centre."""
     for circle in range(count):
         at = circle * CIRCLE_WORDS
         x = i32(circles[at + CIRCLE_X])
@@ -63,7 +63,7 @@ def rectify_circles(circles: i16[:], count: i32, places: i16[:]) -> None:
 
 @kernel
 def rectified_pixel(places: i16[:], x: i32, y: i32, axis: i32, pixels: i32) -> i32:
-    """Return column or row of the pixel where a point lies in a picture of so many `pixels` that way; the nearest one there is.
+    """Return column or row of a point's pixel in a picture of `pixels` that way; the nearest one in the picture.
 
     The point is in 1/16 px.
     """
@@ -92,7 +92,7 @@ def rectify_end(
 
 @kernel
 def rectify_ends(rectangles: i16[:], count: i32, blob_data: u32[:], places: i16[:], height: i32) -> None:
-    """Move the ends of the first `count` rectangles, whose blobs are where the camera has them."""
+    """Move the ends of the first `count` rectangles, whose blobs are still in the camera's picture."""
     for rectangle in range(count):
         blob = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB])
         across = blob_data[blob * BLOB_WORDS + ACROSS]
@@ -104,7 +104,7 @@ def rectify_ends(rectangles: i16[:], count: i32, blob_data: u32[:], places: i16[
 
 @kernel
 def rectify_blob(blob_data: u32[:], blob: i32, places: i16[:], width: i32, height: i32) -> None:
-    """Move a blob: its box, its centre of mass, and its pixels by as much as the box grows."""
+    """Move a blob: its box, its centre of mass, and its pixels in proportion to the growth of the box."""
     at = blob * BLOB_WORDS
     across = blob_data[at + ACROSS]
     down = blob_data[at + DOWN]

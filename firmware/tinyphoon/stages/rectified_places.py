@@ -1,12 +1,12 @@
-"""Where the pixels of a camera lie in its rectified picture: a coarse table and the point between its nodes.
+"""Where the pixels of a camera lie in its rectified picture: a coarse table, interpolated between its nodes.
 
-Recordings have the way back only, the nearest source of each rectified pixel. Both ways are smooth, so a polynomial through
-all sources tells the way there more finely than whole pixels. It is no measure of places that no rectified pixel comes
-from: there the table goes on as straight as it ends, and what lies there is outside of the rectified picture.
+Recordings only have the reverse, the nearest source of each rectified pixel. Both ways are smooth, so a polynomial
+through all sources gives the way there more finely than whole pixels. It says nothing about places without a rectified
+pixel: there the table continues linearly, and what lies there is outside of the rectified picture.
 
-The table has a node in every eighth row and column, 41 x 31 of them for 320x240: 5 KB, where a table of all pixels had 307.
-Through a lens with k1 = -0.25 and k2 = 0.08 before 386 px it is off by 0.08 px in the root mean square, and by 0.3 px at most, in
-a corner; to interpolate costs 0.03 of these, and the rest comes from the recording's whole pixels.
+The table has a node in every eighth row and column, 41 x 31 of them for 320x240: 5 KB, where a table of all pixels had
+307. For a lens with k1 = -0.25 and k2 = 0.08 at 386 px, its error is 0.08 px (root mean square), and 0.3 px at most, in
+a corner; interpolation causes 0.03 of these, and the rest comes from the recording's whole pixels.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ NODE_PX = 8
 NODE_BITS = 7  # of 1/16 px
 HALF_CELL = 1 << 2 * NODE_BITS - 1
 
-# The first words of `places`; behind them column and row of each node in the rectified picture, in 1/16 px, row by row.
+# The first words of `places`; then column and row of each node in the rectified picture, in 1/16 px, by row.
 COLUMNS = 0  # nodes in a row
 ROWS = 1
 CORNER_X = 2  # where the area of interest begins, px
@@ -34,7 +34,7 @@ NODES = 4
 ACROSS = 0
 DOWN = 1
 
-DEGREE = 7  # of lenses that move the corners of a picture by a quarter of its width
+DEGREE = 7  # for lenses that move the corners of a picture by a quarter of its width
 LARGEST = (1 << 15) - 1
 
 Points = NDArray[np.float64]
@@ -42,16 +42,16 @@ Points = NDArray[np.float64]
 
 @kernel
 def look_from(places: i16[:], x: i32, y: i32) -> None:
-    """Set where the area of interest begins: all points count from there."""
+    """Set where the area of interest begins, from where all points count."""
     places[CORNER_X] = x
     places[CORNER_Y] = y
 
 
 @kernel
 def rectified(places: i16[:], x: i32, y: i32, axis: i32) -> i32:
-    """Return column (ACROSS) or row (DOWN) in the rectified picture of a point of the camera's; all in 1/16 px, rounded.
+    """Return column (ACROSS) or row (DOWN) of a camera's point in the rectified picture; all in 1/16 px, rounded.
 
-    A point beyond the outermost nodes continues the cell that it is nearest to.
+    A point beyond the outermost nodes continues the nearest cell.
     """
     x = x + SUBPIXELS * places[CORNER_X]
     y = y + SUBPIXELS * places[CORNER_Y]
@@ -68,7 +68,7 @@ def rectified(places: i16[:], x: i32, y: i32, axis: i32) -> i32:
 
 
 def places_buffers(sources: Mapping[str, SourcePixels]) -> Buffers:
-    """Return the tables of both cores, made of those of a recording."""
+    """Return the tables of both cores, made from those of a recording."""
     return {core: (_buffer(each),) for core, each in sources.items()}
 
 
@@ -90,13 +90,13 @@ def node_places(sources: SourcePixels) -> Points:
     factors = np.linalg.lstsq(terms.T @ terms, terms.T @ np.stack([to_x, to_y], axis=-1), rcond=None)[0]
     near = np.zeros((rows, columns), bool)
     for dy in (0, 1):
-        for dx in (0, 1):  # all four corners of the cell that a source lies in
+        for dx in (0, 1):  # all four corners of the cell that contains a source
             near[points[:, 1] // NODE_PX + dy, points[:, 0] // NODE_PX + dx] = True
     return _continued(_terms(nodes, (width, height)) @ factors, near)
 
 
 def _terms(points: NDArray[np.int64], size: tuple[int, int]) -> Points:
-    """Return the terms of a polynomial of two variables at some points (..., 2), one of their degrees DEGREE together."""
+    """Return the terms of a polynomial of two variables, of total degree DEGREE, at some points (..., 2)."""
     x, y = np.moveaxis(2 * points / np.maximum(np.array(size) - 1, 1) - 1, -1, 0)
     degrees = np.add.outer(np.arange(DEGREE + 1), np.arange(DEGREE + 1)).ravel()
     terms: Points = chebvander2d(x, y, (DEGREE, DEGREE))[..., degrees <= DEGREE]
@@ -104,7 +104,7 @@ def _terms(points: NDArray[np.int64], size: tuple[int, int]) -> Points:
 
 
 def _continued(places: Points, known: NDArray[np.bool_]) -> Points:
-    """Return the places with those that are not known in line with two known ones beside them, ring after ring."""
+    """Return the places; unknown ones continue two known ones beside them linearly, ring after ring."""
     places, known = places.copy(), known.copy()
     while not known.all():
         sums, counts = np.zeros_like(places), np.zeros(known.shape, int)
@@ -124,7 +124,7 @@ def _continued(places: Points, known: NDArray[np.bool_]) -> Points:
 
 
 def _shifted(grid: NDArray[np.generic], axis: int, by: int) -> NDArray[np.generic]:
-    """Return for each node what the node `by` before it has; beyond the border zeros."""
+    """Return for each node the value of the node `by` before it; beyond the border zeros."""
     moved = np.zeros_like(grid)
     span = [slice(None)] * grid.ndim
     source = span.copy()

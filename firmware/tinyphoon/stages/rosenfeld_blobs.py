@@ -1,4 +1,4 @@
-"""Blob detection as T §2.3.3 describes the algorithm of Rosenfeld: pixel by pixel, with a picture of labels.
+"""Blob detection by Rosenfeld's algorithm as in T §2.3.3: pixel by pixel, with a picture of labels.
 
 [said] The target picture is blank at first; a pixel takes the label of a neighbour, or a new one; where two labels meet, all pixels of the
 one in this line and the line before take the other, from the pixel above to the one on the left (T Figure 2.7.b), and so do its entries in
@@ -34,7 +34,7 @@ SEGMENTS = 256  # [assumed]: 8 KB of records; number 0 is none
 
 
 def rosenfeld_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
-    """Return the picture of labels in the memory of `images`, a ring for it, the table, and the number of each label's segment."""
+    """Return the buffers: the picture of labels in the memory of `images`, its ring, the table, each label's segment."""
     return (
         Buffer("label_image", u16, size.width_px, images, rows=size.height_px),
         Buffer("label_ring", u16, size.width_px, "L1_data_a", rows=3),
@@ -53,9 +53,9 @@ def rename_labels(labels: u16[:], first: i32, end: i32, old: i32, new: i32) -> N
 
 @kernel
 def met(label: i32, neighbour: i32, above: u16[:], here: u16[:], x: i32, table: u16[:], entries: i32) -> i32:
-    """Return the label of pixel `x`, so far `label` or 0, beside one of the label `neighbour` or none.
+    """Return the label of pixel `x`, so far `label` or 0, beside a pixel of the label `neighbour` or none.
 
-    `entries` of `table` are in use. No pixel to come has a neighbour further back than the one above this one.
+    `entries` of `table` are in use. No later pixel has a neighbour before the one above this one.
     """
     if neighbour == 0:
         return label
@@ -73,10 +73,10 @@ def met(label: i32, neighbour: i32, above: u16[:], here: u16[:], x: i32, table: 
 
 @kernel
 def label_row(words: u32[:], above: u16[:], here: u16[:], table: u16[:], colours: u32, used: i32) -> i32:
-    """Label the pixels of a row that have one of `colours`, and return how many labels are needed; `used` were before it.
+    """Label the pixels of a row with one of `colours`, and return how many labels are taken; `used` were before it.
 
-    The opening leaves no colour in the first and the last column; above the first row is that row itself. Labels from the
-    length of `table` on are not given.
+    The opening leaves no colour in the first and the last column; above the first row is that row itself. Labels beyond
+    the length of `table` are not given.
     """
     for x in range(1, len(words) - 1):
         if words[x] & colours != 0:
@@ -98,9 +98,9 @@ def label_row(words: u32[:], above: u16[:], here: u16[:], table: u16[:], colours
 def count_pixel(
     label: i32, numbers: u16[:], blob_data: u32[:], colours: u32, x: i32, y: i32, used: i32
 ) -> i32:
-    """Add a pixel with a label to the record of its segment, and return how many segments there are; `used` were before it.
+    """Add a labelled pixel to its segment's record, and return how many segments there are; `used` were before it.
 
-    Segments are numbered as they are met, from 1 on; those that find no record are counted only. A record's position is
+    Segments are numbered as they are met, from 1 on; those without a record are only counted. A record's position is
     that of its first pixel so far.
     """
     if numbers[label] == 0:
@@ -118,9 +118,9 @@ def count_pixel(
 def rename_and_count_row(
     labels: u16[:], table: u16[:], numbers: u16[:], blob_data: u32[:], colours: u32, y: i32, used: i32
 ) -> i32:
-    """Give the pixels of row `y` the labels that theirs have become, and add them to the records of their segments.
+    """Give the pixels of row `y` their final labels, and add them to the records of their segments.
 
-    `used` segments were met before the row; returns how many are now.
+    `used` segments were met before the row; return how many are now.
     """
     for x in range(len(labels)):
         if labels[x] != 0:
@@ -141,7 +141,7 @@ def swap_segments(blob_data: u32[:], one: i32, other: i32) -> None:
 
 @kernel
 def keep_segments(blob_data: u32[:], segments: i32, min_pixels: u32, max_pixels: u32) -> i32:
-    """Move those of segments 1 to `segments` that have the right size to the places from 0 on, and return how many there are."""
+    """Move segments 1 to `segments` of the right size to the places from 0 on, and return how many there are."""
     kept: i32 = 0
     for segment in range(1, segments + 1):
         if min_pixels <= blob_data[segment * BLOB_WORDS + PIXELS] <= max_pixels:
@@ -152,7 +152,7 @@ def keep_segments(blob_data: u32[:], segments: i32, min_pixels: u32, max_pixels:
 
 @kernel
 def sort_segments(blob_data: u32[:], count: i32) -> None:
-    """Bring the first `count` segments into the order of `select_blobs`: by the first pixel from the top, then from the left."""
+    """Sort the first `count` segments as `select_blobs` does: by the first pixel from the top, then from the left."""
     for place in range(count):
         first = place
         for segment in range(place + 1, count):
@@ -169,7 +169,7 @@ def close_blobs(blob_data: u32[:], blobs: i32) -> None:
 
 
 def label_picture(core: Core, frame: Frame, colours: int) -> Generator[Any, Any, int]:
-    """Label the pixels of these colours, with a look-up table of what they are to become; returns how many labels were wanted."""
+    """Label the pixels of these colours, with a look-up table of final labels; return how many labels were wanted."""
     words, labels, table = core.rows("opened_image"), core.rows("label_image"), core.array("label_table")
     for blank in (table, core.array("segment_numbers"), *labels):
         yield core.run(clear_labels, blank)
@@ -183,7 +183,7 @@ def label_picture(core: Core, frame: Frame, colours: int) -> Generator[Any, Any,
 def segment_colours(
     core: Core, frame: Frame, colours: int, segments: int
 ) -> Generator[Any, Any, tuple[int, int]]:
-    """Add the segments of these colours to the `segments` records before; returns how many there are then, and how many labels too few."""
+    """Add the segments of these colours to the `segments` earlier records; return their number, and the missing labels."""
     labels = core.rows("label_image")
     table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
     used = yield from label_picture(core, frame, colours)
@@ -202,7 +202,7 @@ Segmentation = Callable[[Core, Frame, int, int], Generator[Any, Any, tuple[int, 
 def rosenfeld_blobs(
     core: Core, frame: Frame, thresholds: BlobThresholds, segment: Segmentation = segment_colours
 ) -> Generator[Any, Any, int]:
-    """Find the blobs of a picture in several passes over `opened_image`; leaves and publishes what `blob_detection` does.
+    """Find the blobs of a picture in several passes over `opened_image`; leave and publish the same as `blob_detection`.
 
     `labels_lost` are the labels and segments for which there was no room.
     """

@@ -1,4 +1,4 @@
-"""Edge detection with the hysteresis as T §5.2.1 describes it: a variation of Rosenfeld's segmentation over the suppressed picture.
+"""Edge detection with hysteresis as in T §5.2.1: a variation of Rosenfeld's segmentation over the suppressed picture.
 
 [said] The finished line of the non-maximum suppression goes back to SDRAM by DMA while the
 next ones are made; groups of connected edges without a strong one are removed afterwards;
@@ -36,7 +36,7 @@ from tinyphoon.stores.edges import EDGE_CAPACITY, edge_columns, edge_store
 def group_pixels_row(
     edges: u8[:], above: u16[:], here: u16[:], groups: u16[:], strongest: u8[:], given: i32
 ) -> i32:
-    """Label the edges of a row of the picture and join what meets there, as `group_edges_row` does with those of the store."""
+    """Label the edges of a row of the picture and join groups that meet, as `group_edges_row` does in the store."""
     last = len(groups) - 1
     here[0] = 0
     for x in range(1, len(edges) - 1):
@@ -60,7 +60,7 @@ def group_pixels_row(
 
 @dataclass(slots=True)
 class PictureEdges:
-    """What the scan finds: gradients go to `edge_image`, edges to the store. Takes the place of `Candidates`."""
+    """Receives the edges of a scan: gradients go to `edge_image`, edges to the store. Replaces `Candidates`."""
 
     core: Core
     picture: OutputRing
@@ -85,9 +85,9 @@ def rosenfeld_edges(
     area: Area = WHOLE_PICTURE,
     steps: RowSteps = STRONG_FIRST,
 ) -> Generator[Any, Any, int]:
-    """Detect the edges of a picture and reduce its colours; leaves and publishes what `edge_detection` does.
+    """Detect the edges of a picture and reduce its colours; leave and publish the same as `edge_detection`.
 
-    Where the store is full, the edges further down are lost.
+    When the store is full, the edges further down are lost.
     """
     edges = PictureEdges(core, core.output_ring("edge_ring", core.rows("edge_image")))
     yield from scan(core, frame, thresholds, area, edges, steps)
@@ -101,7 +101,7 @@ def rosenfeld_edges(
 
 
 def label_edges(groups: EdgeGroups, height: int) -> Generator[Any, Any, int]:
-    """Label the edges of the picture, a line at a time; leaves `label_image`, returns how many labels were asked for."""
+    """Label the edges of the picture, a line at a time; leave `label_image`, return how many labels were wanted."""
     core = groups.core
     picture = core.input_ring(core.rows("edge_image"), "edge_ring")
     labels = core.output_ring("label_ring", core.rows("label_image"))
@@ -121,7 +121,7 @@ def label_edges(groups: EdgeGroups, height: int) -> Generator[Any, Any, int]:
 
 
 def remove_weak(groups: EdgeGroups, height: int, strong_threshold: int) -> Generator[Any, Any, int]:
-    """Remove the groups without a strong edge from the store and from `edge_image`; returns how many edges are kept."""
+    """Remove the groups without a strong edge from the store and from `edge_image`; return how many edges are kept."""
     core = groups.core
     labels = core.input_ring(core.rows("label_image"), "label_ring")
     picture = core.output_ring("edge_ring", core.rows("edge_image"))

@@ -17,7 +17,7 @@ from tinyphoon.stages.open_closing import NoiseRemoval, repeat_border
 
 
 def sdram_opening(core: Core, frame: Frame, noise: NoiseRemoval) -> Generator[Any, Any, None]:
-    """Leave the colour image without its noise in `opened_image` in SDRAM, the same as `open_closing` does."""
+    """Leave the colour image without its noise in `opened_image` in SDRAM, the same as `open_closing`."""
     for image, closes in noise.passes:
         first, second = (dilate_columns, erode_columns) if closes else (erode_columns, dilate_columns)
         height = frame.height

@@ -1,4 +1,4 @@
-"""Rectification as T §5.2.5 describes it: each pixel is moved from where a look-up table says, from SDRAM to SDRAM.
+"""Rectification as in T §5.2.5: each pixel is moved from where a look-up table says, from SDRAM to SDRAM.
 
 [said] One table a picture, of its size, in place of Matlab's, to save the time of random accesses to SDRAM (T §5.2.5). [implied] So the
 core itself reads table and pixels there, each by one access; and since DMA brings the edge detection line by line what it reads (T §5.2.1),
@@ -25,13 +25,13 @@ BLACK_PAIR = 0x00800080
 
 
 def untouched(size: FrameSize) -> SourcePixels:
-    """Return the table of pictures that are rectified already: each pixel is where it was."""
+    """Return the table of pictures that are already rectified: each pixel stays."""
     rows, columns = np.indices((size.height_px, size.width_px), np.int32)
     return SourcePixels(rows, columns)
 
 
 def sdram_rectification_buffers(sources: Mapping[str, SourcePixels]) -> Buffers:
-    """Return what the tables of a recording take in the memory of each core."""
+    """Return the buffers for a recording's tables in the memory of each core."""
     return {core: _core_buffers(each) for core, each in sources.items()}
 
 
@@ -49,7 +49,7 @@ def _core_buffers(sources: SourcePixels) -> Sequence[Buffer]:
 
 @kernel
 def move_row(camera: u8[:], words: u32[:], places: i32[:], rectified: u32[:]) -> None:
-    """Take one UYVY row of `len(places)` pixels from a picture; a place counts its pixels. `words` are the pairs of `camera`."""
+    """Take one UYVY row of `len(places)` pixels from a picture; a place counts pixels. `words` are the pairs of `camera`."""
     for pair in range(len(rectified)):
         left = places[2 * pair]
         right = places[2 * pair + 1]
@@ -64,9 +64,9 @@ def move_row(camera: u8[:], words: u32[:], places: i32[:], rectified: u32[:]) ->
 
 
 def sdram_rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Generator[Any, Any, Frame]:
-    """Rectify an area of a picture; leaves `rectified_image` in SDRAM and returns it as a frame, as `rectification` does.
+    """Rectify an area of a picture; leave `rectified_image` in SDRAM and return it as a frame, like `rectification`.
 
-    Without tables the picture is taken as rectified: its area is returned.
+    Without tables the picture counts as rectified: its area is returned.
     """
     area = area_in(frame, area)
     if not core.has_buffer("places"):

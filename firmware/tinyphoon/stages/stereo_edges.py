@@ -1,9 +1,9 @@
-"""3-D edges: edges of the left picture that an edge of the right one corresponds to, for obstacles of any kind (T §5.2.8).
+"""3-D edges: edges of the left picture with a corresponding edge in the right one, for any obstacles (T §5.2.8).
 
-The corresponding edge lies in the same row, has nearly the same gradient direction and a disparity within limits; which one
-it is say `edge_correspondence.py` and, two rows later, `edge_following.py`; how far away it is, `edge_depths.py`. Edges whose
-gradient looks up or down belong to lines along the row, all of whose edges are alike: with `level_range` they are left out, as
-T §5.2.7 leaves out such lines.
+The corresponding edge lies in the same row, and has nearly the same gradient direction and a disparity within limits;
+`edge_correspondence.py` chooses it and, two rows later, `edge_following.py`; `edge_depths.py` computes its depth. Edges
+whose gradient looks up or down belong to lines along the row, whose edges are all alike: with `level_range` they are
+left out, as T §5.2.7 leaves out such lines.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
 class StereoEdgeThresholds:
     """What makes two edges correspond.
 
-    `correspondence`: how the edge is chosen. `level_range`: how near to straight up or down a gradient is left out, in
+    `correspondence`: how the edge is chosen. `level_range`: gradients this near to straight up or down are left out, in
     1/256 of a turn; 0 for none. `direction_range`: how far their gradient directions may differ, in 1/256 of a turn.
-    `nearest_mm`, `farthest_mm`: depths between which edges are wanted. Only for MUTUAL: `lack`, what a pair's score gets for
-    each of the rows around without a pair of its disparity, and `margin`, how much less its score must be than any
-    rival's. A score is made of grey levels of gradients and of twice the directions' 1/256. `follow_range`: how far the
-    directions may differ where the rows around have the disparity.
+    `nearest_mm`, `farthest_mm`: depths between which edges are wanted. Only for MUTUAL: `lack`, what a pair's score
+    gets for each of the rows around without a pair of its disparity, and `margin`, how much less its score must be than
+    any rival's. A score consists of grey levels of gradients and twice the directions' 1/256. `follow_range`: how far
+    the directions may differ if the rows around have the disparity.
     """
 
     correspondence: Correspondence
@@ -66,7 +66,7 @@ class StereoEdgeThresholds:
 
 
 def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
-    """Return the buffers of the stage on core A, in the memory of `images`: they are written only, which costs little."""
+    """Return the buffers of the stage on core A, in the memory of `images`: they are only written, which costs little."""
     return (Buffer("edges_3d", i16, EDGE3D_WORDS * EDGE3D_CAPACITY, images),)
 
 
@@ -74,7 +74,7 @@ def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
 class _Rows:
     """Rows of both edge stores, without level edges: one as a list, and those around it in windows.
 
-    They lie in L1 over the rings of the stages before, which have finished with them, as all that the search needs.
+    Like everything that the search needs, they lie in L1 over the rings of earlier stages, which no longer need them.
     """
 
     core: Core
@@ -106,10 +106,10 @@ class _Rows:
 
 
 _WINDOWS = "colour_ring", "eroded_ring"
-"""Where the windows of both pictures lie."""
+"""The memory of the windows of both pictures."""
 
 _SCORES = "opened_ring"
-"""Where matching a row has its scores, and settling one the edges of the rows below."""
+"""The memory of the scores in matching a row, and of the edges of the rows below in settling one."""
 
 
 def _disparity_rows(core: Core, element: Any, columns: int) -> tuple[Row, ...]:
@@ -119,7 +119,7 @@ def _disparity_rows(core: Core, element: Any, columns: int) -> tuple[Row, ...]:
 
 
 def _windows(rows: tuple[Row, ...]) -> tuple[tuple[Row, ...], ...]:
-    """Return for each row of a ring those around it and, in their middle, itself."""
+    """Return for each row of a ring those around it, with itself in their middle."""
     steps = range(-REACH, REACH + 1)
     return tuple(
         tuple(rows[(middle + step) % WINDOW_ROWS] for step in steps) for middle in range(WINDOW_ROWS)
@@ -130,10 +130,10 @@ def _windows(rows: tuple[Row, ...]) -> tuple[tuple[Row, ...], ...]:
 class _Search:
     """The search for the disparities of left edges, row by row from the bottom of the picture.
 
-    They are found in two steps: `match` asks the edges, and `settle`, `delay` rows later, the disparities around; the
-    thesis's way has the first one only, and one row of disparities: those around stay empty. `most`: the largest
-    disparity that is wanted, in pixels; `around`: the rows of disparities around each of WINDOW_ROWS and, in their middle, its own;
-    `is_mutual`: whether it is our way; `room` and `limits`: the last arguments of what looks for partners.
+    They are found in two steps: `match` compares edges, and `settle`, `delay` rows later, uses the disparities around;
+    the thesis's way has only the first one, and one row of disparities: those around stay empty. `most`: the largest
+    wanted disparity, in pixels; `around`: the rows of disparities around each of WINDOW_ROWS, with its own in their
+    middle; `is_mutual`: whether it is our way; `room` and `limits`: the last arguments of the matching kernel.
     """
 
     core: Core
@@ -202,7 +202,7 @@ class _Search:
         yield run(place_disparities, left, count, right, partners, self.around[slot][REACH])
 
     def settle(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row]]:
-        """Return the edges of the left picture in row `y`, how many, and their disparities."""
+        """Return the edges of the left picture in row `y`, their number, and their disparities."""
         run, rows, slot = self.core.run, self.rows, y % WINDOW_ROWS
         (data, index, counts), left, level_range = rows.left, rows.left_row, rows.level_range
         count = yield run(take_left_row, data, index, counts, y, left, level_range)
@@ -225,7 +225,7 @@ class _Search:
 def stereo_edges(
     core: Core, frame: Frame, thresholds: StereoEdgeThresholds, vote: LineVote
 ) -> Generator[Any, Any, int]:
-    """Find the 3-D edges of the edge store and the one that core B shares; they vote. Returns how many are in `edges_3d`.
+    """Find the 3-D edges of the edge store and core B's; they vote. Return how many are in `edges_3d`.
 
     Core B must have posted that its edges are there. Publishes `edges_3d`, that number, and `edges_3d_lost`, how many
     found no room.
@@ -238,7 +238,7 @@ def stereo_edges(
     yield from search.open()
     run, at, store, delay = core.run, core.at, search.rows.left, search.delay
     data, index, _ = store
-    means = search.partners  # which have been placed
+    means = search.partners  # these have been placed
     width, height = frame.width, frame.height
     found = 0
     for matched in range(height - 1, -1 - delay, -1):

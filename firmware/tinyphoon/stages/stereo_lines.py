@@ -1,8 +1,8 @@
-"""3-D lines: lines of the left picture that a line of the right one corresponds to, and their depth (T §5.2.7).
+"""3-D lines: lines of the left picture with a corresponding line in the right one, and their depth (T §5.2.7).
 
-The disparity at both ends of the left line is that to the other line's straight continuation, as lines may be cut into
-different segments (T Eq. 5.10 to 5.12; 5.12 as it is printed takes x and y of different ends). Which of them to believe
-says `line_votes.py`.
+The disparity at both ends of the left line is measured to the other line's straight continuation, as lines may be cut
+into different segments (T Eq. 5.10 to 5.12; 5.12 as printed takes x and y of different ends). `line_votes.py` decides
+which lines to believe.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ class StereoLineThresholds:
     edge_range: int = allowed(0, 256)
 
     def __post_init__(self) -> None:
-        if self.min_rise < 16:  # a slope of 16 over 2048 rows still goes into 32 bits
+        if self.min_rise < 16:  # a slope of 16 over 2048 rows still fits in 32 bits
             raise ValueError(f"min_rise must be 16 or more, not {self.min_rise}")
         check_depths(self.nearest_mm, self.farthest_mm)
 
 
 def check_depths(nearest_mm: int, farthest_mm: int) -> None:
-    """Raise ValueError unless these can be the least and the greatest depth that is wanted."""
+    """Raise ValueError unless these can be the least and the greatest wanted depth."""
     if not 1 <= nearest_mm <= farthest_mm:
         raise ValueError(f"depths must be 1 mm or more and rise, not {nearest_mm} to {farthest_mm}")
 
@@ -80,9 +80,9 @@ def store_line3d(
     lines_3d: i16[:],
     number: i32,
 ) -> i32:
-    """Store 3-D line `number` of a line and the corresponding one; returns how many there are then.
+    """Store 3-D line `number` of a line and the corresponding one; return how many there are then.
 
-    It is not stored if one of its ends is nowhere: the disparity must be above 0 (T Eq. 5.11, 5.12).
+    It is not stored if one of its ends has no depth: the disparity must be above 0 (T Eq. 5.11, 5.12).
     """
     a = line * LINE_WORDS
     base = number * LINE3D_WORDS
@@ -143,7 +143,7 @@ def mutual_lines(
     height: i32,
     lines_3d: i16[:],
 ) -> i32:
-    """Make 3-D lines of the left and right lines that are the best of each other, and return how many there are."""
+    """Make 3-D lines of left and right lines that are each other's best, and return how many there are."""
     number = 0
     for line in range(count):
         other = NONE
@@ -167,7 +167,7 @@ def mutual_lines(
 
 @dataclass(frozen=True, slots=True)
 class _Workspace:
-    """What the stage and the vote need in L1; it lies over the segments, which the line detection has finished with."""
+    """The L1 memory of the stage and the vote; it shares the segments, which the line detection no longer needs."""
 
     left_slopes: Row
     right_slopes: Row
@@ -179,7 +179,7 @@ class _Workspace:
     def of(cls, core: Core) -> _Workspace:
         slopes = core.overlay("segments", i32, SEGMENT_CAPACITY)
         words = LINE_WORDS * SEGMENT_CAPACITY
-        # the second row of the lines begins behind the third row of slopes
+        # the second row of the lines begins after the third row of slopes
         return cls(
             *slopes[:3], core.overlay("segments", u32, words // 2)[1], core.overlay("segments", i16, words)[1]
         )
@@ -188,7 +188,7 @@ class _Workspace:
 def stereo_lines(
     core: Core, frame: Frame, left_count: int, thresholds: StereoLineThresholds
 ) -> Generator[Any, Any, LineVote]:
-    """Find the 3-D lines of `left_count` lines in `lines` and those that core B shares, in `lines_3d`. Returns the vote on them.
+    """Find the 3-D lines of `left_count` lines and those of core B, in `lines_3d`. Return the vote on them.
 
     Core B must have posted that its lines are there. The vote needs the memory of the segments until it is closed.
     """

@@ -1,4 +1,4 @@
-"""Gradients in the order of T §2.1.4: what is too weak for an edge is removed before anything has a direction.
+"""Gradients in the order of T §2.1.4: those too weak for an edge are removed before directions are computed.
 
 [said] Step 2 makes a gradient vector for every pixel, step 3 removes those that are shorter than the threshold, and step 4 compares
 what is left with its neighbours in the direction of the edge (T §2.1.4); the first four steps are done in one pass (T §5.2.1).
@@ -23,7 +23,7 @@ from tinyphoon.stages.edge_detection import RowSteps, Slopes, magnitude_row, sob
 def direct_strong_row(
     gx: i16[:], gy: i16[:], magnitude: u8[:], atan: u8[:], direction: u8[:], edge_threshold: i32
 ) -> None:
-    """Find the gradient directions of the pixels of a row that reach the threshold; those of others stay what they were."""
+    """Find the gradient directions of a row's pixels that reach the threshold; other directions stay as they were."""
     for x in range(len(direction)):
         if magnitude[x] >= edge_threshold:
             direction[x] = angle8(gx[x], gy[x], atan)
@@ -58,7 +58,7 @@ def suppress_strong_row(
 
 
 class StrongSlopes(Slopes):
-    """What makes a row of gradients without the directions of weak ones."""
+    """Makes a row of gradients without the directions of weak ones."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Which edge of the other picture shows the same as an edge of this one, the plain way of the thesis: the nearest of like direction."""
+"""Which edge of the other picture corresponds to an edge of this one, the thesis's way: the nearest of similar direction."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def match_nearest(
     for left in range(left_count):
         edge = left_row[left]
         partners[left] = 0
-        # the others go to the right: their disparities fall
+        # all others are further right, with smaller disparities
         for right in range(right_count):
             other = right_row[right]
             disparity = i32(edge >> 16) - i32(other >> 16)
