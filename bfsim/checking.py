@@ -118,8 +118,8 @@ def _require_alike(
             differences.append(f"{key} {name} {_difference(key, then, now)}")
     if then.differs_in("code", now):
         differences.append(
-            f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)} (it is that of the "
-            "compiler on the PATH, or else kept from one; limits of --profile gcc-O2, an estimate, need none)"
+            f"code was {shown(then.code)} when the limits were measured, and is now {shown(now.code)} (it comes from the "
+            "compiler on the PATH or, without one, from the cache; limits of --profile gcc-O2, an estimate, need neither)"
         )
     if then.differs_in("file_compiler", now):
         differences.append(
@@ -128,8 +128,8 @@ def _require_alike(
         )
     if differences:
         raise ConfigError(
-            f"{path}: run {shown(case.name)}: {'; '.join(differences)}: limits of one say nothing about the other; "
-            f"`{update_command(path, case.name)}` measures it anew"
+            f"{path}: run {shown(case.name)}: {'; '.join(differences)}: so its limits do not apply; "
+            f"`{update_command(path, case.name)}` measures them again"
         )
 
 
@@ -137,7 +137,7 @@ def _difference(key: str, then: MeasuredOn, now: MeasuredOn) -> str:
     """Say what has changed in a board, compiler or script."""
     old, new = (list(getattr(each, f"{key}_numbers", [])) for each in (then, now))
     if old == new:
-        return "is another than when the limits were measured"
+        return "has changed since the limits were measured"
     had, has = (
         [each for each in one if each not in other]
         or [f"that of {one[0].removeprefix('like ')}" if one else "none of its own"]

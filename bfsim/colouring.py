@@ -50,7 +50,7 @@ def coloured(
     loaded = load_firmware(firmware)
     if loaded.firmware.colours is None:
         raise ConfigError(
-            f"{loaded.name} must have `colours` to say what it calls them, but has none; give its Firmware a "
+            f"{loaded.name} must say what it calls the colours of a picture, but does not; give its Firmware a "
             "colours=..., a function from a picture to a bfsim.api.PictureColours"
         )
     ask = partial(

@@ -82,9 +82,7 @@ class Run(RunRecord):
             from bfsim.run_page import write_page
 
             if self.again is None:
-                raise ConfigError(
-                    "a run must come from simulate() for a page of it, which makes it once more"
-                )
+                raise ConfigError("a run must come from simulate() for an HTML page, which repeats the run")
             write_page(self, self.again, Path(which), goal)
             return str(which)
         console = _console(record=False)

@@ -75,8 +75,8 @@ def write_page(run: RunRecord, again: partial[Any], path: Path, target: Target |
         done = again(before=before, on_seen=on_seen, on_spans=on_spans)
         if cycle_digest(done.frames) != cycle_digest(run.frames):
             raise ConfigError(
-                "firmware, recording and LDF must be as they were for the page of a run, which makes it once more: "
-                f"its cycles are {cycle_digest(done.frames)[:12]} now, not {cycle_digest(run.frames)[:12]}"
+                "firmware, recording and LDF must be as they were in the run, for its page repeats it: the digest of its cycles "
+                f"is now {cycle_digest(done.frames)[:12]}, not {cycle_digest(run.frames)[:12]}"
             )
         for each in watchers.done:
             each(done)

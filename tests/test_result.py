@@ -110,7 +110,7 @@ def test_a_page_that_cannot_be_is_refused(tmp_path: Path) -> None:
     run = simulate(frames=1)
     with pytest.raises(ConfigError, match="must exist to write a file there"):
         run.report(tmp_path / "no" / "run.html")
-    with pytest.raises(ConfigError, match="must be as they were for the page of a run"):
+    with pytest.raises(ConfigError, match="must be as they were in the run, for its page"):
         replace(run, frames=edge_run(100).frames).report(tmp_path / "run.html")
     assert not list(tmp_path.iterdir())
 

@@ -128,9 +128,7 @@ def test_pictures_are_those_of_the_recorded_run(tmp_path: Path, monkeypatch: pyt
     assert differing(plain, simulate(recording, work=path, **what)) <= HOSTS_OWN
     frames[1][0][-1, -1] ^= 1
     store()
-    with pytest.raises(
-        WorkError, match=r"must be as it was when its run was recorded, and frame 1 is another"
-    ):
+    with pytest.raises(WorkError, match=r"must be as it was when its run was recorded, but frame 1 differs"):
         simulate(recording, work=path, **what)
 
 

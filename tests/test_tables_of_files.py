@@ -58,5 +58,7 @@ def test_tables_that_l1_has_no_room_for_are_warned_of(
     told = [each.text for each in left.assumptions if each.kind == WarningKind.TABLES]
     assert len(told) == (cores is not None)
     for each in told:
-        assert each.startswith("the variables and tables of large.o (3,145,728 bytes) are taken to be in L1")
+        assert each.startswith(
+            "the variables and tables of large.o (3,145,728 bytes) are assumed to be in L1"
+        )
         assert f"of core {cores}: " in each

@@ -72,12 +72,12 @@ def about(placed: Placed) -> Iterator[str]:
         f"{identity.board} ({mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)}), {identity.compiler}; measured on "
         f"{placed.frames} frame{'' if placed.frames == 1 else 's'} of {identity.recording}. Its memories and reserves are those of {placed.start}."
     )
-    first = "before" if placed.linked else "with what had no room moved elsewhere"
+    first = "before" if placed.linked else "with what did not fit moved elsewhere"
     yield (
         f"A frame takes {placed.after_ms:.2f} ms in simulation: {placed.predicted_ms:.2f} were predicted, and it took "
         f"{placed.before_ms:.2f} {first}."
     )
     yield (
-        "Each buffer has a line: its size, the cores' accesses in a frame, whether DMA moves it, and what the cores wait for it in "
+        "Each buffer has a line: its size, the cores' accesses in a frame, whether DMA moves it, and how long the cores wait for it in "
         "a frame, here and in the next slower memory. bfsim takes each buffer and each kernel as an object file of its own, NAME.doj."
     )

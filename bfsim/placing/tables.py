@@ -38,7 +38,7 @@ def placed_json(placed: Placed) -> str:
 def _verdict(placed: Placed) -> Iterator[str]:
     before, after, start = placed.before_ms, placed.after_ms, placed.start
     if not placed.linked:
-        yield f"The firmware has no room with {start}: before is with what had none moved elsewhere."
+        yield f"The firmware does not fit with {start}: before is with what did not fit moved elsewhere."
     if placed.best is None:
         than = f" than {start}" if placed.linked else ""
         yield f"{before:.2f} ms a frame ({1000 / before:.2f} Hz): no placement that was found is faster{than}."
@@ -79,7 +79,9 @@ def _moves(placed: Placed, top: int) -> Iterator[Table]:
     )
     if not moved:
         return
-    title = f"What moved, {len(moved)} of {len(placed.parts)}, and what the cores wait less for it in a frame"
+    title = (
+        f"What moved, {len(moved)} of {len(placed.parts)}, and how much less the cores wait for it in a frame"
+    )
     table = new_table(title, "Buffer, or code", "core", "size", "from", "to", "saves ms")
     for column in (table.columns[1], table.columns[3], table.columns[4]):
         column.justify = "left"

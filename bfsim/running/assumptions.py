@@ -28,15 +28,15 @@ def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[Ru
         unknown = " and ".join(name for name, value in stance.items() if value is None)
         if unknown:
             text = (
-                f"the recording does not say the {unknown} of its cameras: only that is taken from an assumed geometry, "
-                f"{program.assumed_geometry}, and what is measured by it may be wrong; `bfsim record calibrate --height "
-                "--tilt` or `bfsim record import --geometry` puts yours into a recording"
+                f"the recording does not say the {unknown} of its cameras: assumed is that of {program.assumed_geometry}, so what "
+                "is measured by it may be wrong; `bfsim record calibrate --height --tilt` or `bfsim record import --geometry` "
+                "puts yours into a recording"
             )
             yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
     if not calibration.geometries:
         text = (
-            f"the recording does not say where its cameras are: {program.assumed_geometry} was assumed, and what is "
-            "measured by it may be wrong; `bfsim record calibrate` or `bfsim record import --geometry` puts yours into a "
+            f"the recording does not say where its cameras are: {program.assumed_geometry} was assumed, so distances "
+            "may be wrong; `bfsim record calibrate` or `bfsim record import --geometry` puts yours into a "
             "recording"
         )
         yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
@@ -72,8 +72,8 @@ def assumed_tables(
             alike.setdefault((listed, left), []).append(core)
     for (listed, left), cores in alike.items():
         text = (
-            f"the variables and tables of {listed} are taken to be in L1, where the LDF leaves {left:,} bytes of data memory "
-            f"of core {' and '.join(cores)}: what they wait for elsewhere is not counted; hand large arrays over as buffers"
+            f"the variables and tables of {listed} are assumed to be in L1, where the LDF leaves {left:,} bytes of data memory "
+            f"of core {' and '.join(cores)}: waits for them in other memories are not counted; pass large arrays as buffers"
         )
         yield RunWarning(kind=WarningKind.TABLES, text=text)
 

@@ -59,7 +59,7 @@ class DigestedFrames:
             self.digests.append(digest)
             if expected and expected.digests[frame.index] != digest:
                 raise WorkError(
-                    f"{self.name} must be as it was when its run was recorded, and frame {frame.index} is another: record it again"
+                    f"{self.name} must be as it was when its run was recorded, but frame {frame.index} differs: record it again"
                 )
             self._times_ns.append((frame.left_ns, frame.right_ns))
             yield frame

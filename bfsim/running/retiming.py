@@ -68,8 +68,8 @@ def retimed(
             raise ConfigError("--record-work must stand without --work: what is played is recorded already")
         if record_work and has_timeline:
             raise ConfigError(
-                "--record-work must go without --trace and --html: their timeline has each call apart, and a recording those in L1 "
-                "as one; make it in a run of its own"
+                "--record-work must go without --trace and --html: these need every call, and a recording merges calls in L1; "
+                "record in a run of its own"
             )
         if record_work:
             stack.enter_context(recording_work(record_work, machine, identity, frames, loaded, check))
@@ -198,8 +198,8 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
     is_bound = recorded.is_bound or machine.is_bound_to_placement
     if is_bound and recorded.identity.get("ldf_digest") != identity.ldf_digest:
         raise WorkError(
-            f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or a stack outside of L1: "
-            "what they fetch depends on where everything lies; record it with this LDF"
+            f"{path} must be played with the LDF that it was recorded with, because one of the two has caches or a stack outside L1, "
+            "whose traffic depends on where everything lies; record it with this LDF"
         )
     there, here = (
         {tuple(pair) for pair in each} for each in (recorded.routines_outside, machine.routines_outside)
@@ -207,8 +207,8 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
     if there != here:
         core, routine = min(there ^ here)
         raise WorkError(
-            f"{path} must be played where the same code lies outside of L1, for its fetches are recorded, and {routine} of core {core} "
-            f"{'was' if (core, routine) in there else 'is'} there and is not in both; record it with this LDF"
+            f"{path} must be played with the same code outside L1, whose fetches are recorded, but {routine} of core {core} lies there "
+            f"only {'in the recorded run' if (core, routine) in there else 'now'}; record it with this LDF"
         )
     if recorded.obstacles:
         raise WorkError(_not_playable(path, recorded.obstacles))

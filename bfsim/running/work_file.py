@@ -120,7 +120,7 @@ class WorkReader:
         run, end = self._json("run.json"), self._json("end.json")
         if run.get("format") != FORMAT or run.get("costs") != keys.compiler():
             raise WorkError(
-                f"{path} must be recorded by this bfsim: another one may cost kernels otherwise; record it again"
+                f"{path} must be recorded by this version of bfsim, as others may time kernels differently; record it again"
             )
         try:
             what = _tuples({**run, **end})
@@ -164,7 +164,7 @@ class WorkReader:
 
     def _broken(self) -> WorkError:
         return WorkError(
-            f"{self.path} must be a whole file of `bfsim run --record-work`, and is none, or a part of one; record it again"
+            f"{self.path} must be a complete file of `bfsim run --record-work`, but is not; record it again"
         )
 
 
@@ -182,7 +182,7 @@ def opened(path: Path) -> Iterator[WorkReader]:
             zipped = zipfile.ZipFile(file)
         except (*_DAMAGE, OSError) as error:
             raise WorkError(
-                f"{path} must be a whole file of `bfsim run --record-work`, and is none, or a part of one; record it again"
+                f"{path} must be a complete file of `bfsim run --record-work`, but is not; record it again"
             ) from error
         with zipped:
             yield WorkReader(path, file, zipped)

@@ -79,10 +79,12 @@ def _require_apart(points: Sequence[Point]) -> None:
     for point in points:
         setting = {key: value for key, value in point.options.items() if key != RECORDING}
         if settings.setdefault(point.setting, setting) != setting:
-            raise ConfigError(f"what differs must have names that differ, and two are {shown(point.name)}")
+            raise ConfigError(
+                f"different points must have different names, but two are called {shown(point.name)}"
+            )
         run = point.setting, point.options.get(RECORDING)
         if run in known:
-            raise ConfigError(f"a point must be there once, not twice: {shown(point.name)}")
+            raise ConfigError(f"each point must be listed once, not twice: {shown(point.name)}")
         known.add(run)
 
 

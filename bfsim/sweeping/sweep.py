@@ -33,8 +33,8 @@ NOT_KEPT = (
 )
 
 GONE = (
-    "the scheduler must be within reach until all points are done, but is no more; what is done is kept, and the same command "
-    "goes on with the rest"
+    "the scheduler must be within reach until all points are done, but no longer is; finished points are kept, and the same "
+    "command runs the rest"
 )
 
 Task = TypeVar("Task")

@@ -120,7 +120,7 @@ def test_an_ldf_lies_beside_the_file_and_is_none_of_the_current_folder(idle_repo
         ),
         (
             2,
-            "recording drive.mcap must have 3 frames to run, as when the limits were measured, not 2: limits of",
+            "recording drive.mcap must have 3 frames to run, as when the limits were measured, not 2: so its limits",
         ),
     ],
 )
@@ -181,5 +181,5 @@ def test_code_of_another_gcc_is_refused(repository: Path, monkeypatch: pytest.Mo
     Path("limits.toml").write_text(text.replace(was, "GCC 3.0 -O2"))
     monkeypatch.setattr("bfsim.machine.board.Board.run", None)
     told = refused(*what)
-    assert f"code was 'GCC 3.0 -O2' when the limits were measured, and is {was!r}" in told
-    assert "limits of --profile gcc-O2, an estimate, need none" in told
+    assert f"code was 'GCC 3.0 -O2' when the limits were measured, and is now {was!r}" in told
+    assert "limits of --profile gcc-O2, an estimate, need neither" in told

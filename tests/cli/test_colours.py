@@ -144,7 +144,7 @@ def test_a_frame_of_a_recording_is_a_picture(tmp_path: Path, thirds: Path) -> No
 def test_another_firmware_has_other_colours(thirds: Path, other: Path, tmp_path: Path) -> None:
     """Any number of them, with hues of its own; nothing of the built-in one is asked."""
     assert seen(thirds, "--firmware", f"{other}:halving") == {"left": 0.5, "right": 0.5}
-    assert "plain must have `colours`" in refused(thirds, "--firmware", f"{other}:plain")
+    assert "plain must say what it calls the colours" in refused(thirds, "--firmware", f"{other}:plain")
     script = tmp_path / "many.json"
     script.write_text('{"number": 2}')
     called = (thirds, "--firmware", f"{other}:halving", "--script", script)

@@ -178,7 +178,7 @@ def test_firmware_that_has_no_room_is_moved_in(home: Path) -> None:
     assert bfsim("run", "drive.mcap", "--firmware", name).exit_code == 2
     done = bfsim("place", "drive.mcap", "--firmware", name, "-o", "placed.ldf")
     assert done.exit_code == 0, done.output
-    assert "has no room with thesis.ldf" in done.stdout
+    assert "does not fit with thesis.ldf" in done.stdout
     moved = found("--firmware", name)
     after = {(each["name"], each["core"]): each["after"] for each in moved["parts"]}
     assert not moved["linked"]

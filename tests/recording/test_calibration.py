@@ -193,7 +193,7 @@ def test_a_grossly_wrong_pair_does_not_end_a_fisheye_calibration() -> None:
     assert {each.names[0] for each in errors if each.is_outlier} == {"left_3", "left_5", "left_11"}
     assert len(used) == 12
     assert fit.errors_px.max() < 0.02
-    with pytest.raises(RecordingError, match="nothing fits these"):
+    with pytest.raises(RecordingError, match="but these fit none"):
         _fit_without_outliers(model, BOARD, [views[3], *views[:4]], (640, 480))
 
 

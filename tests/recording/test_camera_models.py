@@ -91,7 +91,7 @@ def test_tables_and_points_are_rectified_alike(model: CameraModel) -> None:
 def test_corners_that_no_camera_shows_are_refused() -> None:
     """Corners in one point: OpenCV's own error is told in words."""
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
-    with pytest.raises(RecordingError, match="nothing fits these; take them at other angles"):
+    with pytest.raises(RecordingError, match="but these fit none; take them at other angles"):
         FisheyeModel().fit(BOARD, [[np.full((54, 2), 100.0)] * 5], SIZE)
 
 

@@ -52,7 +52,7 @@ def test_an_import_tells_of_it(tmp_path: Path) -> None:
         import_recording([tmp_path / "a.grey"], tmp_path / f"{size[0]}.mcap", mono=True, size=size).notes
         for size in ((320, 240), (640, 480))
     )
-    assert [each.split(": ")[2][:60] for each in wrong] == [
-        "rows seem to be 640 pixels long and not 320, for then those "
+    assert [each.split(": ")[2][:59] for each in wrong] == [
+        "rows seem to be 640 pixels long, not 320, as rows are then "
     ]
     assert not right

@@ -142,10 +142,10 @@ def test_a_path_into_a_script_that_is_a_file(tmp_path: Path) -> None:
         ("base.script.x = 3\naxes.script = {'x.y' = [1]}", "script.x.y must lead through tables and lists, and 'y' is below 3"),
         ("axes.script = {'send.1.x' = [1]}", "script.send.1.x: '1' must be the number of one of the list's 0 entries"),
         ("base.script.send = []\naxes.script = {'send.²' = [1]}", "'²' must be the number of one of"),
-        ("axes.ldf = ['l2', 'l2']", "a point must be there once, not twice: 'ldf=l2'"),
-        ("axes.ldf = ['l2', 'thesis']\npoint = [{ldf = 'l2'}]", "a point must be there once, not twice: 'ldf=l2'"),
+        ("axes.ldf = ['l2', 'l2']", "each point must be listed once, not twice: 'ldf=l2'"),
+        ("axes.ldf = ['l2', 'thesis']\npoint = [{ldf = 'l2'}]", "each point must be listed once, not twice: 'ldf=l2'"),
         ("point = [{name = ' '}]", "point.1.name must be text, not ' '"),
-        ("point = [{name = 'x'}, {name = 'x', ldf = 'l2'}]", "what differs must have names that differ, and two are 'x'"),
+        ("point = [{name = 'x'}, {name = 'x', ldf = 'l2'}]", "different points must have different names, but two are called 'x'"),
         (f"axes = {{frames = {[1] * 1000}, ldf = {['a'] * 1000}}}", "at most 100,000 points, not 1,000,000"),
     ],
 )  # fmt: skip

@@ -236,7 +236,7 @@ class Gone(Here):
 def test_a_scheduler_that_goes_away_ends_the_sweep(file: Path) -> None:
     """With what to do, and with nothing lost."""
     sweep = planned(file)
-    with pytest.raises(ConfigError, match="the same command goes on with the rest"):
+    with pytest.raises(ConfigError, match="the same command runs the rest"):
         sweep.run(Gone(), lambda _point, _outcome: None)
     assert swept(file)[1] == NAMES
 

@@ -64,7 +64,7 @@ class CameraModel(ABC):
                 cameras, rotation, shift, poses = self.fit_pair(board, sides, size, alone)
         except self.cv2.error as error:
             raise RecordingError(
-                "cameras must be such as the chessboards tell, but nothing fits these; take them at other angles, and "
+                "chessboard pictures must fit some pair of cameras, but these fit none; take them at other angles, and "
                 f"all over the picture ({str(error).splitlines()[0]})"
             ) from None
         turns = (np.eye(3), rotation)

@@ -40,8 +40,8 @@ def check_call(
         )
     if output.suffix.lower() != ".mcap" and guess_format(os.fspath(output)):
         raise RecordingError(
-            f"{output}: recording must have a name like run.mcap, not one of pictures; it comes first, and what it is made of "
-            "behind it: `bfsim record import run.mcap left/ right/`"
+            f"{output}: recording must have a name like run.mcap, not one of pictures; it comes first, and its sources "
+            "follow: `bfsim record import run.mcap left/ right/`"
         )
     if output.exists() and any(_is_of(each, output) for each in names):
         raise RecordingError(

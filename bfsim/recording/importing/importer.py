@@ -192,7 +192,8 @@ def _rig(
     """Return what is `given`, completed from the camera_info of a bag for pictures of that size."""
     if side_by_side:
         return replace(
-            given, notes=("A camera_info for both cameras' picture says nothing of each: it is not read.",)
+            given,
+            notes=("A camera_info of side-by-side pictures does not describe each camera: it is not read.",),
         )
     sizes = tuple(each.size for each in bag.sources)
     fits = tuple(fit_matrix(each, resize, crop) for each in sizes)

@@ -28,8 +28,8 @@ def mosaic_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
         picture = next(source.pictures(), None)
         if isinstance(picture, YuvPlanes) and _is_grey(picture) and is_mosaic(picture.y):
             yield (
-                f"Warning: {source.name}: grey pixels seem to be behind a pattern of colours, for every second one is alike; "
-                "`--format bayer_rggb8`, or another of a camera's patterns, makes colours of them"
+                f"Warning: {source.name}: grey pixels seem to be raw ones behind a pattern of colour filters, as every second "
+                "one is alike; `--format bayer_rggb8`, or another pattern of a camera, makes colours of them"
             )
 
 

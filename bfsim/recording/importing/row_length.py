@@ -39,8 +39,8 @@ def row_length_warnings(sources: Iterable[PictureSource]) -> Iterator[str]:
         picture = next(source.pictures(), None)
         if isinstance(picture, YuvPlanes) and (length_px := other_row_length(picture.y)):
             yield (
-                f"Warning: {source.name}: rows seem to be {length_px} pixels long and not {picture.size[0]}, for then those "
-                "that follow each other are alike; is `--size` right?"
+                f"Warning: {source.name}: rows seem to be {length_px} pixels long, not {picture.size[0]}, as rows are then "
+                "like their neighbours; is `--size` right?"
             )
 
 

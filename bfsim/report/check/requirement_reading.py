@@ -145,7 +145,7 @@ def _least(first: str) -> int:
 def _meant(name: Name) -> str:
     """Return a hint if a supposed stage is nearly the name of something else."""
     near = difflib.get_close_matches(dotted(name), [dotted(each) for each in OF_THE_RUN])
-    return f"; what is no stage is called {near[0]}" if near else ""
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def _counted(text: str) -> tuple[Fraction, ...]:

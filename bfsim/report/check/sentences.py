@@ -36,17 +36,17 @@ def changes(outcome: Outcome) -> Iterator[str]:
     then, now = outcome.case.measured_on, outcome.run.identity
     if then is None:
         yield (
-            "What the limits were measured on is not in the file any more, so that nothing says whether they are of these "
-            "pictures and this hardware: --update measures them anew."
+            "The file no longer says what the limits were measured on, so they may be for other pictures or other hardware: "
+            "--update measures them again."
             if outcome.case.limits
             else "No limits were measured yet: --update does that."
         )
         return
     place = outcome.run.firmware_place
-    what = "the same as" if then.firmware == now.firmware_digest else "another than"
-    yield f"Firmware {now.firmware} ({place}) is {what} when the limits were measured."
+    what = "is the same as when" if then.firmware == now.firmware_digest else "has changed since"
+    yield f"Firmware {now.firmware} ({place}) {what} the limits were measured."
     if then.ldf != now.ldf_digest:
-        yield f"The LDF {now.ldf} is another than then."
+        yield f"The LDF {now.ldf} has changed since then."
     if (then.bfsim_version, then.llvm_version) != (now.bfsim_version, now.llvm_version):
         yield (
             f"The limits were measured by bfsim {then.bfsim_version} with LLVM {then.llvm_version}, this run by bfsim "

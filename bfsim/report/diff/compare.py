@@ -22,7 +22,7 @@ def difference_of(before: Result, after: Result) -> Difference:
     """Compare two runs in the frames that both have; raise ConfigError if they have none."""
     frames = {each.index for each in before.run.frames} & {each.index for each in after.run.frames}
     if not frames:
-        raise ConfigError("the two runs must have frames of the same number to be compared, and have none")
+        raise ConfigError("the two runs must have frames in common to be compared, but have none")
     return difference_between(result_side(before, frames), result_side(after, frames))
 
 

@@ -66,7 +66,7 @@ def headline(run: RunRecord, budget: Budget) -> Text:
 def _p95_note(run: RunRecord) -> Iterator[Text]:
     """Say why there is no p95, if there is none."""
     if not has_p95(run):
-        yield Text(f"A p95 is told from {FRAMES_FOR_P95} frames on: of fewer it is the max.")
+        yield Text(f"There is no p95 of fewer than {FRAMES_FOR_P95} frames: it would be the max.")
 
 
 def _reference_note(run: RunRecord) -> Iterator[Text]:

@@ -81,7 +81,7 @@ def _frames(run: RunRecord, core: CoreBudget) -> str:
     """Say how many frames there were, how long they took, and how much of the first was the start-up."""
     hz, first = run.identity.cclk_hz, run.frames[0]
     few = 1 < len(run.frames) < FRAMES_FOR_P95
-    why = f" (a p95 from {FRAMES_FOR_P95} frames on: of fewer it is the max)" if few else ""
+    why = f" (a p95 needs {FRAMES_FOR_P95} frames)" if few else ""
     parts = [
         f"{len(run.frames):,} done, {missed_frames(run)} missed; {_spread(run, core.frame.elapsed_cclk)}{why}."
     ]
@@ -90,10 +90,10 @@ def _frames(run: RunRecord, core: CoreBudget) -> str:
     start_up = milliseconds(start_up_cclk(run), hz)
     if len(run.frames) == 1 and core.frame.idle_cclk:
         wait = f"{milliseconds(core.frame.idle_cclk, hz):.2f} ms"
-        parts.append(f"The {wait} until the first picture came are in all numbers: run more frames.")
+        parts.append(f"All numbers include the {wait} until the first picture came: run more frames.")
     elif start_up:
         parts.append(
-            f"Frame {first.index} took {start_up:.2f} ms more, until the first picture came: left out."
+            f"Frame {first.index} took {start_up:.2f} ms more, until the first picture came; this is left out."
         )
     return " ".join(parts)
 

@@ -20,7 +20,7 @@ FAILURES_SHOWN = 5
 NAMES_SHOWN = 3
 ON_FRONT = "*"
 
-ONE_FRAME = "Hz of a run of one frame has the wait for its picture in it, frame has not: run two or more."
+ONE_FRAME = "With one frame, Hz includes the wait for its picture, and frame does not: run two or more."
 
 
 def sweep_report(points: Sequence[Shown], files: Sequence[Path], kept: int, top: int) -> RenderableType:

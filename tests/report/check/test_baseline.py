@@ -29,7 +29,7 @@ from bfsim.trace import NO_STAGES
         ("frame_rate >= fast", "after >= must come a number that is not negative"),
         ("latency <= -1 ms", "after <= must come a number that is not negative"),
         ("frame_rate >= 15 fps", "the unit of frame_rate must be Hz, not 'fps'"),
-        ("framerate >= 15 Hz", "the unit of the stage framerate must be cycles or s or ms or us, not 'Hz'; what is no stage is called frame_rate"),
+        ("framerate >= 15 Hz", "the unit of the stage framerate must be cycles or s or ms or us, not 'Hz'; did you mean frame_rate?"),
         ("latency <= 1e999 ms", "after <= must come a number written out, such as 12_000 or 0.25"),
         ("latency <= 1,5 ms", "after <= must come a number written out"),
         ("latency <= 200", "the unit of latency must be cycles or s or ms or us, not ''"),

@@ -157,6 +157,6 @@ def test_what_changed_beside_the_limits(baseline: Path) -> None:
     ]
     other = replace(run, identity=replace(IDENTITY, firmware_digest="f", ldf_digest="f", bfsim_version="9.9"))
     told = "\n".join(changes(hold(other, baseline)))
-    assert "Firmware tinyphoon (built in) is another than when the limits were measured." in told
-    assert "The LDF thesis is another than then." in told
+    assert "Firmware tinyphoon (built in) has changed since the limits were measured." in told
+    assert "The LDF thesis has changed since then." in told
     assert "measured by bfsim 0.1.0 with LLVM 20.1.8, this run by bfsim 9.9" in told

@@ -106,7 +106,7 @@ def test_limits_that_say_no_more_what_they_are_of(baseline: Path) -> None:
     """Somebody removed `measured_on`: all limits were kept, and it was said that none had been measured."""
     case = read_baseline(baseline).run[0].model_copy(update={"measured_on": None})
     (told,) = changes(judge(case, result(edge_run(1000)), baseline))
-    assert told.startswith("What the limits were measured on is not in the file any more")
+    assert told.startswith("The file no longer says what the limits were measured on")
     (told,) = changes(judge(case.model_copy(update={"limits": []}), result(edge_run(1000)), baseline))
     assert told == "No limits were measured yet: --update does that."
 

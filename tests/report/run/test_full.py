@@ -60,7 +60,7 @@ def test_the_reference_has_the_name_that_the_firmware_gives_it() -> None:
 def test_a_p95_takes_twenty_frames() -> None:
     """Of fewer, 95 % of them by nearest rank are all of them: it would be the maximum under another name."""
     without, told = (printed(run_report(edge_run(*range(100, 100 + frames)))) for frames in (19, 20))
-    note = "A p95 is told from 20 frames on: of fewer it is the max."
+    note = "There is no p95 of fewer than 20 frames: it would be the max."
     assert note in without
     assert note not in told
     assert not any("median p95" in squeezed(line) for line in without)
