@@ -75,7 +75,7 @@ def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
 
     @wraps(simulate)
     def repeatable(*arguments: Given.args, **options: Given.kwargs) -> Run:
-        __tracebackhide__ = True  # a test that calls it with a wrong argument is told with its own lines
+        __tracebackhide__ = True  # a test that calls it with a wrong argument shows its own lines
         try:
             bound = signature(simulate).bind(*arguments, **options)
         except TypeError as error:  # it names no function

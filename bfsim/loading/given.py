@@ -65,7 +65,7 @@ def _unbound(part: Any) -> Any:
 
 
 def _namespace(part: Any) -> Namespace:
-    """Return what the module of a function, a method, a class or an object of it holds, also where Python does not keep that module."""
+    """Return the names of the module of a function, a method, a class or its object, even if Python dropped the module."""
     function = getattr(part, "__func__", part)
     if isinstance(function, FunctionType):
         return function.__globals__

@@ -45,11 +45,11 @@ def find_views(
 ) -> tuple[list[BoardView], list[Skipped]]:
     """Return the boards seen in the pictures of `size` (width, height) of a folder, and the pictures that show none.
 
-    With `mono` every picture is one of the only camera. Without, pictures whose names say left and right (or those of the
-    folders whose names do) go together by the rest of their names, or by their order if the names have nothing in common.
-    With `resize`, corners of pictures of other sizes are found there, where they are sharpest, and are brought to where an
-    import that scales the pictures has them. `bits`: how many the cameras use of pixels that have 16. `progress`: called with the views that were looked at, and how many
-    there are. Raises RecordingError.
+    With `mono`, every picture is from the only camera. Otherwise, pictures whose names (or whose folders' names) say
+    left and right are paired by the rest of their names, or by their order if the names have nothing in common. With
+    `resize`, corners in pictures of other sizes are found at full size, where they are sharpest, and then moved to
+    where an import that scales the pictures has them. `bits`: how many the cameras use of 16-bit pixels. `progress` is
+    called with the number of views examined, and that of all. Raises RecordingError.
     """
     sets, skipped = _together(folder, mono=mono)
     views = []

@@ -136,12 +136,12 @@ def calibrate(
 ) -> StereoCalibration:
     """Calibrate cameras with pictures of `size` (width, height) of a board with `corners` (across, down) inner corners.
 
-    The folder `chessboards` holds pictures, or folders of them, whose names say left and right; those with the same
-    rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
-    board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of
-    another size are scaled as an import with `--resize` scales them; of pixels that have 16 bits, the cameras use so many
-    `bits`. `focal_px` is the focal length to rectify to; without it, the mean of the left camera's. `progress` is called
-    with the views that were looked at, and how many there are. Raises RecordingError.
+    The folder `chessboards` holds pictures, or folders of pictures, whose names say left and right; the rest of the
+    name tells which ones were taken at the same time. With `mono` it holds pictures of the only camera. Pictures
+    without a whole board are skipped, and views that do not fit the others are left out; both are in the report. With
+    `resize`, pictures of another size are scaled as by an import with `--resize`. `bits`: how many the cameras use of
+    16-bit pixels. `focal_px` is the focal length after rectification; the default is the mean of the left camera's.
+    `progress` is called with the number of views examined, and that of all. Raises RecordingError.
     """
     model = _MODELS[lens]()
     if min(corners) < 3 or square_mm <= 0:

@@ -103,7 +103,8 @@ class Renderer:
 
 
 def _load_mitsuba() -> Any:
-    # It starts the threads that render; and where one of ours hears a signal, its import takes Ctrl-C for a part that is not there.
+    # It starts the threads that render. If one of our threads handles a signal, its import takes Ctrl-C for a missing
+    # part.
     with uninterrupted(), held_back():
         try:
             mitsuba = importlib.import_module("mitsuba")

@@ -8,7 +8,7 @@ from bfsim.report.diff.difference import Difference
 from bfsim.report.jsonable import json_text, jsonable
 
 SCHEMA = "bfsim.diff/2"
-"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+"""Name and version of the layout; the version rises when the meaning of a key changes or a key goes away."""
 
 
 def diff_json(difference: Difference) -> str:

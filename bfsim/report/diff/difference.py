@@ -77,10 +77,10 @@ class Difference:
     A baseline only has the cycles of all its frames together. Compared with one, all frames count, with lines, and the
     cycles of a different number of frames, `measured_frames`, are scaled.
 
-    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and last the waits (FOLLOWS). They
-    have source lines only where both runs have the same frames (`has_lines`), since lines are counted over a whole run.
-    `before_ms` and `after_ms` are of a frame on average, at the core clocks `before_cclk_hz` and `after_cclk_hz`. `results` are
-    the firmware's published numbers, summed over the frames.
+    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and waits (FOLLOWS) last. They have
+    source lines only if both runs have the same frames (`has_lines`), since lines are counted over a whole run.
+    `before_ms` and `after_ms` are times of an average frame, at the core clocks `before_cclk_hz` and `after_cclk_hz`.
+    `results` are the firmware's published numbers, summed over the frames.
     """
 
     configuration: tuple[Change, ...]

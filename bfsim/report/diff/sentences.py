@@ -33,7 +33,10 @@ def why(difference: Difference) -> Iterator[str]:
 
 
 def clock(difference: Difference) -> str:
-    """Say what another core clock makes of equal work; nothing where the clock is the same. Waits for pictures do not change with it."""
+    """Say how another core clock changes the time of equal work; "" if the clock is the same.
+
+    Waits for pictures do not change with it.
+    """
     before, after = difference.before_cclk_hz, difference.after_cclk_hz
     if before == after:
         return ""
