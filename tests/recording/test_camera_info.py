@@ -189,6 +189,8 @@ def test_one_camera_has_no_baseline(tmp_path: Path) -> None:
     [
         ({"matrix": [0.0] * 9}, "has no camera matrix K: the camera is not calibrated"),
         ({"matrix": [np.nan] * 9}, "has no camera matrix K"),
+        ({"rotation": [np.nan] * 9}, "has a number in R, P or D that is not finite"),
+        ({"projection": [np.inf] * 12}, "has a number in R, P or D that is not finite"),
         ({"projection": [0.0] * 12}, "has no projection P: the camera is not calibrated"),
         ({"size": (32, 16)}, "is for pictures of 32x16, and these are 16x8"),
         ({"binning": 2}, "is for pictures that are binned or cut out of larger ones"),
@@ -206,6 +208,30 @@ def test_what_cannot_be_used_is_said(changes: dict[str, object], why: str, tmp_p
     (note,) = summary.notes
     assert note.startswith(f"/stereo/right/camera_info {why}")
     assert note.endswith(": neither geometry nor rectification is taken from it.")
+
+
+def test_lenses_without_distortion_may_have_any_number_of_terms(tmp_path: Path) -> None:
+    """Some drivers fill all that OpenCV knows with 0, or more: 20 of them ended in a traceback."""
+    ros = Ros("ros1")
+    found = []
+    for terms in (5, 20):
+        straight = {"matrix": matrix(22), "distortion": (0.0,) * terms}
+        (tmp_path / str(terms)).mkdir()
+        path = ros.write(tmp_path / str(terms), made(ros, straight, straight))
+        geometry, tables, _ = imported(path)
+        assert is_ideal(geometry)
+        assert tables
+        found.append(tables.right)
+    np.testing.assert_array_equal(*found)
+
+
+def test_camera_info_of_no_numbers_does_not_change(tmp_path: Path) -> None:
+    """NaN is not itself; a topic that says the same each time does not change."""
+    ros = Ros("mcap")
+    messages = made(ros, {"matrix": [np.nan] * 9})
+    messages += [(topic, kind, time_ns + 10**9, said) for topic, kind, time_ns, said in messages[:2]]
+    (note,) = imported(ros.write(tmp_path, messages))[2].notes
+    assert note.startswith("/stereo/left/camera_info has no camera matrix K")
 
 
 def test_cameras_that_are_no_pair_are_told(tmp_path: Path) -> None:

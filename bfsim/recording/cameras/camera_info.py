@@ -64,7 +64,8 @@ class CameraInfo:
         """The matrix (3, 3) and the distortion of the pictures in the bag."""
         if self.is_rectified:
             return FittedCamera(np.reshape(self.projection, (3, 4))[:, :3], np.zeros(4))
-        return FittedCamera(np.reshape(self.matrix, (3, 3)), np.array(self.distortion or (0.0,) * 4))
+        distortion = self.distortion if any(self.distortion) else (0.0,) * 4
+        return FittedCamera(np.reshape(self.matrix, (3, 3)), np.array(distortion))
 
     @property
     def rotation(self) -> Floats:
@@ -77,9 +78,10 @@ class CameraInfo:
 
     def _problems(self, size: tuple[int, int]) -> Iterator[str]:
         rotation, projection = np.reshape(self.turn, (3, 3)), np.reshape(self.projection, (3, 4))
-        numbers = (*self.matrix, *self.turn, *self.projection, *self.distortion)
-        if not np.isfinite(numbers).all() or min(self.matrix[0], self.matrix[4]) <= 0:
+        if not np.isfinite(self.matrix).all() or min(self.matrix[0], self.matrix[4]) <= 0:
             yield "has no camera matrix K: the camera is not calibrated"
+        if not np.isfinite((*self.turn, *self.projection, *self.distortion)).all():
+            yield "has a number in R, P or D that is not finite"
         if min(projection[0, 0], projection[1, 1]) <= 0:
             yield "has no projection P: the camera is not calibrated"
         if self.size != size:

@@ -207,7 +207,7 @@ def _camera_info(bag: BagFile, topic: Topic, found: dict[str, Topic]) -> tuple[C
         CameraInfo.of(bag.decode(raw, CAMERA_INFO), name, is_rectified=is_rectified)
         for _, raw in bag.messages(name)
     ]
-    changes = any(each != said[0] for each in said)
+    changes = len(set(map(repr, said))) > 1  # as they are written, for NaN is not itself
     return said[
         0
     ], f"{name} changes in the bag: what it says first is taken for all pictures." if changes else ""
