@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from bfsim.kernel.estimate.induction_variables.inclusive_bounds import InclusiveBounds
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
-from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, LARGEST
-from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, arms_of, is_number, predicate
+from bfsim.kernel.ir.text import Instruction, arms_of, is_number
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
@@ -28,19 +27,18 @@ class EndlessLoops:
         self.evolution = evolution
         self.induction_variables = induction_variables
         self.profile = profile
+        self.inclusive_bounds = InclusiveBounds(flow, evolution)
 
     def may_be(self, loop: Loop) -> bool:
         """With several exits, the pointer that walks is compared for equality with its end.
 
         GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
-        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i < n + 1`, which is `i <= n` and may always
-        hold, nor a counter of its own that may step over the largest number.
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count a loop up to
+        a number and with it, which may always hold (`inclusive_bounds`), nor a counter of its own that may step over the largest number.
         """
-        around = self.flow.around(loop)
-        is_one = around is not None and around.latch in loop.blocks  # an iteration that begins elsewhere
-        if len(self.flow.exits(loop)) - is_one < 2:
+        if not self._has_several_exits(loop):
             return False
-        if self._is_inclusive(loop):
+        if self.may_reach_last_number(loop):
             return True
         if self.flow.is_split(loop):
             return not self._steps_by_one(loop)
@@ -55,6 +53,16 @@ class EndlessLoops:
         fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
         known = (fixed and not self._ends_further_out(loop)) or self._starts_in_front(loop)
         return wide and not known and not self._may_not_start(loop)
+
+    def may_reach_last_number(self, loop: Loop) -> bool:
+        """Whether a loop with several exits may be endless for the number that its counter runs to: no pointer takes its place then."""
+        applies = self.profile.applies(Rule.INCLUSIVE_LOOPS)
+        return applies and self._has_several_exits(loop) and self.inclusive_bounds.may_be_endless(loop)
+
+    def _has_several_exits(self, loop: Loop) -> bool:
+        around = self.flow.around(loop)
+        is_one = around is not None and around.latch in loop.blocks  # an iteration that begins elsewhere
+        return len(self.flow.exits(loop)) - is_one >= 2
 
     def _ends_further_out(self, loop: Loop) -> bool:
         """Whether how far a loop walks is computed before the loop around it: nothing is known of that there.
@@ -177,40 +185,8 @@ class EndlessLoops:
             for each in self.flow.predecessors[label]:
                 yield from self._tests_before(each)
 
-    def _is_inclusive(self, loop: Loop) -> bool:
-        """Whether a loop runs up to a bound and with it, and that may be the largest number there is; so may the `stop` of `stop + 1`."""
-        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        if test is None or not self.profile.applies(Rule.INCLUSIVE_LOOPS):
-            return False
-        stop, bound = test.operands[1], self.flow.instruction(test.operands[1])
-        if bound is not None and bound.opcode == "add" and bound.operands[1] == "1":
-            return not self._is_exceeded(bound.operands[0], loop)
-        leaves = self.flow.blocks[self.flow.ending(loop)].successors[0] not in loop.blocks
-        is_inclusive = predicate(test) in (("sgt", "ugt") if leaves else ("sle", "ule"))
-        return is_inclusive and self.flow.is_invariant(stop, loop) and not self._is_known(stop, loop)
-
-    def _is_known(self, stop: str, loop: Loop) -> bool:
-        """Whether a bound is sure not to be the largest number there is."""
-        if is_number(stop) or self._is_exceeded(stop, loop):
-            return True
-        low, high = UnsignedRanges(self.flow).found.get(stop, ANY)
-        return high < LARGEST or low > LARGEST
-
-    def _is_exceeded(self, value: str, loop: Loop) -> bool:
-        """Whether a test before `loop` has found something larger than a value [simplify_using_initial_values in loop-iv.cc]."""
-        above = self.flow.dominators[loop.header]
-        for block in (self.flow.blocks[label] for label in above - loop.blocks):
-            test = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
-            if test is None or test.opcode != "icmp" or len(set(block.successors)) != 2:
-                continue
-            yes, no = ({each} <= above for each in block.successors)
-            relation = predicate(test)
-            smaller = {"slt": (0, yes), "sgt": (1, yes), "sge": (0, no), "sle": (1, no)}.get(relation)
-            if yes != no and smaller is not None and smaller[1] and test.operands[smaller[0]] == value:
-                return True
-        return False
-
     def _steps_by_one(self, loop: Loop) -> bool:
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        gain = self.evolution.increment(test.operands[0], loop) if test is not None else None
+        counting = [each for each in test.operands if not self.flow.is_invariant(each, loop)] if test else []
+        gain = self.evolution.increment(counting[0], loop) if counting else None
         return gain is not None and abs(gain.constant) == 1 and not gain.symbolic

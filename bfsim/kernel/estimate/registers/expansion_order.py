@@ -39,6 +39,7 @@ class _Expressions:
         self.parts: dict[int, list[int]] = {number: [] for number in range(len(block))}
         self.root = {number: number for number in self.parts}
         users = {name: number for number, each in enumerate(block) for name, _ in each.uses if name in once}
+        self.reading = self._reading(once)
         for number in reversed(self.parts):
             user = users.get(block[number].result or "", -1)
             is_copied = block[number].op in LOADS and user >= 0 and block[user].op in STORES
@@ -51,10 +52,23 @@ class _Expressions:
         each, between = self.block[number], self.block[number + 1 : until]
         if each.op not in WAITING or any(other.op in BARRIERS for other in between):
             return False
-        if each.op in LOADS and any(other.op in STORES for other in between):
+        if number in self.reading and any(other.op in STORES for other in between):
             return False
         operands = {name for name, _ in each.uses}
         return not any(other.result in operands for other in between)
+
+    def _reading(self, once: set[str]) -> set[int]:
+        """Loads, and operations of which one is a part: they wait for no store [process_replaceable in tree-ssa-ter.cc]."""
+        reading, loaded = set[int](), set[str]()
+        for number, each in enumerate(self.block):
+            if each.op in STORES:
+                loaded.clear()
+            is_part = any(name in loaded for name, _ in each.uses)
+            if each.op in LOADS or (each.op in COMPUTING and is_part):
+                reading.add(number)
+                if each.result in once:
+                    loaded.add(each.result or "")
+        return reading
 
     def rows(self) -> Iterator[MachineInstruction]:
         """The operations in order."""

@@ -143,6 +143,7 @@ class DemandedValues:
         if (
             loop is None
             or label not in self.flow.exits(loop)
+            or self._is_kept(each, loop)
             or not any(
                 variable.loop is loop and not variable.stride for variable in self.induction_variables.all
             )
@@ -153,6 +154,12 @@ class DemandedValues:
         if len(moving) != 1 or moving[0] is None or moving[0].symbolic:
             return each.operands[0], each.operands[1]
         return self._limits(each, loop)
+
+    def _is_kept(self, test: Instruction, loop: Loop) -> bool:
+        """Whether a counter may run over the largest number before it has passed its bound, which a pointer does not tell."""
+        return test.result == self.evolution.exit_test(
+            loop
+        ) and self.counters.endless_loops.may_reach_last_number(loop)
 
     def _limits(self, test: Instruction, loop: Loop) -> tuple[str, ...]:
         """What a counter that ends `loop` starts at and ends at, from which the iterations are counted, or where a pointer ends."""

@@ -153,6 +153,19 @@ CASES: dict[str, tuple[str, tuple[Any, ...], int, float]] = {
         20,
         0.06,
     ),
+    "a difference with what was loaded does not wait for the store": (
+        """
+        def f(s: i32[:], x: i32, y: i32, p: i32, q: i32, r: i32) -> i32:
+            e = x - y
+            s[0] = max(min(s[0] + e, 20000), -20000)
+            d = e - s[1]
+            s[1] = e
+            return max(min((p * e + q * s[0] + r * d) >> 8, 1000), -1000)
+        """,
+        (WORDS[:2], 300, 20, 30, 4, 8),
+        35,
+        0.03,
+    ),
 }
 
 
