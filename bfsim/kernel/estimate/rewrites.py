@@ -23,6 +23,7 @@ from bfsim.kernel.estimate.choices.adjacent_numbers import with_adjacent_numbers
 from bfsim.kernel.estimate.choices.clamps import with_clamps
 from bfsim.kernel.estimate.choices.extremes import with_extremes
 from bfsim.kernel.estimate.choices.known_values import with_known_values
+from bfsim.kernel.estimate.choices.narrow_sides import with_narrow_sides
 from bfsim.kernel.estimate.choices.narrow_sums import with_narrow_sums
 from bfsim.kernel.estimate.choices.restored_values import with_restored_values
 from bfsim.kernel.estimate.choices.same_truths import with_same_truths
@@ -75,6 +76,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_shifted_products,
     with_shifted_bits,
     with_sides_apart,
+    with_narrow_sides,
     with_reduced_strength,
     with_summed_indices,
     with_even_addresses,
@@ -132,6 +134,7 @@ SWITCHES = {
     with_shifted_products: Rule.SHIFTED_PRODUCTS,
     with_operations_on_sides: Rule.OWN_OPERATIONS,
     with_clamps: Rule.EXTREMES,
+    with_narrow_sides: Rule.NARROW_CHOICES,
     with_carried_operations: Rule.PARTIAL_REDUNDANCIES,
     with_bit_tests: Rule.BIT_TESTS,
     with_narrow_sums: Rule.EXTREMES,

@@ -267,6 +267,8 @@ class IfConversion:
     ) -> ConvertedIf | None:
         if len(work) != 1 or work[0].opcode != "sub" or work[0].operands[0] != "0":
             return None
+        if self.profile.applies(Rule.NARROW_CHOICES) and is_narrowed(self.flow, phi):
+            return None  # what is negated is narrow, and what is tested is a word
         value = work[0].operands[1]
         difference = self.flow.instruction(self._plain(value))
         written_as_if = any(arm.startswith("then") for arm in arms)

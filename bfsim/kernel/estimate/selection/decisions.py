@@ -44,7 +44,8 @@ class Decisions:
             if self.emitter.label == joined.first:
                 self._in_range(each, joined)
             return
-        left, right = (self._compared(each, value) for value in each.operands[:2])
+        values = self.context.folding.compared_difference(each) or each.operands[:2]
+        left, right = (self._compared(each, value) for value in values)
         if is_number(right) and _is_near(predicate(each), _unsigned(each, int(right))):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif is_number(right) and self.context.profile.applies(Rule.COMPARED):

@@ -138,6 +138,8 @@ class DemandedValues:
 
         [may_eliminate_iv in tree-ssa-loop-ivopts.cc]
         """
+        if (compared := self.folding.compared_difference(each)) is not None:
+            return compared
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
         if (

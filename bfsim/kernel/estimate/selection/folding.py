@@ -13,6 +13,8 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 SHIFTS = ("shl", "lshr", "ashr")
+SIGNS = {*((relation, "0") for relation in ("slt", "sle", "sgt", "sge")), ("sgt", "-1"), ("slt", "1")}
+"""Tests of which sign a word has, as LLVM writes them."""
 NARROW = (8, 16)
 BYTE_MASK = 0xFF
 HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
@@ -108,6 +110,19 @@ class Folding:
             user.opcode in SHIFTS and user.operands[1] == each.result
             for user in self.users(each.result or "")
         )
+
+    def compared_difference(self, compare: Instruction) -> tuple[str, str] | None:
+        """The two values that are compared in place of their difference and 0 ["X - Y CMP 0" in match.pd of GCC 12]."""
+        made = self.flow.instruction(compare.operands[0])
+        is_sign = compare.opcode == "icmp" and (predicate(compare), compare.operands[1]) in SIGNS
+        if not is_sign or made is None or made.opcode != "sub" or self.users(made.result or "") != [compare]:
+            return None
+        return made.operands[0], made.operands[1]
+
+    def in_comparison(self, each: Instruction) -> bool:
+        """Whether a difference is not computed, for what is compared are the two values."""
+        users = self.users(each.result or "")
+        return each.opcode == "sub" and len(users) == 1 and self.compared_difference(users[0]) is not None
 
     def bit_tested(self, compare: Instruction) -> str | None:
         """The value of which a comparison tests a single bit."""

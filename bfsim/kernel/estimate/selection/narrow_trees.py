@@ -27,6 +27,8 @@ def _is_cut(users_of: Users, operand: Instruction, each: Instruction) -> bool:
         )
     if each.opcode == "store":
         return each.bits in NARROW
+    if each.opcode == "phi" and each.bits in NARROW:
+        return all(user.opcode == "store" for user in users_of(each.result or ""))
     return each.line == operand.line and is_cut_tree(users_of, each)
 
 

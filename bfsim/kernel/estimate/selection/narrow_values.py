@@ -86,7 +86,7 @@ class NarrowValues:
         return {
             self._use(load, user)
             for user in self._wide_users(load)
-            if user.result is None or self.emits(user)
+            if user.result is None or self.emits(user) or self.folding.in_comparison(user)
         }
 
     def _use(self, load: Instruction, user: Instruction) -> Use:
