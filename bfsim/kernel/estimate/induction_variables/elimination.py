@@ -38,6 +38,8 @@ class EliminatedCounter:
     """Operations: one where what the pointer differs by is computed before the loop."""
     is_stepped: bool = False
     """Whether the pointer has been stepped when it is wanted."""
+    is_compared: bool = False
+    """Whether it is only compared, where comparisons are: in a data register."""
 
     @property
     def name(self) -> str:
@@ -92,10 +94,12 @@ def eliminated_counters(
 def _differences(choice: Choice) -> dict[str, EliminatedCounter]:
     counter, found = choice.wishes.counter, dict[str, EliminatedCounter]()
     for each in choice.wishes.all:
-        blocks = each.blocks | (found[each.name].blocks if each.name in found else frozenset())
-        is_stepped = each.name != counter
+        alike = [other for other in choice.wishes.all if other.name == each.name]
+        blocks = frozenset(label for other in alike for label in other.blocks)
+        is_compared = all(other.test is not None for other in alike)
+        is_stepped = each.name != counter or is_compared
         found[each.name] = EliminatedCounter(
-            each.name, choice.variable, blocks, choice.sums(each), is_stepped
+            each.name, choice.variable, blocks, choice.sums(each), is_stepped, is_compared
         )
     return found
 

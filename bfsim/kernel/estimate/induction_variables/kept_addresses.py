@@ -39,8 +39,8 @@ def stepping_access(accesses: Sequence[Access], loop: Loop, evolution: ScalarEvo
     start, is_fixed = _start(accesses[0].instruction, loop, evolution)
 
     def is_far(access: Access) -> bool:
-        whole = access.offset + start if access.instruction.bits == BYTE else access.offset
-        return whole < 0 and not is_fixed
+        is_whole = is_fixed or access.instruction.bits == BYTE
+        return access.offset + (start if is_whole else 0) < 0
 
     groups = [each for each in accesses if not is_far(each)], [each for each in accesses if is_far(each)]
     firsts = [min(each, key=partial(_rank, loop, evolution.flow)) for each in groups if each]

@@ -34,6 +34,8 @@ class Wanted:
     is_narrow: bool
     """Whether it has fewer bits than a register."""
     blocks: frozenset[str]
+    test: Instruction | None = None
+    """The comparison with what does not change in the loop, if it is that which wants it: it is computed there, and not where the counter is."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
     None if it wants something else, too, or a sum in blocks of which none comes behind the others: how often that is computed is up to
     passes before [tree-ssa-pre.cc].
     """
-    found: dict[tuple[str, bool], set[str]] = {}
+    found: dict[tuple[str, bool, str], set[str]] = {}
     waiting, seen = [counter], {counter}
     while waiting:
         name = waiting.pop()
@@ -69,20 +71,29 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
                     seen.add(user.result or "")
                     waiting.append(user.result or "")
                 continue
+            test = user.result or "" if _is_comparison(evolution, loop, user, name) else ""
             for is_narrow, home in _wanted_by(flow, user, name):
-                found.setdefault((name, is_narrow), set()).add(home)
+                found.setdefault((name, is_narrow, test), set()).add(home)
     blocks = {label for each in found.values() for label in each}
-    if not blocks or any(
-        flow.innermost(each) is not loop or flow.every_iteration(each, loop) for each in blocks
-    ):
+    if not blocks or any(flow.innermost(each) is not loop for each in blocks):
         return None
-    if any(name != counter and _places(flow, wanting) > 1 for (name, _), wanting in found.items()):
+    values = {label for (*_, test), wanting in found.items() if not test for label in wanting}
+    if any(flow.every_iteration(each, loop) for each in values):
+        return None
+    if any(name != counter and _places(flow, wanting) > 1 for (name, *_), wanting in found.items()):
         return None
     wanted = (
-        Wanted(name, sum_of(evolution, name), is_narrow, frozenset(wanting))
-        for (name, is_narrow), wanting in found.items()
+        Wanted(name, sum_of(evolution, name), is_narrow, frozenset(wanting), flow.instruction(test))
+        for (name, is_narrow, test), wanting in found.items()
     )
     return Wishes(counter, tuple(wanted))
+
+
+def _is_comparison(evolution: ScalarEvolution, loop: Loop, user: Instruction, name: str) -> bool:
+    """Whether `user` compares a value with what does not change in the loop, and stands in it."""
+    others = [each for each in user.operands if each != name]
+    is_fixed = evolution.code_motion.is_invariant
+    return user.opcode == "icmp" and bool(others) and all(is_number(each) or is_fixed(each, loop) for each in others)
 
 
 def sum_of(evolution: ScalarEvolution, name: str) -> Affine:
@@ -192,13 +203,13 @@ class Choice:
 
     def _pointer(self, wanted: Wanted) -> Affine:
         """The pointer where a value is wanted."""
-        _, lowest, _ = min(self.variable.accesses, key=lambda access: access[2])
-        return self.evolution.affine(lowest.operands[-1]).plus(Affine(constant=self._step(wanted)))
+        assert self.variable.stepping is not None
+        return self.evolution.affine(self.variable.stepping.instruction.operands[-1]).plus(Affine(constant=self._step(wanted)))
 
     def _step(self, wanted: Wanted) -> int:
         """By how much it has been stepped then: the counter, and a sum that the address is computed from, are there before."""
         label, access, _ = self.variable.accesses[0]
-        home, made = self.flow.defined[wanted.name]
+        home, made = self.flow.defined[(wanted.test and wanted.test.result) or wanted.name]
         rows = self.flow.blocks[label].instructions
         is_before = (
             rows.index(made) < rows.index(access) if home == label else home in self.flow.dominators[label]
@@ -212,7 +223,9 @@ class Choice:
         return len(difference.terms) == 1 and abs(difference.terms[0][1]) == 1 and not difference.constant
 
     def sums(self, wanted: Wanted) -> int:
-        """Operations for a wanted value: two, if it is one less than what the array alone makes of the pointer."""
+        """Operations for a wanted value: two, if it is one less than what the array alone makes of the pointer, and not compared for equality."""
+        if wanted.test is not None and predicate(wanted.test) in ("eq", "ne") and is_number(wanted.test.operands[1]):
+            return 1
         terms, constant = self._whole(wanted).terms, self.difference(wanted).constant
         return 2 if [name for name, _ in terms] == [self.variable.root] and constant == -1 else 1
 

@@ -202,11 +202,17 @@ class Accesses:
                     MachineInstruction(Op.MOVE, variable.line, None, POINTER, ((variable.name, POINTER),)),
                 )
             if label in each.blocks:
-                terms = ((variable.name, POINTER), (self.context.name(variable.root), POINTER))
-                step = MachineInstruction(Op.ALU, variable.line, each.name, POINTER, terms)
+                bank = DATA if each.is_compared else POINTER
+                start = variable.name
+                if each.is_compared:
+                    start = f"{each.name}.pointer"
+                    move = MachineInstruction(Op.MOVE, variable.line, start, DATA, ((variable.name, POINTER),))
+                    self.emitter.code.add(label, move)
+                terms = ((start, bank), (self.context.name(variable.root), bank))
+                step = MachineInstruction(Op.ALU, variable.line, each.name, bank, terms)
                 self.emitter.code.add(label, step)
                 if each.sums > 1:
-                    self.emitter.code.add(label, replace(step, uses=((each.name, POINTER),)))
+                    self.emitter.code.add(label, replace(step, uses=((each.name, bank),)))
 
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
