@@ -34,6 +34,7 @@ from bfsim.kernel.estimate.conditions.narrow_tests import with_narrow_tests
 from bfsim.kernel.estimate.conditions.nearer_bounds import with_nearer_bounds
 from bfsim.kernel.estimate.conditions.next_values import with_tests_of_next_values
 from bfsim.kernel.estimate.conditions.range_tests import with_range_tests
+from bfsim.kernel.estimate.conditions.shifted_tests import with_shifted_tests
 from bfsim.kernel.estimate.conditions.short_circuits import split_tests
 from bfsim.kernel.estimate.induction_variables.stepped_values import with_stepped_values
 from bfsim.kernel.estimate.jump_threading.known_answers import with_known_answers
@@ -70,6 +71,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_restored_values,
     with_same_truths,
     with_tests_of_next_values,
+    with_shifted_tests,
     split_loads,
     with_wide_counts,
     with_operations_on_sides,

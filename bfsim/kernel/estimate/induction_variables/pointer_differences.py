@@ -9,7 +9,7 @@ nothing to be computed before, and gets a variable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
@@ -52,7 +52,7 @@ class Wishes:
 
 
 def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter: str) -> Wishes | None:
-    """Return what `loop` wants of its counter in blocks of its own that not every iteration runs.
+    """Return what `loop` wants of its counter in blocks of its own: values in those that not every iteration runs, and what it compares.
 
     None if it wants something else, too, or a sum in blocks of which none comes behind the others: how often that is computed is up to
     passes before [tree-ssa-pre.cc].
@@ -74,13 +74,7 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
             test = user.result or "" if _is_comparison(evolution, loop, user, name) else ""
             for is_narrow, home in _wanted_by(flow, user, name):
                 found.setdefault((name, is_narrow, test), set()).add(home)
-    blocks = {label for each in found.values() for label in each}
-    if not blocks or any(flow.innermost(each) is not loop for each in blocks):
-        return None
-    values = {label for (*_, test), wanting in found.items() if not test for label in wanting}
-    if any(flow.every_iteration(each, loop) for each in values):
-        return None
-    if any(name != counter and _places(flow, wanting) > 1 for (name, *_), wanting in found.items()):
+    if not _is_known(flow, loop, counter, found):
         return None
     wanted = (
         Wanted(name, sum_of(evolution, name), is_narrow, frozenset(wanting), flow.instruction(test))
@@ -89,11 +83,26 @@ def wishes_of(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter
     return Wishes(counter, tuple(wanted))
 
 
+def _is_known(
+    flow: ControlFlow, loop: Loop, counter: str, found: Mapping[tuple[str, bool, str], set[str]]
+) -> bool:
+    """Whether only blocks of `loop` itself want something, and no iteration always does but for a test; and each sum is computed in one place."""
+    if not found or any(flow.innermost(each) is not loop for blocks in found.values() for each in blocks):
+        return False
+    values = {label for (*_, test), blocks in found.items() if not test for label in blocks}
+    is_once = all(name == counter or _places(flow, blocks) == 1 for (name, *_), blocks in found.items())
+    return is_once and not any(flow.every_iteration(each, loop) for each in values)
+
+
 def _is_comparison(evolution: ScalarEvolution, loop: Loop, user: Instruction, name: str) -> bool:
     """Whether `user` compares a value with what does not change in the loop, and stands in it."""
     others = [each for each in user.operands if each != name]
     is_fixed = evolution.code_motion.is_invariant
-    return user.opcode == "icmp" and bool(others) and all(is_number(each) or is_fixed(each, loop) for each in others)
+    return (
+        user.opcode == "icmp"
+        and bool(others)
+        and all(is_number(each) or is_fixed(each, loop) for each in others)
+    )
 
 
 def sum_of(evolution: ScalarEvolution, name: str) -> Affine:
@@ -204,7 +213,9 @@ class Choice:
     def _pointer(self, wanted: Wanted) -> Affine:
         """The pointer where a value is wanted."""
         assert self.variable.stepping is not None
-        return self.evolution.affine(self.variable.stepping.instruction.operands[-1]).plus(Affine(constant=self._step(wanted)))
+        return self.evolution.affine(self.variable.stepping.instruction.operands[-1]).plus(
+            Affine(constant=self._step(wanted))
+        )
 
     def _step(self, wanted: Wanted) -> int:
         """By how much it has been stepped then: the counter, and a sum that the address is computed from, are there before."""
@@ -224,7 +235,11 @@ class Choice:
 
     def sums(self, wanted: Wanted) -> int:
         """Operations for a wanted value: two, if it is one less than what the array alone makes of the pointer, and not compared for equality."""
-        if wanted.test is not None and predicate(wanted.test) in ("eq", "ne") and is_number(wanted.test.operands[1]):
+        if (
+            wanted.test is not None
+            and predicate(wanted.test) in ("eq", "ne")
+            and is_number(wanted.test.operands[1])
+        ):
             return 1
         terms, constant = self._whole(wanted).terms, self.difference(wanted).constant
         return 2 if [name for name, _ in terms] == [self.variable.root] and constant == -1 else 1

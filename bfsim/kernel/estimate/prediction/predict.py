@@ -28,8 +28,9 @@ POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
 LOOP_GUARD = 0.73  # a test that decides whether an inner loop is come to fails
 CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
 
-BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}
-ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge", -1)}
+BELOW_ZERO = {("lt", -1), ("lt", 0), ("lt", 1), ("lt", 2), ("le", -2), ("le", -1), ("le", 0), ("le", 1)}
+ABOVE_ZERO = {("gt", -2), ("gt", -1), ("gt", 0), ("gt", 1), ("ge", -1), ("ge", 0), ("ge", 1), ("ge", 2)}
+"""Relations to a number of which GCC makes one to -1, 0 or 1, whether of signed words or not [tree_predict_by_opcode]: x < 2 is x <= 1."""
 
 
 class Likelihood:
@@ -118,9 +119,9 @@ class Likelihood:
             kind = "ne"
         if kind in ("eq", "ne") and number != 0:
             return [1 - NOT_EQUAL if kind == "eq" else NOT_EQUAL]
-        if number is not None and (kind, number) in BELOW_ZERO:
+        if number is not None and (kind[1:], number) in BELOW_ZERO:
             return [1 - POSITIVE]
-        if number is not None and (kind, number) in ABOVE_ZERO:
+        if number is not None and (kind[1:], number) in ABOVE_ZERO:
             return [POSITIVE]
         return []
 

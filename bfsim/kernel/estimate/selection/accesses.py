@@ -206,7 +206,9 @@ class Accesses:
                 start = variable.name
                 if each.is_compared:
                     start = f"{each.name}.pointer"
-                    move = MachineInstruction(Op.MOVE, variable.line, start, DATA, ((variable.name, POINTER),))
+                    move = MachineInstruction(
+                        Op.MOVE, variable.line, start, DATA, ((variable.name, POINTER),)
+                    )
                     self.emitter.code.add(label, move)
                 terms = ((start, bank), (self.context.name(variable.root), bank))
                 step = MachineInstruction(Op.ALU, variable.line, each.name, bank, terms)

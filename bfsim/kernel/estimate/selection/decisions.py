@@ -46,7 +46,7 @@ class Decisions:
             return
         values = self.context.folding.compared_difference(each) or each.operands[:2]
         left, right = (self._compared(each, value) for value in values)
-        if is_number(right) and _is_near(predicate(each), _unsigned(each, int(right))):
+        if is_number(right) and _is_near(_relation(each), _unsigned(each, int(right))):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif is_number(right) and self.context.profile.applies(Rule.COMPARED):
             bound = self.emitter.load_bound(each, right)
@@ -213,6 +213,12 @@ def _unsigned(test: Instruction, bound: int) -> int:
     """Return the number that a byte is tested to equal; LLVM writes 255 as -1. [assumed] that bytes are unsigned, as those of pictures are."""
     is_byte = test.text.split()[2] == f"i{BYTE}" and predicate(test) in ("eq", "ne")
     return bound % (1 << BYTE) if is_byte else bound
+
+
+def _relation(test: Instruction) -> str:
+    """Return the relation that the source asks for: LLVM makes unsigned ones of words that are never negative."""
+    relation = predicate(test)
+    return f"s{relation[1:]}" if "samesign" in test.text and relation not in ("eq", "ne") else relation
 
 
 def _is_near(relation: str, bound: int) -> bool:
