@@ -27,7 +27,7 @@ class EndlessLoops:
         self.evolution = evolution
         self.induction_variables = induction_variables
         self.profile = profile
-        self.inclusive_bounds = InclusiveBounds(flow, evolution)
+        self.inclusive_bounds = InclusiveBounds(flow, evolution, induction_variables)
 
     def may_be(self, loop: Loop) -> bool:
         """With several exits, the pointer that walks is compared for equality with its end.

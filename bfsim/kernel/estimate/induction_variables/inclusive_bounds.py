@@ -8,6 +8,7 @@ tree-ssa-loop-niter.cc]; of other bounds it knows how they are computed of a reg
 
 from __future__ import annotations
 
+from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, LARGEST
 from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
@@ -22,8 +23,10 @@ LOADED = ("load", "sext", "zext")
 class InclusiveBounds:
     """Tells which loops of one routine may not end for the number that they run up or down to."""
 
-    def __init__(self, flow: ControlFlow, evolution: ScalarEvolution) -> None:
-        self.flow, self.evolution = flow, evolution
+    def __init__(
+        self, flow: ControlFlow, evolution: ScalarEvolution, induction_variables: InductionVariables
+    ) -> None:
+        self.flow, self.evolution, self.induction_variables = flow, evolution, induction_variables
 
     def may_be_endless(self, loop: Loop) -> bool:
         """Whether a loop iterates with its bound, too, which may be the last number on its way."""
@@ -48,13 +51,22 @@ class InclusiveBounds:
         ahead = beyond if up else -beyond  # how far the bound is beyond the value, on the way of the loop
         if ahead == 0 or value is None or stays[0] == "u":
             return not sharp and not self._is_known(stop, loop, up=up)
-        if ahead < 0:
-            return False
         made = self.flow.instruction(stop)
-        is_folded = ahead == 1 or (made is not None and made.line == test.line)
-        return (not sharp or is_folded) and not (
-            sharp and ahead == 1 and self._is_exceeded(value, loop, up=up)
-        )
+        is_folded = made is not None and made.line == test.line
+        if ahead < 0:
+            return not (sharp or is_folded or self._is_seen(stop, loop) or self._walks(loop))
+        if sharp and not is_folded and ahead > 1:
+            return False
+        return not (sharp and ahead == 1 and self._is_exceeded(value, loop, up=up))
+
+    def _walks(self, loop: Loop) -> bool:
+        """Whether a pointer takes the place of the counter: what GCC knows of that it has found before."""
+        return any(each.loop is loop and not each.increment.symbolic for each in self.induction_variables.all)
+
+    def _is_seen(self, stop: str, loop: Loop) -> bool:
+        """Whether GCC sees before a loop how its bound is computed: what is the same for a loop around comes before that."""
+        around = self.flow.around(loop)
+        return around is None or not self.evolution.code_motion.is_invariant(stop, around)
 
     def _sum(self, stop: str) -> tuple[str | None, int]:
         """The value and the number whose sum a bound is."""
@@ -71,9 +83,10 @@ class InclusiveBounds:
         if made is None or made.opcode in LOADED or any(map(self._is_loaded, made.operands)):
             return False
         if made.opcode == "ashr":
-            return True
+            return is_number(made.operands[1]) and self._is_seen(stop, loop)
         low, high = UnsignedRanges(self.flow).found.get(stop, ANY)
-        return (high < LARGEST or low > LARGEST) if up else (high <= LARGEST or low > LARGEST + 1)
+        is_within = (high < LARGEST or low > LARGEST) if up else (high <= LARGEST or low > LARGEST + 1)
+        return is_within and (self._is_seen(stop, loop) or self._walks(loop))
 
     def _is_loaded(self, value: str) -> bool:
         made = self.flow.instruction(value)

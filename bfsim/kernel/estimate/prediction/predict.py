@@ -17,7 +17,7 @@ from bfsim.kernel.estimate.prediction.frequencies import frequencies
 from bfsim.kernel.estimate.prediction.loop_guards import loop_guards
 from bfsim.kernel.estimate.ranges.ends_of_ranges import EndsOfRanges
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
-from bfsim.kernel.ir.text import LEAVES, NO_HINT, BasicBlock, is_number, predicate
+from bfsim.kernel.ir.text import LEAVES, NO_HINT, BasicBlock, Instruction, is_number, predicate
 from bfsim.kernel.rules import Rule
 
 EVEN = 0.5
@@ -119,11 +119,21 @@ class Likelihood:
             kind = "ne"
         if kind in ("eq", "ne") and number != 0:
             return [1 - NOT_EQUAL if kind == "eq" else NOT_EQUAL]
-        if number is not None and (kind[1:], number) in BELOW_ZERO:
+        if number is None or self._is_range(test):
+            return []
+        if (kind[1:], number) in BELOW_ZERO:
             return [1 - POSITIVE]
-        if number is not None and (kind[1:], number) in ABOVE_ZERO:
+        if (kind[1:], number) in ABOVE_ZERO:
             return [POSITIVE]
         return []
+
+    def _is_range(self, test: Instruction) -> bool:
+        """Whether a test asks for a range, which GCC guesses before it is one test [tree-ssa-reassoc.cc]: the distance from its lower end is unsigned."""
+        made = self.flow.instruction(test.operands[0])
+        if made is not None and made.opcode == "and":
+            made = self.flow.instruction(made.operands[0])
+        is_unsigned = predicate(test)[0] == "u" and "samesign" not in test.text
+        return is_unsigned and made is not None and made.opcode in ("add", "sub")
 
     def _by_calls(self, block: BasicBlock) -> list[float]:
         """A side with a call, which the other side does not reach, is unlikely."""

@@ -51,6 +51,32 @@ def f(a: u8[:], b: i16[:], n: i32, t: i32) -> i32:
         i -= 1
     return s
 """
+INSIDE = """
+def f(a: u8[:], n: i32, t: i32) -> i32:
+    s = 0
+    last = {}
+    for k in range(10):
+        i = 0
+        while i <= last and a[i] != 255:
+            s += a[i]
+            i += 1
+    return s
+"""
+PROBES = """
+def f(a: u8[:], keys: i32[:], n: i32, t: i32) -> i32:
+    mask = t - 37
+    new = 0
+    for x in range(n):
+        slot = a[x] & mask
+        probes = 0
+        while keys[slot] != a[x] and keys[slot] > -400:
+            slot = (slot + 1) & mask
+            probes += 1
+            if probes > mask:
+                return -1
+        new += slot
+    return new
+"""
 CASES = {
     "below": (UP.format("i < n"), 515, 0.01),
     "up to and with": (UP.format("i <= n"), 1339, 0.07),
@@ -68,6 +94,10 @@ CASES = {
     "a range up to a sum": (RANGE.format("t, n + 3"), 1367, 0.07),
     "a range down to a difference": (RANGE.format("n, t - 1, -1"), 1338, 0.07),
     "up to and with a variable that is a difference": (VARIABLE.format("n - 3", "i <= last"), 510, 0.02),
+    "inside another loop, up to and with a difference": (INSIDE.format("n - 3"), 10062, 0.01),
+    "inside another loop, up to and with a half": (INSIDE.format("n >> 1"), 12389, 0.01),
+    "inside another loop, up to and with what was masked": (INSIDE.format("n & 255"), 10230, 0.01),
+    "inside another loop, without a pointer": (PROBES, 51543, 0.06),
     "below a variable that is a sum": (VARIABLE.format("n + 3", "i < last"), 531, 0.01),
 }
 test_estimates_are_near_what_gcc_makes, test_what_is_costed_is_what_runs = beside_gcc(CASES)
