@@ -163,7 +163,7 @@ ESTIMATE = _sets(
         "switches": "conditions ranges",
         "unoptimised": "arithmetic",
         "induction_variables": "loops ranges",
-        "jump_threading": "choices conditions loops switches ranges",
+        "jump_threading": "choices conditions loops switches ranges induction_variables",
         "prediction": "loops ranges",
         "inlining": "arithmetic ranges prediction",
         "redundancies": "choices conditions loops prediction",

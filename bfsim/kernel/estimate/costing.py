@@ -102,7 +102,9 @@ def _threaded(text: str, profile: CompilerProfile) -> str:
     """Thread jumps behind all other passes."""
     if profile.applies(Rule.KEPT_BOUNDS):
         text = with_kept_bounds(text)
-    return with_known_entries(with_first_iterations(text)) if profile.applies(Rule.FIRST_ITERATIONS) else text
+    if not profile.applies(Rule.FIRST_ITERATIONS):
+        return text
+    return with_known_entries(with_first_iterations(text, profile))
 
 
 def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:

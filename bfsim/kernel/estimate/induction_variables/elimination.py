@@ -21,10 +21,13 @@ from bfsim.kernel.estimate.induction_variables.pointer_differences import (
     is_multiple,
     wishes_of,
 )
+from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.preheaders import preheader_of
 from bfsim.kernel.ir.text import Instruction
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +71,8 @@ def eliminated_counters(
         loop = variable.loop
         bytewise = not variable.increment.symbolic and abs(variable.increment.constant) == 1
         steady = {offset for label, _, offset in variable.accesses if flow.every_iteration(label, loop)}
-        if loop.header not in counted or not bytewise or not steady:
+        shares = len(variable.accesses) > 1  # a pointer of their own is worth it though some iterations do without
+        if loop.header not in counted or not bytewise or not (steady or shares):
             continue
         affine = dict(evolution.affine(variable.accesses[0][1].operands[-1]).terms)
         for each in flow.blocks[loop.header].instructions:
@@ -79,7 +83,9 @@ def eliminated_counters(
             prepared = prepares and not is_plain and not evolution.ends_behind_start(loop)
             wishes = wishes_of(flow, evolution, loop, name) if weighs else None
             is_only = is_plain or (prepared and [each.loop for each in variables.all].count(loop) == 1)
-            if wishes and (not wishes.has_counter or (is_only and len(steady) == 1)):
+            if not steady and (wishes is None or any(one.test is None for one in wishes.all)):
+                continue
+            if wishes and (not wishes.has_counter or (is_only and len(steady) <= 1)):
                 choice = Choice(flow, evolution, variable, wishes)
                 found |= _differences(choice) if choice.spares else {}
                 continue
@@ -89,6 +95,17 @@ def eliminated_counters(
             if blocks and not is_multiplied and (len(steady) > 1 or prepared):
                 found[name] = EliminatedCounter(name, variable, blocks, 1 if prepared else 2)
     return found
+
+
+def pointed_counters(flow: ControlFlow, profile: CompilerProfile) -> frozenset[str]:
+    """Return the counters of which nothing is left but a pointer once GCC has chosen what its loops step, in passes behind that."""
+    if not (profile.applies(Rule.ELIMINATED_COUNTERS) and profile.applies(Rule.POINTER_DIFFERENCES)):
+        return frozenset()
+    evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
+    variables = InductionVariables(flow, evolution, profile)
+    headers = {loop.header for loop in flow.loops}
+    found = eliminated_counters(flow, evolution, variables, headers, {}, prepares=True, weighs=True)
+    return frozenset(name for name, each in found.items() if each.is_compared)
 
 
 def _differences(choice: Choice) -> dict[str, EliminatedCounter]:

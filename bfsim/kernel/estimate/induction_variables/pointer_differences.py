@@ -212,8 +212,10 @@ class Choice:
 
     def _pointer(self, wanted: Wanted) -> Affine:
         """The pointer where a value is wanted."""
-        assert self.variable.stepping is not None
-        return self.evolution.affine(self.variable.stepping.instruction.operands[-1]).plus(
+        lowest = min(self.variable.accesses, key=lambda access: access.offset)
+        served = self.variable.stepping if self.variable.steps_free else lowest
+        assert served is not None
+        return self.evolution.affine(served.instruction.operands[-1]).plus(
             Affine(constant=self._step(wanted))
         )
 

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 
+from bfsim.kernel.estimate.induction_variables.elimination import pointed_counters
 from bfsim.kernel.estimate.jump_threading.known_ways import KnownWays, with_known_ways, with_one_way
 from bfsim.kernel.estimate.jump_threading.loop_answers import answer
 from bfsim.kernel.estimate.jump_threading.threaded_choices import MOST_ON_A_WAY
 from bfsim.kernel.estimate.loops.same_values import COMPUTED, is_same
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
 from bfsim.kernel.ir.text import Instruction, Routine, arms_of
+from bfsim.kernel.profile import CompilerProfile
 
 BEFORE = 2
 """Blocks on the way before the header: the one that ends the loop, and an empty one behind it."""
@@ -29,17 +32,28 @@ STEPPED = ("add", "sub", "shl", "getelementptr", "phi")
 """What is computed from a counter and goes along with it."""
 
 
-def with_first_iterations(text: str) -> str:
+def with_first_iterations(text: str, profile: CompilerProfile) -> str:
     """Return the module `text`, whose loops end with their tests, with tests before loops that only the first iteration needs."""
-    return with_known_ways(text, _each_first, with_invariants_before, with_one_way)
+    return with_known_ways(text, partial(_each_first, profile), with_invariants_before, with_one_way)
 
 
-def _each_first(flow: ControlFlow) -> Iterator[KnownWays]:
-    """Yield the tests of a routine that the first iteration of a loop alone needs."""
+def _each_first(profile: CompilerProfile, flow: ControlFlow) -> Iterator[KnownWays]:
+    """Yield the tests of a routine that the first iteration of a loop alone needs: not those of a counter that a pointer stands for by then."""
+    pointed = pointed_counters(flow, profile)
     for loop in flow.loops:
         back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
         if back == [loop.latch] and loop.latch != loop.header and not flow.is_split(loop):
-            yield from _first(flow, loop, (loop.header,))
+            yield from (
+                each
+                for each in _first(flow, loop, (loop.header,))
+                if pointed.isdisjoint(_compared(flow, each))
+            )
+
+
+def _compared(flow: ControlFlow, known: KnownWays) -> tuple[str, ...]:
+    """What the test at the end of a chain compares."""
+    test = flow.instruction(flow.blocks[known.chain[-1]].terminator.operands[0])
+    return test.operands if test is not None else ()
 
 
 def _first(flow: ControlFlow, loop: Loop, chain: tuple[str, ...]) -> Iterator[KnownWays]:

@@ -202,9 +202,10 @@ class Accesses:
                     MachineInstruction(Op.MOVE, variable.line, None, POINTER, ((variable.name, POINTER),)),
                 )
             if label in each.blocks:
-                bank = DATA if each.is_compared else POINTER
+                moves = each.is_compared and variable.steps_free
+                bank = DATA if moves else POINTER
                 start = variable.name
-                if each.is_compared:
+                if moves:
                     start = f"{each.name}.pointer"
                     move = MachineInstruction(
                         Op.MOVE, variable.line, start, DATA, ((variable.name, POINTER),)
