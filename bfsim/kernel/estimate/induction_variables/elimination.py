@@ -8,6 +8,7 @@ often each block runs [get_scaled_computation_cost_at].
 
 from __future__ import annotations
 
+from collections import Counter as Tally
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -71,7 +72,9 @@ def eliminated_counters(
         loop = variable.loop
         bytewise = not variable.increment.symbolic and abs(variable.increment.constant) == 1
         steady = {offset for label, _, offset in variable.accesses if flow.every_iteration(label, loop)}
-        shares = len(variable.accesses) > 1  # a pointer of their own is worth it though some iterations do without
+        shares = (
+            len(variable.accesses) > 1
+        )  # a pointer of their own is worth it though some iterations do without
         if loop.header not in counted or not bytewise or not (steady or shares):
             continue
         affine = dict(evolution.affine(variable.accesses[0][1].operands[-1]).terms)
@@ -105,7 +108,10 @@ def pointed_counters(flow: ControlFlow, profile: CompilerProfile) -> frozenset[s
     variables = InductionVariables(flow, evolution, profile)
     headers = {loop.header for loop in flow.loops}
     found = eliminated_counters(flow, evolution, variables, headers, {}, prepares=True, weighs=True)
-    return frozenset(name for name, each in found.items() if each.is_compared)
+    walking = Tally(each.loop.header for each in variables.all)
+    return frozenset(
+        name for name, each in found.items() if each.is_compared and walking[each.variable.loop.header] == 1
+    )
 
 
 def _differences(choice: Choice) -> dict[str, EliminatedCounter]:

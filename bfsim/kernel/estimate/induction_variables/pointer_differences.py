@@ -224,9 +224,10 @@ class Choice:
         label, access, _ = self.variable.accesses[0]
         home, made = self.flow.defined[(wanted.test and wanted.test.result) or wanted.name]
         rows = self.flow.blocks[label].instructions
-        is_before = (
-            rows.index(made) < rows.index(access) if home == label else home in self.flow.dominators[label]
-        )
+        if home == label:  # a test ends its block
+            is_before = wanted.test is None and rows.index(made) < rows.index(access)
+        else:
+            is_before = home in self.flow.dominators[label]
         is_stepped = self.variable.steps_free and not is_before
         return self.variable.increment.constant if is_stepped else 0
 

@@ -94,6 +94,8 @@ def _each_begun(flow: ControlFlow) -> Iterator[KnownWays]:
         goal = block.successors[0 if first else 1]
         if any(way.endswith(SKIPPED) for way in block.successors):
             continue  # the goal has been threaded to before, and begins with a block of its own
+        if goal == loop.latch and not any(each.opcode == "store" for each in flow.blocks[goal].instructions):
+            continue  # it does nothing but step: the loop would have two ways back
         if loop.blocks.issuperset(block.successors) and _is_passed(flow, loop, goal):
             yield KnownWays((loop.header,), goal, tuple(before), goes_back=False)
 
