@@ -12,10 +12,8 @@ from collections import Counter as Tally
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.kernel.estimate.induction_variables.induction_variables import (
-    InductionVariable,
-    InductionVariables,
-)
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.induction_variables.pointer_differences import (
     Choice,
     homes_of,

@@ -2,62 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.induction_variables.kept_addresses import (
-    Access,
-    distances,
-    keeps_address,
-    stepping_access,
-)
-from bfsim.kernel.estimate.loops.scalar_evolution import Affine, Increment, ScalarEvolution
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
+from bfsim.kernel.estimate.induction_variables.kept_addresses import Access, keeps_address, stepping_access
+from bfsim.kernel.estimate.induction_variables.shared_pointers import is_steady, share_pointers
+from bfsim.kernel.estimate.loops.scalar_evolution import Affine, ScalarEvolution
 from bfsim.kernel.ir.control_flow import EITHER, ControlFlow, Loop
-from bfsim.kernel.ir.text import Instruction, SourceLine, arms_of, each_arm, is_number
+from bfsim.kernel.ir.text import Instruction, arms_of, each_arm, is_number
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 COUNTING = ("getelementptr", "icmp", "phi", "br")
 """What wants a counter as an address, for the end of a loop, or for the next iteration."""
 HIDDEN = ".len"  # every array comes with its length, which C code would not pass
-
-
-@dataclass(slots=True)
-class InductionVariable:
-    """Accesses at constant distances from one pointer, which advances by the same amount with each iteration of `loop`."""
-
-    name: str
-    loop: Loop
-    root: str
-    increment: Increment
-    line: SourceLine
-    accesses: list[Access] = field(default_factory=list)
-    start: tuple[tuple[str, int], ...] = ()
-    """What is added to the array's address where the loop starts, with factors: values that the loop around does not step along."""
-    stepping: Access | None = None
-    """The access behind which GCC steps the pointer."""
-    steps_free: bool = False
-    keeps_address: bool = False
-    """Whether an iteration keeps what the pointer was before its step, which is a sum of its own then."""
-    offset_apart: bool = False
-    neighbour: InductionVariable | None = None
-    """The variable whose pointer serves this one as well: only some iterations access it, at a distance that does not change."""
-    distance: tuple[tuple[str, int], ...] = ()
-    """The terms of that distance, with factors."""
-
-    def distance_of(self, access: Instruction) -> int:
-        """Return how many bytes an access is from where the pointer is then."""
-        assert self.stepping is not None
-        step = self.increment.constant if self.steps_free else 0
-        found = distances(self.accesses, self.stepping, step)
-        return next(
-            away for away, each in zip(found, self.accesses, strict=True) if each.instruction is access
-        )
-
-    @property
-    def stride(self) -> str | None:
-        """The register that holds the step, if it is no constant."""
-        return f"{self.name}.stride" if self.increment.symbolic else None
 
 
 class InductionVariables:
@@ -84,10 +41,7 @@ class InductionVariables:
         indexed = [each for each in self.all if self._is_indexed(each)]
         self.all = [each for each in self.all if each not in indexed]
         self.of = {access: each for access, each in self.of.items() if each not in indexed}
-        for variable in self.all:
-            variable.neighbour = next((other for other in self.all if self._serves(other, variable)), None)
-            if variable.neighbour is not None:
-                variable.distance = self._distance(variable.neighbour, variable)
+        share_pointers(self.all, flow, evolution)
 
     def _is_indexed(self, variable: InductionVariable) -> bool:
         """Whether one byte is accessed by a counter that every iteration wants anyway: its address costs less than a pointer that has to be stepped.
@@ -128,40 +82,9 @@ class InductionVariables:
             for each in block.instructions
         )
 
-    def _serves(self, one: InductionVariable, other: InductionVariable) -> bool:
-        """Whether the pointer of one variable takes the place of another's [cost of an iv use, tree-ssa-loop-ivopts.cc].
-
-        An access that not every iteration makes costs less where it is computed from a pointer that is there than with a pointer of its own,
-        which every iteration would have to step. Of several each is computed, whatever the guess of how often its block runs: a block counts
-        once at least [determine_group_iv_cost_address; determine_scaling_factor].
-        """
-        if (
-            one is other
-            or one.loop is not other.loop
-            or one.root != other.root
-            or one.increment != other.increment
-        ):
-            return False
-        fixed = all(
-            self.evolution.code_motion.is_invariant(name, one.loop) for name, _ in self._distance(one, other)
-        )
-        return (
-            fixed
-            and not one.increment.symbolic
-            and self.is_steady(one)
-            and not self.is_steady(other)
-            and len(other.accesses) <= 1
-        )
-
     def is_steady(self, variable: InductionVariable) -> bool:
         """Whether every iteration makes one of the accesses."""
-        return any(self.flow.every_iteration(label, variable.loop) for label, _, _ in variable.accesses)
-
-    def _distance(self, one: InductionVariable, other: InductionVariable) -> tuple[tuple[str, int], ...]:
-        here, there = (
-            self.evolution.affine(variable.accesses[0][1].operands[-1]) for variable in (one, other)
-        )
-        return there.plus(here, -1).terms
+        return is_steady(self.flow, variable)
 
     def _pointers(self, label: str, each: Instruction) -> list[tuple[str, str]]:
         """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.induction_variables.loop_registers import cost_of_registers, registers_used
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop

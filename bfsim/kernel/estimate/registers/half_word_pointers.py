@@ -8,7 +8,7 @@ Of these registers it gets the one that it comes in, and each block that accesse
 from __future__ import annotations
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.registers.webs import Webs
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.ir.text import Instruction

@@ -11,7 +11,7 @@ from collections import Counter as Tally
 from collections import defaultdict
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.registers.webs import Webs
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.operations import Op

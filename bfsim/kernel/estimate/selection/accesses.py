@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.estimate.selection.row_pointers import RowPointers
@@ -28,6 +28,8 @@ class Accesses:
         self.rows = RowPointers(emitter)
         self.beside: dict[str, list[str]] = {}
         """Blocks in which the pointer of a variable is computed from its neighbour's."""
+        self.stepped = set[str]()
+        """Pointers that have been stepped already, for an access to where they are next."""
         self.ahead: dict[str, str] = {}
         """Pointers whose next value is computed before the end of an iteration, for one side of a test wants it, and its name there."""
 
@@ -74,6 +76,11 @@ class Accesses:
 
     def _beside(self, variable: InductionVariable, neighbour: str, each: Instruction) -> str:
         """Compute a pointer from another one, once on each way; what is subtracted goes through the data registers."""
+        if variable.follows and self.emitter.label == variable.loop.latch:
+            if neighbour not in self.stepped:
+                self.stepped.add(neighbour)
+                self._step(variable.neighbour or variable)
+            return neighbour
         known = self.beside.setdefault(variable.name, [])
         for label in known:
             if label in self.flow.dominators[self.emitter.label]:
@@ -83,6 +90,15 @@ class Accesses:
         if len(variable.distance) == 1 and variable.distance[0][1] != -1:
             self.append(
                 Op.ALU, each, address, POINTER, (neighbour, POINTER), (self._scaled(variable, each), POINTER)
+            )
+        elif self.context.induction_variables.is_steady(variable):
+            self.append(
+                Op.ALU,
+                each,
+                address,
+                POINTER,
+                (neighbour, POINTER),
+                (self._prepared(variable, each), POINTER),
             )
         else:
             for name, _ in variable.distance:
@@ -100,6 +116,16 @@ class Accesses:
                 entering,
                 MachineInstruction(Op.SHIFT, each.line, distance, DATA, ((self.context.name(name), DATA),)),
             )
+        return distance
+
+    def _prepared(self, variable: InductionVariable, each: Instruction) -> str:
+        """A distance of several terms, which is added up before the loop."""
+        distance, entering = f"{variable.name}.distance", self.flow.entering(variable.loop)
+        if not any(instruction.result == distance for instruction in self.emitter.code.of[entering]):
+            for name, times in variable.distance:
+                op = Op.ALU if abs(times) == 1 else Op.SHIFT
+                uses = ((self.context.name(name), DATA),)
+                self.emitter.code.add(entering, MachineInstruction(op, each.line, distance, DATA, uses))
         return distance
 
     def element(self, each: Instruction) -> None:
@@ -227,7 +253,7 @@ class Accesses:
                 self._step_apart(variable)
             if variable.name in self.ahead:
                 self._add(variable.loop.latch, Op.MOVE, variable, variable.name, self.ahead[variable.name])
-            elif not variable.steps_free:
+            elif not variable.steps_free and variable.name not in self.stepped:
                 self._step(variable)
 
     def _set_up(self, variable: InductionVariable) -> None:

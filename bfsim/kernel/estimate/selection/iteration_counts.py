@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.selection.context import Context
 from bfsim.kernel.ir.control_flow import Loop
 from bfsim.kernel.ir.text import is_number

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import Enum, auto
 
-from bfsim.kernel.estimate.induction_variables.induction_variables import (
-    InductionVariable,
-    InductionVariables,
-)
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.induction_variables.kept_addresses import is_threaded
 from bfsim.kernel.estimate.memory.predictive_commoning import ALONG
 from bfsim.kernel.estimate.selection.folding import NARROW, Folding

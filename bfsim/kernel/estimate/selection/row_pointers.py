@@ -6,7 +6,7 @@ array: one sum of these for all arrays of bytes. Of half-words and words, each a
 
 from __future__ import annotations
 
-from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariable
+from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.selection.context import Context
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.iteration_counts import IterationCounts
