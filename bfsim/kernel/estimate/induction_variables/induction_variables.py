@@ -14,6 +14,7 @@ from bfsim.kernel.rules import Rule
 
 COUNTING = ("getelementptr", "icmp", "phi", "br")
 """What wants a counter as an address, for the end of a loop, or for the next iteration."""
+SUMS = ("add", "sub")
 HIDDEN = ".len"  # every array comes with its length, which C code would not pass
 
 
@@ -76,11 +77,20 @@ class InductionVariables:
             return True
         return any(
             names & {*each.operands}
-            and (label not in loop.blocks or (each.result not in names and each.opcode not in COUNTING))
+            and (label not in loop.blocks or (each.result not in names and not self._is_address(each)))
             for label, block in self.flow.blocks.items()
             if label not in loop.blocks or self.flow.every_iteration(label, loop)
             for each in block.instructions
         )
+
+    def _is_address(self, each: Instruction) -> bool:
+        """Whether something is an address, the end of a loop or for the next iteration; or a sum of which nothing but addresses are made."""
+        users = self.flow.users.get(each.result or "", [])
+        made = (
+            user.opcode == "getelementptr" or (user.opcode in SUMS and self._is_address(user))
+            for user in users
+        )
+        return each.opcode in COUNTING or (each.opcode in SUMS and bool(users) and all(made))
 
     def is_steady(self, variable: InductionVariable) -> bool:
         """Whether every iteration makes one of the accesses."""

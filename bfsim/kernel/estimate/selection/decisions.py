@@ -216,9 +216,13 @@ def _unsigned(test: Instruction, bound: int) -> int:
 
 
 def _relation(test: Instruction) -> str:
-    """Return the relation that the source asks for: LLVM makes unsigned ones of words that are never negative."""
-    relation = predicate(test)
-    return f"s{relation[1:]}" if "samesign" in test.text and relation not in ("eq", "ne") else relation
+    """Return the relation that the source asks for: LLVM makes unsigned ones of words that are never negative.
+
+    In code that was inlined, the number may be another one in C: LLVM divides both sides by a factor that an argument has.
+    """
+    relation, is_inlined = predicate(test), bool(test.line.site)
+    is_signed = "samesign" in test.text and relation not in ("eq", "ne") and not is_inlined
+    return f"s{relation[1:]}" if is_signed else relation
 
 
 def _is_near(relation: str, bound: int) -> bool:
