@@ -11,6 +11,7 @@ from benchmarks.twins import (
     cameras,
     coders,
     codes,
+    columns,
     contours,
     controllers,
     detectors,
@@ -19,6 +20,7 @@ from benchmarks.twins import (
     drawing,
     drives,
     duties,
+    ends,
     exchanges,
     features,
     feedback,
@@ -92,14 +94,15 @@ from benchmarks.twins import (
 )
 
 SUBJECTS = (
-    actuators, angles, arithmetic, bits, borders, cameras, coders, codes, contours, controllers,
-    detectors, devices, digits, drawing, drives, duties, exchanges, features, feedback, figures,
-    fills, filters, fixed_point, flows, frames, gains, gauges, geometry, grids, heaps, images,
-    integers, labels, layers, lines, links, lookups, machines, maps, masks, memories, messages,
-    mixture, motion, motors, neighbours, ordering, packing, patches, pictures, pixels, planes,
-    plans, profiles, protocols, regions, remotes, robots, routes, rows, samples, scans,
-    searches, sensing, shapes, signals, sorted_rows, sorting, statistics, stereo, stores,
-    streams, strips, sums, surroundings, tables, tallies, targets, text, trackers, transforms,
-    views, voices, warps, waves, words,
+    actuators, angles, arithmetic, bits, borders, cameras, coders, codes, columns,
+    contours, controllers, detectors, devices, digits, drawing, drives, duties, ends,
+    exchanges, features, feedback, figures, fills, filters, fixed_point, flows, frames,
+    gains, gauges, geometry, grids, heaps, images, integers, labels, layers, lines, links,
+    lookups, machines, maps, masks, memories, messages, mixture, motion, motors,
+    neighbours, ordering, packing, patches, pictures, pixels, planes, plans, profiles,
+    protocols, regions, remotes, robots, routes, rows, samples, scans, searches, sensing,
+    shapes, signals, sorted_rows, sorting, statistics, stereo, stores, streams, strips,
+    sums, surroundings, tables, tallies, targets, text, trackers, transforms, views,
+    voices, warps, waves, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
