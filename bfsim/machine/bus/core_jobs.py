@@ -109,9 +109,14 @@ def go_past(state: State, core: int) -> None:
     if not state[job + w.IN_TURN]:
         state[job + w.ENTRY] += 1
         return
-    row = site_at(core, state[job + w.SITE])
-    count_fetched(state, job, state[job + w.FETCHED] + 1)
-    state[job + w.WORD] += 1
+    go_past_code(state, job, site_at(core, state[job + w.SITE]), 1)
+
+
+@native
+def go_past_code(state: State, job: int, row: int, words: int) -> None:
+    """Leave so many words of the code of the routine at `row` behind, none beyond its end."""
+    count_fetched(state, job, state[job + w.FETCHED] + words)
+    state[job + w.WORD] += words
     if state[job + w.WORD] == state[row + w.CODE_WORDS]:
         state[job + w.WORD], state[job + w.ROUTINE] = 0, state[row + w.NEXT_ROUTINE]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from bfsim.kernel.calls import access_log as log
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_jobs import charge, count_fetched, cycles_until, next_entry, site_of
+from bfsim.machine.bus.core_jobs import charge, cycles_until, go_past_code, next_entry, site_of
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.l2_port import has_turn, hold_l2, hold_of, lock_l2, tries_before
 from bfsim.machine.bus.memory_owners import piece_for
@@ -35,7 +35,7 @@ def fetch_ahead(state: State, core: int, at: int, until: int) -> bool:
 def fetch_among_tries(state: State, core: int, other: int, until: int) -> bool:
     """Fetch a core's code and let the `other` one try its lock, each in its turn, before tick `until`; return whether either had one.
 
-    What changes with a word is in local variables. The last word of a routine is left.
+    What changes with a word is in local variables.
     """
     job, cclk, limit = w.JOBS_AT + core * w.JOB_WORDS, state[w.CCLK], buffers_quiet_until(state, until)
     ready = state[w.MASTERS_AT + w.CORE_A + core + w.READY]
@@ -87,7 +87,7 @@ def words_in_row(state: State, core: int) -> int:
     piece = piece_for(state, row, offset)
     return min(
         state[job + w.FETCHES] - state[job + w.FETCHED] - 1,
-        state[row + w.CODE_WORDS] - state[job + w.WORD] - 1,
+        state[row + w.CODE_WORDS] - state[job + w.WORD],
         (state[w.PIECES_AT + piece + 1] - offset) // w.FETCH_BYTES,
     )
 
@@ -139,8 +139,7 @@ def keep_fetched(state: State, core: int, words: int, last: int, stalled: int) -
     owner = state[w.PIECES_AT + w.MAX_PIECES + state[row + w.PIECE]]
     count_traffic(state, w.CORE_A + core, owner, False, words * w.FETCH_BYTES)
     charge(state, core, w.CODE_FETCH, words * stall_of_word(state))
-    count_fetched(state, job, state[job + w.FETCHED] + words)
-    state[job + w.WORD] += words
+    go_past_code(state, job, row, words)
     state[job + w.STALLED], state[job + w.LINE_DONE] = stalled, last + state[w.L2_READ]
     hold_l2(state, core, last, w.FETCH_BYTES)
     next_entry(state, core, state[job + w.LINE_DONE])
