@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bfsim.kernel.native.entries import native
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.sdram import access, hits_ahead, stream
+from bfsim.machine.bus.sdram import access, hits_ahead, stream_until
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import count_access, count_subbanks, count_traffic
 from bfsim.machine.bus.transfers import after_move, soonest_wake
@@ -13,10 +13,12 @@ from bfsim.machine.bus.walk import move
 
 @native
 def others_quiet_until(state: State, until: int) -> int:
-    """Until when nobody but PPIs and memory DMAs asks for any bus, or does anything without one, and no refresh is due."""
+    """Until when nobody asks for any bus but PPIs and memory DMAs for SDRAM, or does anything without one, and no refresh is due."""
     limit = cores_quiet_until(state, w.NONE, min(until, state[w.NEXT_REFRESH]))
-    for other in range(w.PPI1 + 1, w.MDMA1_0):
-        limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    for other in range(w.IMDMA_0):
+        master = w.MASTERS_AT + other
+        is_another = w.PPI1 < other < w.MDMA1_0 or state[master + w.USES] != w.SDRAM
+        limit = min(limit, state[master + w.READY] if is_another else w.NEVER)
     return min(limit, state[w.MASTERS_AT + w.IMDMA_0 + w.READY], state[w.MASTERS_AT + w.IMDMA_1 + w.READY])
 
 
@@ -80,16 +82,11 @@ def buffers_quiet_until(state: State, until: int) -> int:
 
 
 @native
-def preferred_until(state: State, number: int, until: int, quiet_until: int) -> int:
-    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap, others waiting for it.
-
-    `quiet_until`: see `others_quiet_until`.
-    """
+def preferred_until(state: State, number: int, until: int) -> int:
+    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap, others waiting for it."""
     began, rank = state[w.BEGAN], state[w.MASTERS_AT + number + w.RANK]
-    limit, masters = min(until, state[w.NEXT_REFRESH]), w.MASTERS
-    if quiet_until > began:  # only PPIs and memory DMAs wait
-        limit, masters = quiet_until, w.IMDMA_0
-    for other in range(masters):
+    limit = min(until, state[w.NEXT_REFRESH])
+    for other in range(w.MASTERS):
         at = w.MASTERS_AT + other
         ready = state[at + w.READY]
         if ready < limit and other != number:
@@ -101,10 +98,27 @@ def preferred_until(state: State, number: int, until: int, quiet_until: int) -> 
 
 
 @native
+def preferred_with_cameras(state: State, number: int, quiet_until: int) -> int:
+    """Until when that is so of a memory DMA which asks for nothing just now, only PPIs and memory DMAs waiting: `others_quiet_until` a tick.
+
+    They are numbered in the order of their ranks.
+    """
+    began = state[w.BEGAN]
+    limit = min(quiet_until, state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY])
+    for other in range(w.MDMA1_0, w.MDMA2_1 + 1):
+        ready = state[w.MASTERS_AT + other + w.READY]
+        if ready < limit and (ready > began or other < number):
+            limit = ready
+    return limit
+
+
+@native
 def run_ahead(
-    state: State, number: int, transfer: int, ahead: int, ticks: int, until: int, quiet_until: int
+    state: State, number: int, transfer: int, ahead: int, ticks: int, free: int, until: int, quiet_until: int
 ) -> int:
-    """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between; `quiet_until`: see `others_quiet_until`.
+    """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between, the bus being `free` at a tick.
+
+    `quiet_until`: see `others_quiet_until`.
 
     Where nobody else wants the bus the pauses of a memory DMA that reads are part of the run; else a run ends with the first.
     Each division is left out where it would change nothing, which is most often so: it takes the host longer than all else here.
@@ -112,17 +126,17 @@ def run_ahead(
     if ahead <= 0 or state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
         return 0
     master = w.MASTERS_AT + number
-    free, alone = state[w.COMMAND_FREE], alone_until(state, quiet_until)
-    room = alone - free
-    if alone <= state[w.BEGAN]:  # somebody waits
-        room = preferred_until(state, number, until, quiet_until) - free
+    if quiet_until > state[w.BEGAN]:
+        room = preferred_with_cameras(state, number, quiet_until) - free
+    else:
+        room = preferred_until(state, number, until) - free
     if room <= 0:
         return 0
     numerator, parts = state[master + w.GAP_NUMERATOR], state[master + w.GAP_DENOMINATOR]
     if state[transfer + w.MODE] == w.READ and numerator > 0:
         pause = state[w.BURST_WORDS] * state[w.SCLK]
         longest = ticks * parts + pause * numerator
-        with_pauses = (alone - free - pause) * parts
+        with_pauses = (alone_until(state, quiet_until) - free - pause) * parts
         if with_pauses >= longest:
             return ahead if ahead * longest <= with_pauses else with_pauses // longest
         if state[master + w.GAP] + ahead * numerator >= parts:
@@ -167,19 +181,16 @@ def move_run(state: State, memory: Memory, number: int, at: int, until: int, qui
         in_sdram, on_chip, owner, other = on_chip, in_sdram, other, owner
     offset, step, bits = state[in_sdram], state[in_sdram + w.X_MODIFY], state[transfer + w.ELEMENT_BITS]
     beats = max(1, 1 << bits >> state[w.WORD_BITS])
-    through = access(state, at, offset, write)
-    if beats > 1:
-        through = stream(state, beats - 1, write, offset)
+    ticks = beats * state[w.SCLK]
+    access(state, at, offset, write)
+    free = state[w.COMMAND_FREE] - state[w.SCLK] + ticks
     in_line = min(state[in_sdram + w.X_LEFT], state[on_chip + w.X_LEFT])
     ahead = hits_ahead(state, offset + step, step, in_line - 1)
-    more = run_ahead(state, number, transfer, ahead, beats * state[w.SCLK], until, quiet_until)
-    paused = 0
-    if more:
-        paused = 0 if write else pause(state, master, more)
-        state[w.COMMAND_FREE] += paused
-        state[w.DATA_FREE] += paused
-        through = stream(state, more * beats, write, offset)
-    state[master + w.READY] = state[w.COMMAND_FREE] + (0 if write else pause(state, master, 1))
+    more = run_ahead(state, number, transfer, ahead, ticks, free, until, quiet_until)
+    paused = pause(state, master, more) if more and not write else 0
+    free += more * ticks + paused
+    through = stream_until(state, free, write, offset)
+    state[master + w.READY] = free + (0 if write else pause(state, master, 1))
     count = 1 + more
     count_access(state, number, owner, count, paused)
     count_traffic(state, number, owner, write, count << bits)

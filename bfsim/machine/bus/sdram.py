@@ -126,8 +126,15 @@ def stream(state: State, count: int, write: bool, offset: int) -> int:
 
     The caller has made sure that no refresh is due.
     """
-    state[w.COMMAND_FREE] += count * state[w.SCLK]
-    state[w.DATA_FREE] += count * state[w.SCLK]
+    return stream_until(state, state[w.COMMAND_FREE] + count * state[w.SCLK], write, offset)
+
+
+@native
+def stream_until(state: State, free: int, write: bool, offset: int) -> int:
+    """Do as many as come before the bus is `free` again."""
+    state[w.COMMAND_FREE] = free
     if write:
-        state[w.WRITTEN + (offset >> state[w.BANK_BITS])] = state[w.DATA_FREE]
-    return state[w.DATA_FREE]
+        state[w.DATA_FREE] = state[w.WRITTEN + (offset >> state[w.BANK_BITS])] = free
+        return free
+    state[w.DATA_FREE] = free + state[w.CL]
+    return free + state[w.CL]

@@ -136,50 +136,53 @@ def sooner(state: State, number: int, first: int, first_at: int) -> tuple[int, i
 def serve_with_cameras(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Serve a PPI or a memory DMA, and go on while only they can want the bus; return who is woken.
 
-    Most requests are theirs; this saves looking at everybody each time.
+    Most requests are theirs; this saves looking at everybody each time. One whose next transfer needs no bus is left to `grant`.
     """
     quiet_until = others_quiet_until(state, until)
-    woken = serve_dma(state, memory, number, at, until, quiet_until)
-    while woken == w.NONE:
+    while True:
+        woken = serve_dma(state, memory, number, at, until, quiet_until)
+        if woken != w.NONE or state[w.MASTERS_AT + number + w.USES] != w.SDRAM:
+            return woken
         number, at = first_with_cameras(state, quiet_until)
         if number in (w.PPI0, w.PPI1):
             take_hits(state, memory, copies_quiet_until(state, quiet_until))
             number, at = first_with_cameras(state, quiet_until)
         if number == w.NONE:
-            break
-        woken = serve_dma(state, memory, number, at, quiet_until, quiet_until)
-    return woken
+            return w.NONE
 
 
 @native
 def first_with_cameras(state: State, until: int) -> tuple[int, int]:
     """Return which of the PPIs and the memory DMAs has the SDRAM bus next, and when; NONE if not before tick `until`.
 
-    They are numbered in the order of their ranks; of the others none asks before `until`. One that needs no bus is left to `grant`.
+    They are numbered in the order of their ranks; of the others none asks before `until`. Most often somebody waits: who, the host foresees.
     """
-    first, at, free, needs_nothing_at = w.NONE, until, state[w.COMMAND_FREE], until
-    for number in range(w.PPI0, w.MDMA2_1 + 1):
-        master = w.MASTERS_AT + number
-        ready = state[master + w.READY]
-        if ready < until:
-            asks_at = max(free, ready)
-            if state[master + w.USES] != w.SDRAM:
-                needs_nothing_at = min(needs_nothing_at, ready)
-            elif asks_at < at or (asks_at == at and is_more_urgent(state, number, first, at)):
-                first, at = number, asks_at
-    return (first if at < needs_nothing_at else w.NONE), at
+    free = state[w.COMMAND_FREE]
+    if free >= until:
+        return w.NONE, until
+    left, right = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
+    if min(left, right) <= free:
+        return first_camera(state, max(left, free), max(right, free)), free
+    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
+        if state[w.MASTERS_AT + number + w.READY] <= free:
+            return number, free
+    first, at = w.NONE, until
+    for number in range(w.MDMA1_0, w.MDMA2_1 + 1):
+        ready = state[w.MASTERS_AT + number + w.READY]
+        if ready < at:
+            first, at = number, ready
+    if min(left, right) < until and min(left, right) <= at:
+        return first_camera(state, left, right), min(left, right)
+    return first, at
 
 
 @native
-def is_more_urgent(state: State, number: int, other: int, at: int) -> bool:
-    """Whether a PPI must have the bus at tick `at` before another one, which has the better rank."""
-    ppi, before = w.MASTERS_AT + number, w.MASTERS_AT + other
-    return (
-        number == w.PPI1
-        and other == w.PPI0
-        and is_urgent(state, ppi, at)
-        and not is_urgent(state, before, at)
-    )
+def first_camera(state: State, left: int, right: int) -> int:
+    """Return which of the PPIs has the bus first, each of which can have it from a tick on: if at once, the more urgent one."""
+    if left == right:
+        is_left_urgent = is_urgent(state, w.MASTERS_AT + w.PPI0, left)
+        return w.PPI1 if is_urgent(state, w.MASTERS_AT + w.PPI1, right) and not is_left_urgent else w.PPI0
+    return w.PPI0 if left < right else w.PPI1
 
 
 @native
