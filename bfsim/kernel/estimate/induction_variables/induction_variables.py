@@ -13,7 +13,7 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 COUNTING = ("getelementptr", "icmp", "phi", "br")
-"""What wants a counter as an address, for the end of a loop, or for the next iteration."""
+"""Uses of a counter as an address, for the end of a loop, or for the next iteration."""
 SUMS = ("add", "sub")
 HIDDEN = ".len"  # every array comes with its length, which C code would not pass
 
@@ -45,9 +45,9 @@ class InductionVariables:
         share_pointers(self.all, flow, evolution)
 
     def _is_indexed(self, variable: InductionVariable) -> bool:
-        """Whether one byte is accessed by a counter that every iteration wants anyway: its address costs less than a pointer that has to be stepped.
+        """Whether a byte is accessed by a counter that every iteration needs anyway: its address costs less than stepping a pointer.
 
-        [determine_group_iv_cost_address: six, and one for the array's register; a pointer one, five for its step, and two for its register]
+        [determine_group_iv_cost_address: six, and one for the array's register; for a pointer one, five for its step, and two for its register]
         """
         if variable.steps_free or variable.increment.symbolic or len(variable.accesses) > 1:
             return False
@@ -61,7 +61,7 @@ class InductionVariables:
         )
 
     def _stays(self, counter: str, loop: Loop) -> bool:
-        """Whether a counter of `loop` is wanted in each iteration or behind the loop, or no pointer can end that for it: for that there would have to be a division."""
+        """Whether a counter of `loop` is used in each iteration or after the loop, or no pointer can end the loop for it without a division."""
         increment = self.evolution.increment(counter, loop)
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         if increment is None or test is None:
@@ -136,7 +136,7 @@ class InductionVariables:
         return next(iter((*arrays, *once)), affine.terms[0][0])
 
     def _start(self, affine: Affine, root: str, loop: Loop) -> tuple[tuple[str, int], ...]:
-        """The terms of a first address that the loop around does not step along."""
+        """The terms of the first address that the loop around does not step along."""
         around = self.flow.around(loop)
         if around is None:
             return ()
@@ -151,7 +151,7 @@ class InductionVariables:
         )
 
     def _is_carried(self, name: str, around: Loop, depth: int = 4) -> bool:
-        """Whether the loop around carries a position from iteration to iteration, which only some of them, or inner loops, step."""
+        """Whether the loop around carries a position that only some iterations, or inner loops, step."""
         each = self.flow.instruction(name)
         if each is None or depth == 0 or self.flow.defined[name][0] not in around.blocks:
             return False
@@ -162,7 +162,7 @@ class InductionVariables:
         )
 
     def _entering_value(self, name: str, loop: Loop) -> str:
-        """What a term is in the first iteration of `loop`."""
+        """The value of a term in the first iteration of `loop`."""
         each = self.flow.instruction(name)
         if each is None or each.opcode != "phi" or self.flow.defined[name][0] != loop.header:
             return name
@@ -191,6 +191,6 @@ class InductionVariables:
 
 
 def is_merged_pointer(each: Instruction) -> bool:
-    """Whether a phi merges addresses, not a pointer that the loop carries."""
+    """Whether a phi merges addresses and is not a pointer that the loop carries."""
     is_choice = each.opcode == "phi" and each.text.startswith("phi ptr") and each.result not in each.operands
     return is_choice and not (each.result or "").endswith(EITHER)

@@ -1,7 +1,7 @@
-"""Loops whose first block begins with a test that is known where the loop is come to: that way leads past it [pass_dominator, tree-ssa-threadupdate.cc of GCC 12].
+"""Loops that begin with a test whose answer is known on entry: the entry leads past it [pass_dominator, tree-ssa-threadupdate.cc of GCC 12].
 
-`for x in range(n): if x < 2 or x >= n - 2: ...`: the first iteration goes to what the test leads to, and the loop begins there, with the end that
-counts in its middle.
+`for x in range(n): if x < 2 or x >= n - 2: ...`: the first iteration goes to where the test leads, and the loop begins
+there, with the end that counts in its middle.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from bfsim.kernel.ir.text import arms_of, is_number, predicate
 
 
 def with_known_entries(text: str) -> str:
-    """Return the module `text`, whose loops end with their tests, with such ways past the tests that loops begin with."""
+    """Return the module `text`, whose loops end with their tests, with such entries past the first tests of loops."""
     text = with_known_ways(text, _each_entered, tidied=with_one_way)
     return with_known_ways(text, _each_begun, with_invariants_before, with_one_way)
 
 
 def _each_entered(flow: ControlFlow) -> Iterator[KnownWays]:
-    """Yield the tests that end loops which begin with them, where constants say that a loop goes on when it is come to."""
+    """Yield the tests that loops begin with and that end them, if constants say that a loop goes on when it is entered."""
     for loop in flow.loops:
         before = [each for each in flow.predecessors[loop.header] if each not in loop.blocks]
         block = flow.blocks[loop.header]
@@ -41,7 +41,7 @@ def _each_entered(flow: ControlFlow) -> Iterator[KnownWays]:
         ):
             continue
         if loop.inner or loop.latch.endswith(SECOND) or f"{loop.latch}{COPIED}" in flow.blocks:
-            continue  # LLVM had made one test of both, so they are at its end, or what begins it has been copied
+            continue  # LLVM had joined both tests, so they are at its end, or its beginning has been copied
         if len(before) == 1 and statements_copied(flow, loop, (loop.header,)) <= MOST_ON_A_WAY:
             condition = block.terminator.operands[0]
             known = None if _is_of_flag(flow, loop, condition) else _said_first(flow, loop, condition)
@@ -64,7 +64,7 @@ def _is_of_flag(flow: ControlFlow, loop: Loop, condition: str) -> bool:
 
 
 def _said_first(flow: ControlFlow, loop: Loop, condition: str) -> bool | None:
-    """What a test says in the first iteration of what is one step beyond its constant start."""
+    """The answer of a test in the first iteration, of a value one step beyond its constant start."""
     test = flow.instruction(condition)
     if test is None or test.opcode != "icmp":
         return None
@@ -79,9 +79,10 @@ def _said_first(flow: ControlFlow, loop: Loop, condition: str) -> bool | None:
 
 
 def _each_begun(flow: ControlFlow) -> Iterator[KnownWays]:
-    """Yield the tests that do nothing but begin loops, where it is known what they say in the first iteration alone.
+    """Yield the tests that only begin loops, if their answer is known in the first iteration alone.
 
-    Where they lead then is where each iteration passes, so that the loop begins there [fwd_jt_path_registry::thread_through_loop_header].
+    Each iteration passes the block that they lead to then, so the loop begins there
+    [fwd_jt_path_registry::thread_through_loop_header].
     """
     for loop in flow.loops:
         before = [each for each in flow.predecessors[loop.header] if each not in loop.blocks]
@@ -93,7 +94,7 @@ def _each_begun(flow: ControlFlow) -> Iterator[KnownWays]:
             continue
         goal = block.successors[0 if first else 1]
         if any(way.endswith(SKIPPED) for way in block.successors):
-            continue  # the goal has been threaded to before, and begins with a block of its own
+            continue  # the goal has been threaded to before, and begins with a separate block
         if goal == loop.latch and not any(each.opcode == "store" for each in flow.blocks[goal].instructions):
             continue  # it does nothing but step: the loop would have two ways back
         if loop.blocks.issuperset(block.successors) and _is_passed(flow, loop, goal):

@@ -1,8 +1,9 @@
-"""Pointers to half-words in data registers: those that a sum of their own steps, from an argument that came in a data register.
+"""Pointers to half-words in data registers: those that a separate sum steps, from an argument that came in a data register.
 
-Such a pointer could also be in an index register, I0 += 2 [addsi3 in bfin.md], so the first pass of find_costs_and_classes finds the class
-IPREGS best, in the second one of which a step costs a move; then DPREGS is better, where only an access costs one [ira-costs.cc of GCC 12].
-Of these registers it gets the one that it comes in, and each block that accesses something moves it to a pointer register.
+Such a pointer could also be in an index register, I0 += 2 [addsi3 in bfin.md], so the first pass of find_costs_and_classes
+finds the class IPREGS best. There a step costs a move in the second pass; then DPREGS is better, where only an access costs
+one [ira-costs.cc of GCC 12]. The pointer gets the data register that it comes in, and each block that accesses something
+moves it to a pointer register.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ class HalfWordPointers:
         self.webs, self.context, self.flow, self.code = webs, webs.context, webs.flow, webs.code
 
     def place(self) -> None:
-        """Step them there, and move them where they are wanted."""
+        """Step them there, and move them where they are needed."""
         for variable in self.context.induction_variables.all:
             if self._is_stepped_apart(variable) and self._starts_in_register(variable):
                 self.webs.bank[variable.name] = DATA
@@ -35,7 +36,7 @@ class HalfWordPointers:
                     self.code.of[label] = self._moved(variable.name, label, block)
 
     def _is_stepped_apart(self, variable: InductionVariable) -> bool:
-        """Whether a sum steps it that an index register could do, and nothing but accesses to half-words uses it."""
+        """Whether its step is a sum that an index register could do, and its only uses are accesses to half-words."""
         return (
             not variable.steps_free
             and not variable.increment.symbolic
@@ -50,7 +51,7 @@ class HalfWordPointers:
         )
 
     def _takes_half_word(self, access: Instruction) -> bool:
-        """Whether it is one of a half-word, of which more than a byte is wanted."""
+        """Whether it accesses a half-word, of which more than a byte is wanted."""
         users = self.flow.users.get(access.result or "", [])
         is_byte = bool(users) and all(
             each.opcode == "trunc" and each.bits <= operations.BYTE_BITS for each in users
@@ -61,7 +62,7 @@ class HalfWordPointers:
         return one is not other and one.loop is other.loop and one.root == other.root
 
     def _starts_in_register(self, variable: InductionVariable) -> bool:
-        """Whether it starts with an argument that came in a register, or is what a loop around has stepped of that."""
+        """Whether it starts with an argument that came in a register, or with one that a loop around has stepped."""
         evolution, loop = self.context.evolution, variable.loop
         terms = evolution.affine(variable.accesses[0][1].operands[-1]).terms
         arguments = self.context.parameters()[: operations.REGISTER_ARGUMENTS]
@@ -83,7 +84,7 @@ class HalfWordPointers:
         ]
 
     def _moved(self, name: str, label: str, block: list[MachineInstruction]) -> list[MachineInstruction]:
-        """A block in which a pointer register has the pointer of the accesses."""
+        """A block in which a pointer register holds the pointer of the accesses."""
         copy, found = f"{name}@{POINTER.value}.{label}", list[MachineInstruction]()
         for each in block:
             if each.result == name:

@@ -1,8 +1,9 @@
-"""Pointers in index registers, I0-I3: those to half-words that only walk, where the pointer registers that need not be saved are taken.
+"""Pointers in index registers, I0-I3: those to half-words that only walk, when all pointer registers that need no saving are taken.
 
-GCC gives registers to what is used most first. To save a register costs a store and a load, an index register nothing, so that is preferred
-[assign_hard_reg in ira-color.cc of GCC 12], where an address may be in one: that of a half-word, without an offset [MODE_CODE_BASE_REG_CLASS
-in bfin.h]. What is loaded by one is not extended as it is loaded [bfin_dsp_memref_p in extendhisi2 in bfin.md].
+GCC first gives registers to the values that are used most. Saving a register costs a store and a load, an index register
+nothing, so it is preferred [assign_hard_reg in ira-color.cc of GCC 12] if it may hold the address: of a half-word, without
+an offset [MODE_CODE_BASE_REG_CLASS in bfin.h]. A value loaded by one is not extended by the load [bfin_dsp_memref_p in
+extendhisi2 in bfin.md].
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class IndexRegisters:
         self.walking = {each.name: each for each in self.context.induction_variables.all}
 
     def place(self) -> None:
-        """Give out registers, and extend what is loaded by an index register."""
+        """Assign registers, and extend what is loaded by an index register."""
         taken = [self._counters(label) for _, label in self.points]
         indices = [0] * len(taken)
         able = {web for web in self.walking if self._may_be_index(web)}
@@ -57,7 +58,7 @@ class IndexRegisters:
         return sum(loop.header in self.context.counters.counted for loop in self.flow.loops_of(label))
 
     def _points(self, label: str) -> list[frozenset[str]]:
-        """Webs that are alive behind and before each instruction of a block."""
+        """Webs that are alive after and before each instruction of a block."""
         alive = {self.webs.find(name) for name in self.webs.live.out[label]}
         found = [frozenset(alive)]
         for instruction in reversed(self.code.of[label]):
@@ -67,7 +68,7 @@ class IndexRegisters:
         return found
 
     def _order(self) -> list[str]:
-        """Webs in pointer registers, in the order in which they get one: those used most first, of variables the last one that starts [bucket_allocno_compare_func in ira-color.cc]."""
+        """Webs in pointer registers, in the order in which they get one: the most used first, of variables the last to start [bucket_allocno_compare_func in ira-color.cc]."""
         used, threads = self._uses(), self._threads()
         of_thread = Tally[str]()
         for web, often in used.items():
@@ -78,7 +79,7 @@ class IndexRegisters:
         return sorted(webs, key=lambda web: (-often_used[web], -number.get(web, -1), web))
 
     def _uses(self) -> Tally[str]:
-        """How often each web is used or computed, in thousandths; what is on the stack is not moved to its register."""
+        """How often each web is used or computed, in thousandths; values on the stack are not moved to their register."""
         used = Tally[str]()
         on_stack = self.context.parameters()[operations.REGISTER_ARGUMENTS :]
         for label, block in self.code.of.items():
@@ -93,7 +94,7 @@ class IndexRegisters:
         return Tally({web: often for web, often in used.items() if web not in on_stack})
 
     def _threads(self) -> dict[str, str]:
-        """Of webs: another one that ends where it starts, whose register it gets, or the web that starts that thread [form_threads_from_copies]; of sums of shifted values, which need both there."""
+        """For each web, another one that ends where it starts and whose register it gets, or the web that starts that thread [form_threads_from_copies]; for sums of shifted values, which need both there."""
         together = defaultdict[str, set[str]](set)
         for alive, _ in self.points:
             for web in alive:
@@ -110,7 +111,7 @@ class IndexRegisters:
         return found
 
     def _may_be_index(self, name: str) -> bool:
-        """Whether nothing but accesses to half-words, with its step, uses a variable that starts as an array that came in a register, in no loop around."""
+        """Whether a variable starts as an array that came in a register, in no loop around, and is used only by its step and accesses to half-words."""
         variable, users = self.walking[name], self._users(name)
         on_stack = self.context.parameters()[operations.REGISTER_ARGUMENTS :]
         return (
@@ -134,7 +135,7 @@ class IndexRegisters:
         ]
 
     def _extended(self, each: MachineInstruction, extended: set[str]) -> list[MachineInstruction]:
-        """An operation; a load by an index register with the extension of what it loads, unless what is computed of that is `extended`."""
+        """An operation; after a load by an index register its extension, unless a result computed from it is `extended`."""
         by_index = any(self.webs.bank.get(self.webs.find(name)) is INDEX for name, _ in each.uses)
         if not by_index or each.op is not Op.LOAD16 or each.access is None:
             return [each]

@@ -1,7 +1,8 @@
-"""How often a loop iterates whose iterations a register counts: what computes that before it [niter_for_exit in loop-iv.cc of GCC 12].
+"""Numbers of iterations of loops that a register counts: how they are computed before the loop [niter_for_exit in loop-iv.cc of GCC 12].
 
-Where nothing but the loop's end wants the counter, the first of the loop's pointers is compared in its place [may_eliminate_iv in
-tree-ssa-loop-ivopts.cc]. Of one that walks by more than a byte, the bytes from its start to its end are shifted, in pointer registers.
+If only the loop's end uses the counter, the first of the loop's pointers is compared instead [may_eliminate_iv in
+tree-ssa-loop-ivopts.cc]. If it walks by more than a byte, the bytes from its start to its end are shifted, in pointer
+registers.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from bfsim.kernel.rules import Rule
 
 
 class IterationCounts:
-    """Those of the loops of one routine."""
+    """The numbers of iterations of one routine's loops."""
 
     def __init__(self, context: Context) -> None:
         self.context, self.evolution = context, context.evolution
 
     def operations(self, loop: Loop) -> Iterator[Op]:
-        """What computes how often `loop` iterates; once, where it may be less than that."""
+        """The operations that compute how often `loop` iterates; once, if it may be less than that."""
         yield Op.MOVE
         if self.is_known(loop):
             return
@@ -41,7 +42,7 @@ class IterationCounts:
             yield from (Op.ALU, Op.COMPARE, Op.IMM, Op.COND_MOVE)
 
     def shifted_argument(self, loop: Loop) -> str | None:
-        """Return the argument in a register that is shifted to find where the pointer that ends `loop` ends, if one is."""
+        """Return the argument in a register that is shifted to find the end of the pointer that ends `loop`, if there is one."""
         test, pointer = (
             self.context.flow.instruction(self.evolution.exit_test(loop) or ""),
             self.pointer(loop),
@@ -55,12 +56,12 @@ class IterationCounts:
         return terms[0] if len(terms) == 1 and terms[0] in able else None
 
     def _in_addresses(self, loop: Loop) -> set[str]:
-        """What the addresses are computed from that the pointers of `loop` start at: in pointer registers."""
+        """The values from which the starts of the pointers of `loop` are computed: in pointer registers."""
         of_loop = (each for each in self.context.induction_variables.all if each.loop is loop)
         return {name for each in of_loop for name, _ in self._terms(each)}
 
     def is_known(self, loop: Loop) -> bool:
-        """Whether a number is loaded: in a loop in another one, unless the pointer's start and end are computed before both."""
+        """Whether a number is loaded: in an inner loop, unless the pointer's start and end are computed before both loops."""
         if self.evolution.iterations(loop) is None:
             return False
         pointer, around = self.pointer(loop), self.context.flow.around(loop)
@@ -70,7 +71,7 @@ class IterationCounts:
         return any(gain is not None and gain.moves for gain in gains)
 
     def _ends_before(self, loop: Loop) -> bool:
-        """Whether start and end of the pointer are computed before the loop around: what is between them is computed anew each time."""
+        """Whether start and end of the pointer are computed before the loop around: their difference is computed anew each time."""
         pointer, around = self.pointer(loop), self.context.flow.around(loop)
         if pointer is None or around is None or not self.context.profile.applies(Rule.ROW_POINTERS):
             return False
@@ -78,14 +79,14 @@ class IterationCounts:
         return not any(gain is not None and gain.moves for gain in gains)
 
     def _is_shifted(self, loop: Loop) -> bool:
-        """Whether what ends `loop` advances by more than one."""
+        """Whether the counter or pointer that ends `loop` advances by more than one."""
         pointer = self.pointer(loop)
         if pointer is not None:
             return abs(pointer.increment.constant) > 1
         return self._step(loop) > 1
 
     def _step(self, loop: Loop) -> int:
-        """By how much the counter that ends `loop` advances, if it does not end where it is known to."""
+        """By how much the counter that ends `loop` advances, unless its end is known."""
         test = self.context.flow.instruction(self.evolution.exit_test(loop) or "")
         start = self.evolution.counter_start(loop)
         if test is None or start is None or all(map(is_number, (start, test.operands[1]))):
@@ -94,7 +95,7 @@ class IterationCounts:
         return abs(gain.constant) if gain is not None else 1
 
     def pointer(self, loop: Loop) -> InductionVariable | None:
-        """The pointer that is compared in place of the counter, if nothing else wants that: the first one that starts most simply [cheaper_cost_pair]."""
+        """The pointer that is compared instead of the counter, if that has no other use: the first with the simplest start [cheaper_cost_pair]."""
         test = self.context.flow.instruction(self.evolution.exit_test(loop) or "")
         counters = [name for name, _ in self.evolution.affine(test.operands[0]).terms] if test else []
         made = [self.context.flow.instruction(each) for each in counters]
@@ -105,5 +106,5 @@ class IterationCounts:
         return min(steady, key=lambda each: len(self._terms(each)), default=None)
 
     def _terms(self, pointer: InductionVariable) -> tuple[tuple[str, int], ...]:
-        """What its address is the sum of, with factors."""
+        """The terms of its address, with factors."""
         return self.evolution.affine(pointer.accesses[0].instruction.operands[-1]).terms

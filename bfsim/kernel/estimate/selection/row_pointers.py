@@ -1,7 +1,7 @@
-"""Where the pointers of a loop in another one start: what the loop around steps for them [tree-ssa-loop-ivopts.cc of GCC 12].
+"""Starts of an inner loop's pointers: what the loop around steps for them [tree-ssa-loop-ivopts.cc of GCC 12].
 
-To find a[y * w + x] the loop over the rows steps where a row ends, by which the columns are counted, and by how much it is behind the
-array: one sum of these for all arrays of bytes. Of half-words and words, each array has a pointer of its own.
+To find a[y * w + x], the loop over the rows steps the end of a row, by which the columns are counted, and the row's distance
+from the array: one sum of these for all arrays of bytes. Each array of half-words or words has its own pointer.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class RowPointers:
         self.made: set[str] = set()
 
     def start(self, variable: InductionVariable) -> bool:
-        """Compute where a pointer starts, if the loop around steps that; return whether it does."""
+        """Compute the start of a pointer, if the loop around steps it; return whether it does."""
         loop, around = variable.loop, self.flow.around(variable.loop)
         if around is None or not self.context.profile.applies(Rule.ROW_POINTERS):
             return False
@@ -69,7 +69,7 @@ class RowPointers:
             self._add(variable, before, Op.MOVE, variable.name, end)
 
     def _moves(self, variable: InductionVariable) -> bool:
-        """Whether the loop around steps where a pointer starts, by as much each time."""
+        """Whether the loop around steps the start of a pointer by the same amount each time."""
         around = self.flow.around(variable.loop)
         assert around is not None
         gains = [self.evolution.increment(name, around) for name in self._row(variable)]
@@ -78,7 +78,7 @@ class RowPointers:
         )
 
     def _row(self, variable: InductionVariable) -> dict[str, int]:
-        """What is added to the array's address where a pointer starts, with factors."""
+        """The terms added to the array's address at the start of a pointer, with factors."""
         terms = self.evolution.affine(variable.accesses[0].instruction.operands[-1]).terms
         return {
             name: times
@@ -102,7 +102,7 @@ class RowPointers:
         return abs(variable.increment.constant) == 1 or variable.accesses[0].instruction.bits == 8
 
     def _offset(self, variable: InductionVariable, around: Loop) -> str:
-        """The name of what arrays of bytes have in common: how far the row is behind their addresses."""
+        """The name of the distance from an array's address to the row, which arrays of bytes share."""
         row = self._row(variable)
         there = self._there(row, around)
         if there:
@@ -111,7 +111,7 @@ class RowPointers:
         return self._stepped(variable, around, f"{around.header}.{ROW}{key}", POINTER)
 
     def _there(self, row: dict[str, int], around: Loop) -> str:
-        """The name of a value that the loop around has anyway, and that is as much."""
+        """The name of an equal value that the loop around has anyway."""
         for label in self.flow.inside(around):
             for each in self.flow.blocks[label].instructions:
                 name = each.result or ""
