@@ -155,7 +155,7 @@ def serve_with_cameras(state: State, memory: Memory, number: int, at: int, until
 def first_with_cameras(state: State, until: int) -> tuple[int, int]:
     """Return which of the PPIs and the memory DMAs has the SDRAM bus next, and when; NONE if not before tick `until`.
 
-    They are numbered in the order of their ranks; of the others none asks before `until`. Most often somebody waits: who, the host foresees.
+    They are numbered in the order of their ranks; of the others none asks before `until`. Most often somebody waits, and the branches that find who are predicted well.
     """
     free = state[w.COMMAND_FREE]
     if free >= until:
