@@ -30,6 +30,9 @@ class Rule(StrEnum):
         "products by one number are added up before they are multiplied, in sums of bytes and half-words"
     )
     ADJACENT_NUMBERS = "a choice between neighbouring numbers by a bit is computed from that"
+    SMALL_NUMBERS = (
+        "a comparison with a small number is guessed as one with -1, 0 or 1, of unsigned words, too"
+    )
     KNOWN_VALUES = "where ways meet, a number that a variable is known to be is that variable"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what every way from a test loads is loaded before it, if one of its sides does so"
@@ -200,6 +203,7 @@ GCC: dict[Rule, str] = {
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
     Rule.COMMON_FACTORS: "undistribute_ops_list in tree-ssa-reassoc.cc",
     Rule.ADJACENT_NUMBERS: "two_value_replacement in tree-ssa-phiopt.cc",
+    Rule.SMALL_NUMBERS: "tree_predict_by_opcode in predict.cc",
     Rule.KNOWN_VALUES: "tree-ssa-uncprop.cc",
     Rule.DIVIDED_COUNTS: '"Costs of niter computation too high" in loop-doloop.cc',
     Rule.INCLUSIVE_LOOPS: '"possible infinite iteration case" in loop-doloop.cc',
@@ -234,6 +238,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.FACTORED_SUMS: ("split_uyvy", "yuv_to_rgb"),
     Rule.COMMON_FACTORS: (),  # from kernels that are not measured here: tests/kernel/estimate/arithmetic/test_common_factors.py
     Rule.ADJACENT_NUMBERS: (),  # tests/kernel/estimate/choices/test_adjacent_numbers.py
+    Rule.SMALL_NUMBERS: (),  # tests/kernel/estimate/conditions/test_small_numbers.py
     Rule.KNOWN_VALUES: (),  # from kernels that are not measured here: tests/kernel/estimate/choices/test_known_values.py
     Rule.DIFFERENCE: ("sad_search",),
     Rule.COMMON_LOADS: ("cordic_atan",),

@@ -46,6 +46,7 @@ class Likelihood:
         self.loop_guards = frozenset(loop_guards(flow)) if Rule.LOOP_GUARDS not in without else frozenset()
         self.comparisons = CounterComparisons(flow, self.evolution).votes if compares else {}
         self.ends = EndsOfRanges(flow) if Rule.ENDS_OF_RANGES not in without else None
+        self.makes_small = Rule.SMALL_NUMBERS not in without
 
     @cached_property
     def taken(self) -> dict[tuple[str, str], float]:
@@ -120,6 +121,8 @@ class Likelihood:
         if kind in ("eq", "ne") and number != 0:
             return [1 - NOT_EQUAL if kind == "eq" else NOT_EQUAL]
         if number is None or self._is_range(test):
+            return []
+        if not self.makes_small and (kind[0] == "u" or abs(number) > 1):
             return []
         if (kind[1:], number) in BELOW_ZERO:
             return [1 - POSITIVE]

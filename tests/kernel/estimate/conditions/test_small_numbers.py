@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
+from bfsim.kernel import VDSP_O2
+from bfsim.kernel.estimate.prediction.predict import Likelihood
+from bfsim.kernel.rules import Rule
 from tests.kernel.beside_gcc import Case, beside_gcc
+from tests.kernel.lowered import context
 
 SHAPE = """
 def f(a: {array}[:], n: i32, t: i32) -> i32:
@@ -32,3 +40,13 @@ CASES = {
     "a shifted half-word from two on": _case(3499, "v >= 2", "a[i] >> 4", "u16"),
 }
 test_estimates_are_near_what_gcc_makes, test_what_is_costed_is_what_runs = beside_gcc(CASES)
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_only_gcc_guesses_by_numbers_that_it_makes_small(number: int, tmp_path: Path) -> None:
+    """`v < 2` is `v <= 1` to it; a comparison with 3 stays one, and other compilers are not known to guess by either."""
+    text = SHAPE.format(array="i32", value="a[i]", test=f"v < {number}")
+    flow = context(text, tmp_path).flow
+    guessed, without = (Likelihood(flow, without=rules).taken for rules in ((), (Rule.SMALL_NUMBERS,)))
+    assert (guessed != without) is (number == 2)
+    assert not VDSP_O2.applies(Rule.SMALL_NUMBERS)
