@@ -99,7 +99,7 @@ def writing(path: Path) -> Iterator[None]:
 def _resolved(path: Path) -> Path:
     """Return where a path leads. Raises ConfigError for links in a circle and for invalid names.
 
-    Raises FileNotFoundError if the current folder was removed, and UnicodeEncodeError for a name that the system's encoding has not.
+    Raises FileNotFoundError if the current folder was removed, and UnicodeEncodeError for a name that it cannot encode.
     """
     try:
         return path.resolve()

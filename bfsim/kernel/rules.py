@@ -30,9 +30,7 @@ class Rule(StrEnum):
         "products by one number are added up before they are multiplied, in sums of bytes and half-words"
     )
     ADJACENT_NUMBERS = "a choice between neighbouring numbers by a bit is computed from that"
-    SMALL_NUMBERS = (
-        "a comparison with a small number is guessed as one with -1, 0 or 1, of unsigned words, too"
-    )
+    SMALL_NUMBERS = "a comparison with a small number, signed or not, is guessed like one with -1, 0 or 1"
     KNOWN_VALUES = "where ways meet, a number that a variable is known to be is that variable"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what every way from a test loads is loaded before it, if one of its sides does so"

@@ -249,6 +249,14 @@ class ControlFlow:
         """
         return frozenset.intersection(*(self.dominators[each] for each in (loop.latch, *self.exits(loop))))
 
+    def runs_before(self, one: Instruction, label: str, other: Instruction) -> bool:
+        """Whether an instruction has been run whenever another one, of the block `label`, is."""
+        home, _ = self.defined[one.result or ""]
+        if home != label:
+            return home in self.dominators[label]
+        rows = self.blocks[label].instructions
+        return rows.index(one) < rows.index(other)
+
     def every_iteration(self, label: str, loop: Loop) -> bool:
         """Whether a block runs once in each iteration of `loop`."""
         return label in self.dominators[loop.latch] and self.innermost(label) is loop

@@ -13,7 +13,7 @@ from bfsim.machine.bus.walk import move
 
 @native
 def others_quiet_until(state: State, until: int) -> int:
-    """Until when nobody asks for any bus but PPIs and memory DMAs for SDRAM, or does anything without one, and no refresh is due."""
+    """Until when only PPIs and memory DMAs do anything, none of it without the SDRAM bus, and no refresh is due."""
     limit = cores_quiet_until(state, w.NONE, min(until, state[w.NEXT_REFRESH]))
     for other in range(w.IMDMA_0):
         master = w.MASTERS_AT + other
@@ -99,7 +99,7 @@ def preferred_until(state: State, number: int, until: int) -> int:
 
 @native
 def preferred_with_cameras(state: State, number: int, quiet_until: int) -> int:
-    """Until when that is so of a memory DMA which asks for nothing just now, only PPIs and memory DMAs waiting: `others_quiet_until` a tick.
+    """`preferred_until` of a memory DMA that asks for nothing just now, if only PPIs and memory DMAs wait: see `others_quiet_until`.
 
     They are numbered in the order of their ranks.
     """

@@ -34,10 +34,7 @@ def _shift(flow: ControlFlow, label: str, each: Instruction) -> Instruction | No
     for other in flow.users[value]:
         if other is each or not _is_product(other) or other.operands[0] != value:
             continue
-        home, _ = flow.defined[other.result or ""]
-        rows = flow.blocks[label].instructions
-        is_before = rows.index(other) < rows.index(each) if home == label else home in flow.dominators[label]
-        if not is_before:
+        if not flow.runs_before(other, label, each):
             continue
         for bits in range(1, WORD):
             if (int(other.operands[1]) << bits) % (1 << WORD) == int(factor) % (1 << WORD):

@@ -1,4 +1,4 @@
-"""What a side of a choice that is stored as narrow computes of narrow values is computed there, as narrow, though a test wants the word, too.
+"""Choices that are stored as bytes or half-words: each side computes the narrow value itself, even if a test also needs the word.
 
 Of `c[i] = -d if d < 0 else d`, with `d = a[i] - b[i]` of bytes, C converts both sides [COND_EXPR in convert_to_integer_1 of convert.cc of GCC 12]: one
 is the difference of the bytes, the other one that the other way round [narrowing conversions of arithmetic in match.pd]. No branch goes away then.
@@ -22,6 +22,7 @@ from bfsim.kernel.ir.text import (
     renamed,
     written,
 )
+from bfsim.kernel.ir.unused import without_unused
 from bfsim.kernel.ir.widths import WORD
 
 DEEPEST = 4
@@ -31,7 +32,7 @@ PURE = (*COMPUTED, "lshr", "ashr", "trunc", "zext", "sext")
 
 
 def with_narrow_sides(routine: Routine) -> Routine:
-    """Return `routine` with such sides."""
+    """Return `routine` with choices whose sides compute narrow values."""
     done = set[str]()
     while True:
         flow = ControlFlow(routine)
@@ -42,7 +43,7 @@ def with_narrow_sides(routine: Routine) -> Routine:
         blocks = _with_sides(flow, phi)
         if blocks is not None:
             narrow = replace(routine, blocks=tuple(blocks.values()))
-            routine = _without_unused(narrow)
+            routine = without_unused(narrow, PURE)
 
 
 def _choices(flow: ControlFlow) -> Iterator[Instruction]:
@@ -136,21 +137,3 @@ class _Side:
         name = f"{self.name}.{len(self.rows)}"
         self.rows.append(Instruction(name, opcode, text, operands, self.at.line, location=self.at.location))
         return name
-
-
-def _without_unused(routine: Routine) -> Routine:
-    """Return `routine` without what nothing uses any more."""
-    while True:
-        used = {name for block in routine.blocks for each in block.instructions for name in each.operands}
-        blocks = [
-            replace(
-                block,
-                instructions=tuple(
-                    each for each in block.instructions if each.opcode not in PURE or each.result in used
-                ),
-            )
-            for block in routine.blocks
-        ]
-        if blocks == [*routine.blocks]:
-            return routine
-        routine = replace(routine, blocks=tuple(blocks))

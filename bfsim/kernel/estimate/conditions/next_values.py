@@ -31,7 +31,11 @@ def _restored(flow: ControlFlow, block: BasicBlock, test: Instruction) -> Instru
     if variable is None or variable.opcode != "phi" or not is_number(test.operands[1]):
         return test
     for each in map(flow.instruction, _next_values(flow, variable)):
-        if each is None or each.operands[:1] != (variable.result,) or not _is_before(flow, each, block, test):
+        if (
+            each is None
+            or each.operands[:1] != (variable.result,)
+            or not flow.runs_before(each, block.label, test)
+        ):
             continue
         number = _number(predicate(test), int(test.operands[1]), each)
         if number is not None:
@@ -46,14 +50,6 @@ def _next_values(flow: ControlFlow, variable: Instruction) -> list[str]:
     merged = (flow.instruction(each) for each in variable.operands)
     others = (each for each in merged if each is not None and each.opcode == "phi" and each is not variable)
     return [*variable.operands, *(value for each in others for value in each.operands)]
-
-
-def _is_before(flow: ControlFlow, one: Instruction, block: BasicBlock, other: Instruction) -> bool:
-    """Whether an instruction has been run whenever another one of `block` is."""
-    home, _ = flow.defined[one.result or ""]
-    if home != block.label:
-        return home in flow.dominators[block.label]
-    return block.instructions.index(one) < block.instructions.index(other)
 
 
 def _number(relation: str, number: int, step: Instruction) -> int | None:

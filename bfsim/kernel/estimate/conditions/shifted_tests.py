@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from bfsim.kernel.estimate.conditions.next_values import SHIFTS
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction, Routine, is_number, predicate
 
-SHIFTS = {"u": "lshr", "s": "ashr"}
-
 
 def with_shifted_tests(routine: Routine) -> Routine:
-    """Return `routine` with tests of shifted values, where these are there."""
+    """Return `routine` with tests of the shifted values, if these are computed before the test."""
     flow = ControlFlow(routine)
     blocks = []
     for block in routine.blocks:
@@ -30,8 +29,8 @@ def _shifted(flow: ControlFlow, label: str, test: Instruction) -> Instruction:
     value, above = test.operands[0], predicate(test)[1:] == "gt"
     for shift in flow.users.get(value, []):
         amount = shift.operands[-1]
-        is_down = shift.opcode == SHIFTS[predicate(test)[0]] and shift.operands[0] == value
-        if not is_down or not is_number(amount) or not _is_before(flow, shift, label, test):
+        is_down = SHIFTS.get(shift.opcode) == predicate(test)[0] and shift.operands[0] == value
+        if not is_down or not is_number(amount) or not flow.runs_before(shift, label, test):
             continue
         bound, rest = divmod(int(test.operands[1]) + above, 1 << int(amount))
         if not rest:
@@ -39,9 +38,3 @@ def _shifted(flow: ControlFlow, label: str, test: Instruction) -> Instruction:
             text = f"{test.text[: test.text.index(value)]}{left}, {number}"
             return replace(test, text=text, operands=(left, number))
     return test
-
-
-def _is_before(flow: ControlFlow, shift: Instruction, label: str, test: Instruction) -> bool:
-    home, _ = flow.defined[shift.result or ""]
-    rows = flow.blocks[label].instructions
-    return rows.index(shift) < rows.index(test) if home == label else home in flow.dominators[label]

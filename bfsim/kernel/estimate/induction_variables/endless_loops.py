@@ -33,8 +33,8 @@ class EndlessLoops:
         """With several exits, the pointer that walks is compared for equality with its end.
 
         GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
-        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count a loop up to
-        a number and with it, which may always hold (`inclusive_bounds`), nor a counter of its own that may step over the largest number.
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count a loop up to and
+        including a number, whose test may always hold (`inclusive_bounds`), nor a counter of its own that may step over the largest number.
         """
         if not self._has_several_exits(loop):
             return False

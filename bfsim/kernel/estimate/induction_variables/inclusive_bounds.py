@@ -1,4 +1,4 @@
-"""Loops that run up to a bound and with it, or down to it: they may be endless, since the bound may be the last number there is.
+"""Loops that run up to and including a bound, or down to one: they may be endless, since the bound may be the last number there is.
 
 GCC says so of a test as it folds it: `i < n + 3` is `i <= n + 2`, and `i <= n - 3` is `i < n - 2` [maybe_canonicalize_comparison_1 in
 fold-const.cc of GCC 12]. It knows that `n - 3` is not the largest number, since nothing overflows [number_of_iterations_le in
