@@ -94,10 +94,10 @@ def diff(
         difference = _difference(*results)
 
         def write() -> None:
-            from bfsim.files.save import write_text
-            from bfsim.report.html.diff_page import DiffPage, PagedSide
-
             if html:
+                from bfsim.files.save import write_text
+                from bfsim.report.html.diff_page import DiffPage, PagedSide  # needs the packages of pages
+
                 named = (PagedSide(*each) for each in zip((before, after), frames, strict=True))
                 write_text(html, DiffPage(difference, *named).chunks())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,14 @@ def bfsim(*arguments: object) -> Result:
 def keep(name: str, *arguments: object) -> None:
     """Run firmware and keep the result."""
     done = bfsim("run", "drive.mcap", *arguments, "--json", name)
+    assert done.exit_code == 0, done.output
+
+
+def test_only_a_page_needs_the_packages_of_pages(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plain installation has none of them; `home` is where the result lies."""
+    keep("slow.json", "--firmware", "slow.py:firmware")
+    monkeypatch.setitem(sys.modules, "bfsim.report.html.diff_page", None)
+    done = bfsim("diff", home / "slow.json", "slow.json")
     assert done.exit_code == 0, done.output
 
 
