@@ -120,10 +120,15 @@ def _stream_of(source: str) -> Iterator[tuple[Any, Any]]:
             f'{source}: reading video needs the package PyAV; install it with: pip install "bfsim[video]"'
         ) from None
     try:
-        with av.open(source, metadata_errors="replace") as container:  # a title, in whatever encoding
+        with av.open(source, **_in_any_encoding(av.__version__)) as container:
             if not container.streams.video:
                 kinds = ", ".join(sorted({each.type for each in container.streams})) or "none at all"
                 raise RecordingError(f"{source}: file must be whole and have a video stream, not {kinds}")
             yield container, container.streams.video[0]
     except (av.FFmpegError, OSError) as error:
         raise RecordingError(f"{source}: video must be readable: {error.strerror}") from None
+
+
+def _in_any_encoding(pyav: str) -> dict[str, Any]:
+    """Return the options with which this version of PyAV reads a title in whatever encoding: since version 19 it always does."""
+    return {"metadata_errors": "replace"} if int(pyav.split(".", 1)[0]) < 19 else {}
