@@ -102,8 +102,12 @@ def _resolved(path: Path) -> Path:
     Raises FileNotFoundError if the current folder was removed, and UnicodeEncodeError for a name that it cannot encode.
     """
     try:
-        return path.resolve()
+        place = path.resolve()
+        is_circle = place.is_symlink()  # since Python 3.13 `resolve` says nothing
     except (FileNotFoundError, UnicodeEncodeError):
         raise
     except (OSError, RuntimeError, ValueError):
-        raise ConfigError(f"{path} must lead to a place, not in a circle of links") from None
+        is_circle = True
+    if is_circle:
+        raise ConfigError(f"{path} must lead to a place, not in a circle of links")
+    return place
