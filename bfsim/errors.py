@@ -103,7 +103,17 @@ class EndError(BaseException):
 
 def is_failure(error: BaseException) -> bool:
     """Return whether user code that raised this has failed. Ctrl-C, `q` in pdb and `EndError` only pass through it."""
-    return not isinstance(error, (KeyboardInterrupt, BdbQuit, EndError))
+    return not (isinstance(error, (KeyboardInterrupt, EndError)) or quits_debugger(error))
+
+
+def quits_debugger(error: BaseException) -> bool:
+    """Return whether `q` in pdb raised this: since Python 3.14, a SystemExit there."""
+    if not isinstance(error, SystemExit):
+        return isinstance(error, BdbQuit)
+    place = error.__traceback__
+    while place and place.tb_next:
+        place = place.tb_next
+    return place is not None and place.tb_frame.f_globals.get("__name__") == "pdb"
 
 
 class BfsimWarning(UserWarning):

@@ -15,7 +15,7 @@ from typing import Any
 
 import click
 
-from bfsim.errors import BfsimError, BfsimWarning, EndError
+from bfsim.errors import BfsimError, BfsimWarning, EndError, quits_debugger
 from bfsim.process import look_alikes
 from bfsim.process.signals import BY_SIGNAL, interrupted_code
 
@@ -59,8 +59,11 @@ def fault() -> int:
 def _exit_code_of(command: Callable[[], Any]) -> int:
     try:
         code = command()
-    except SystemExit as error:
-        code = error.code
+    except (SystemExit, BdbQuit) as error:
+        if quits_debugger(error):
+            click.echo("bfsim: ended by the debugger", err=True)
+            return interrupted_code()
+        code = getattr(error, "code", None)
     except click.ClickException as error:
         text = StringIO()
         error.show(text)
@@ -72,9 +75,6 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
         return _mistake(_refusal(error))
     except (KeyboardInterrupt, click.Abort) as error:  # it may say where
         click.echo(f"bfsim: interrupted{error}", err=True)
-        return interrupted_code()
-    except BdbQuit:
-        click.echo("bfsim: ended by the debugger", err=True)
         return interrupted_code()
     return code if isinstance(code, int) else 0
 
