@@ -40,7 +40,7 @@ def explanation(outcome: Outcome) -> Iterator[str]:
     yield from (*why(difference), *scope(difference))
     rows = shown(difference, CAUSES)
     if rows:
-        yield f"Cycles of both cores in {frames_compared(difference)}, before and now:"
+        yield f"Cycles of all cores in {frames_compared(difference)}, before and now:"
     for depth, each in rows:
         before, after, more = cells(each)
         label = labelled(each).removesuffix(":")  # the source line of a `for` ends in one
@@ -75,7 +75,7 @@ def dearest(side: Side, stages: Collection[str]) -> Iterator[str]:
         by_stage[owner.stage] = by_stage.get(owner.stage, 0) + cclk
     largest = sorted(by_stage, key=lambda each: -by_stage[each])
     for stage in [each for each in largest if each in stages] or largest[:2]:
-        yield f"{stage} takes {_ms(by_stage[stage], side)} a frame, both cores together:"
+        yield f"{stage} takes {_ms(by_stage[stage], side)} a frame, all cores together:"
         owners = sorted(
             (each for each in side.owners if each.stage == stage), key=lambda each: -side.owners[each]
         )

@@ -11,7 +11,7 @@ from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.pairs import SMALL, pairs_of, with_stages_alike
 from bfsim.report.diff.side import Line, Owner, Side, Source
 
-WAITS = "waits for the other core and the cameras"
+WAITS = "waits for other cores and the cameras"
 NO_LINE = "not of a line"
 
 

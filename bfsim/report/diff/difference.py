@@ -19,7 +19,7 @@ class ContributionKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contribution:
-    """Part of a difference, in CCLK cycles of both cores over all compared frames. The `parts`, if any, sum to `cclk`.
+    """Part of a difference, in CCLK cycles of all cores over all compared frames. The `parts`, if any, sum to `cclk`.
 
     `place` is FILE:LINE of the new run, or of the old one for what is gone. `before_cclk` and `after_cclk` are None for
     a cause, which is only a difference. Waits for the other core or for the cameras are of kind FOLLOWS, with their

@@ -41,7 +41,7 @@ def contribution_rows(difference: Difference, top: int) -> Iterator[str]:
     """Yield the `top` contributions as a table, if there are any."""
     contributions = shown(difference, top)
     if contributions:
-        heads = f"Cycles of both cores in {frames_compared(difference)}", "before", "after", "difference"
+        heads = f"Cycles of all cores in {frames_compared(difference)}", "before", "after", "difference"
         rows = ((INDENT * depth + labelled(each), *cells(each)) for depth, each in contributions)
         yield from _table(heads, NUMBER, (*rows, all_row(difference)))
 

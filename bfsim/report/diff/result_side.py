@@ -51,13 +51,17 @@ def result_side(result: Result, chosen: Collection[int]) -> Side:
 
 def identity_words(identity: Identity) -> dict[str, str]:
     """Return what a result depends on, by names for people."""
-    values = {field.name: getattr(identity, field.name) for field in fields(Identity)}
     return {
-        name.replace("_digest", ": content").replace("_", " "): SEPARATOR.join(value)
-        if isinstance(value, tuple)
-        else str(value)
-        for name, value in values.items()
+        field.name.replace("_digest", ": content").replace("_", " "): _in_words(getattr(identity, field.name))
+        for field in fields(Identity)
     }
+
+
+def _in_words(value: str | float | tuple[str, ...]) -> str:
+    """Return a value of an identity: a rate in Hz to a millionth, such as 600,000,000 or 133,333,333.333333."""
+    if isinstance(value, float):
+        return f"{value:,.6f}".rstrip("0").removesuffix(".")
+    return SEPARATOR.join(value) if isinstance(value, tuple) else str(value)
 
 
 def _longest_cclk(frame: FrameRecord) -> int:

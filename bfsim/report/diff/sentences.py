@@ -59,7 +59,7 @@ def code(difference: Difference) -> str:
 
 
 def work(difference: Difference) -> str:
-    """Say how the cores' work, without waits for each other and for the cameras, has changed; "" if it has not."""
+    """Say how the work of all cores, without waits for other cores and the cameras, has changed; "" if it has not."""
     waits = next((each for each in difference.stages if each.kind is ContributionKind.FOLLOWS), None)
     if waits is None:
         return ""
@@ -74,7 +74,7 @@ def work(difference: Difference) -> str:
     if f"{before:.2f}" == f"{after:.2f}":
         return ""
     return (
-        f"Without waits for each other and for the cameras, the cores take {before:.2f} → {after:.2f} ms a frame "
+        f"Without waits for other cores and the cameras, all cores take {before:.2f} → {after:.2f} ms a frame "
         "together."
     )
 
@@ -89,7 +89,7 @@ def reason(difference: Difference) -> str:
     for cause in parts[len(places) :]:
         whole = cause.cclk == places[-1].cclk
         told += f" ({cause.name})" if whole else f" ({cause.name} {counted(cause.cclk, sign=True)})"
-    return f"The largest part, in cycles of both cores: {told}."
+    return f"The largest part, in cycles of all cores: {told}."
 
 
 def _named(contribution: Contribution) -> str:

@@ -91,7 +91,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Side:
-    """The compared parts of a run, in cycles of both cores over all of its `frames`, which are given by their index.
+    """The compared parts of a run, in cycles of all cores over all of its `frames`, which are given by their index.
 
     `owners` do not include the time in which a core only waited for the other one or for the cameras: that is in
     `waits`, by stage. `sources` are those of kernels; there are none if lines cannot be compared. `memories` say where

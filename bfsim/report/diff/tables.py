@@ -53,7 +53,7 @@ def contribution_table(difference: Difference, top: int) -> Iterator[Table]:
     rows = shown(difference, top)
     if not rows:
         return
-    title = f"Cycles of both cores in {frames_compared(difference)}, the largest difference first"
+    title = f"Cycles of all cores in {frames_compared(difference)}, the largest difference first"
     table = new_table(title, "Stage / kernel / line / cause", "before", "after", "difference")
     for depth, each in rows:
         bold = (

@@ -98,7 +98,7 @@ def test_without_limits_measured_what_takes_most_is_told() -> None:
     line = LineCost(line=10, executions=50, issue_cclk=1000, stall_cclk={}, operations={"mul32": (50, 1000)})
     case = Case(name="drive", require=['"Edge detection".max <= 1 us'])
     told = list(explanation(judge(case, result(owned(1000, line=line)), Path("bfsim.toml"))))
-    assert told[0] == "Edge detection takes 1.000 ms a frame, both cores together:"
+    assert told[0] == "Edge detection takes 1.000 ms a frame, all cores together:"
     assert told[2].endswith("1.000 ms, 50 times x 20 cycles: multiplication of 32 bits 20")
 
 

@@ -88,6 +88,23 @@ def test_another_clock_is_told_apart_from_cycles() -> None:
     assert clock(difference_of(one, one)) == ""
 
 
+def test_clocks_are_whole_numbers_in_words() -> None:
+    """They were listed as 600000000.0 and 500000000.0, which nobody counts the digits of."""
+    one = run(kernel(line(12, 1, 10)))
+    rates = {"cclk_hz": 500e6, "sclk_hz": 400e6 / 3}
+    other = result_of(replace(one.run, identity=replace(IDENTITY, **rates)), one.seen)
+    found = {each.what: (each.before, each.after) for each in difference_of(one, other).configuration}
+    assert found == {"cclk hz": ("1,000,000", "500,000,000"), "sclk hz": ("200,000", "133,333,333.333333")}
+
+
+def test_no_board_is_taken_for_one_with_two_cores() -> None:
+    """A board with an ADSP-BF533 has one core, and its differences were those of `both cores`."""
+    found = difference_of(run(kernel(line(12, 1, 10))), run(kernel(line(12, 1, 30))))
+    told = "\n".join(printed(diff_report(found, 5))) + diff_markdown(found, 5)
+    assert "of all cores" in told
+    assert "both" not in told
+
+
 def test_many_files_are_told_as_the_first_few_and_a_number() -> None:
     """On the screen and in a comment; the JSON has all."""
     files = tuple(f"far/{each}.py" for each in range(40))

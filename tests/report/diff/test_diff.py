@@ -56,7 +56,7 @@ def test_a_line_that_takes_longer_is_named_with_its_cause() -> None:
     assert found.cclk == 300
     assert leaves(found) == {"operations: 2 → 5 cycles x 100": 300}
     assert reason(found) == (
-        "The largest part, in cycles of both cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300 "
+        "The largest part, in cycles of all cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300 "
         "(operations: 2 → 5 cycles x 100)."
     )
 
@@ -111,9 +111,9 @@ def test_waits_for_others_only_follow() -> None:
     check_sums(found.stages, 20 + 850 + 90)
     assert [(each.name, each.kind, each.cclk) for each in found.stages] == [
         ("Blur", ContributionKind.STAGE, 20),
-        ("waits for the other core and the cameras", ContributionKind.FOLLOWS, 850 + 90),
+        ("waits for other cores and the cameras", ContributionKind.FOLLOWS, 850 + 90),
     ]
-    assert work(found).endswith("the cores take 0.01 → 0.03 ms a frame together.")
+    assert work(found).endswith("all cores take 0.01 → 0.03 ms a frame together.")
     assert "line 12 +20" in reason(found)
 
 

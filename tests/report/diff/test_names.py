@@ -59,7 +59,7 @@ def test_a_stage_that_was_renamed_is_the_one_with_its_kernels() -> None:
     stages = {each.name: (each.before_cclk, each.after_cclk) for each in found.stages}
     assert stages["Blur → Smooth"] == (17, 21)
     assert stages["Look"] == (0, 99)
-    assert stages.keys() <= {"Blur → Smooth", "Look", "waits for the other core and the cameras"}
+    assert stages.keys() <= {"Blur → Smooth", "Look", "waits for other cores and the cameras"}
     check_sums(found.stages, 103)
     assert difference_of(blurs("Blur", cclk=10), blurs("Smooth", cclk=10)).cclk == 0
 
