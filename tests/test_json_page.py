@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from bfsim.report.kernels.verification import verification_json
+from bfsim.trace.verification import Verification, VerifiedKernel
 from tests.commands import bfsim
 from tests.tiers import exhaustive
 
@@ -61,3 +63,11 @@ def test_every_key_of_a_check_is_on_the_page(tmp_path: Path) -> None:
     found = written("check", "--baseline", "budget.toml", cwd=tmp_path)
     named = set(re.findall(r"`(\w+)`", sections()["check"]))
     assert found.keys() - COMMON | found["runs"][0].keys() <= named
+
+
+def test_every_key_of_a_verification_is_on_the_page() -> None:
+    """Those of each kernel, too. The records are made here: `bfsim verify` takes half a minute."""
+    kernel = VerifiedKernel("a", "a.py", 1, 1, 1, 110, 100, 0, 0)
+    found = json.loads(verification_json(Verification("gcc-O2", "12.2.0", 1, True, (kernel,))))  # noqa: FBT003
+    named = set(re.findall(r"`(\w+)`", sections()["verify"]))
+    assert found.keys() - COMMON | found["kernels"][0].keys() <= named

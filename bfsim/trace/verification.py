@@ -44,7 +44,7 @@ class Verification:
 
     @property
     def measured_cclk(self) -> float:
-        """Issue cycles of a frame, both cores, by the compiler's code."""
+        """Issue cycles of a frame, all cores, by the compiler's code."""
         return sum(each.measured_cclk for each in self.kernels)
 
     @property

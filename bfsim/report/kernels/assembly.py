@@ -46,8 +46,9 @@ def _legend(assembly: Assembly) -> Text:
         )
     if assembly.loops:
         lines.append(
-            "Loops: the dearest way through; issue and jumps: cycles of its instructions, and more of its jumps; chain: of registers "
-            "that depend on each other from turn to turn. Loops within count once, and calls without what they call."
+            "Loops: a turn is one iteration, on its fastest and its slowest path. The slowest takes the cycles of its instructions "
+            "(issue), what jumps add, and waits for registers. Chain: registers that each turn needs from the one before. Inner "
+            "loops count once, and calls without what they call."
         )
     if assembly.callees:
         lines.append(f"Calls: {', '.join(assembly.callees)}.")

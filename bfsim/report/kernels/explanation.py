@@ -98,7 +98,7 @@ def _operation(each: ExplainedOperation) -> str:
 
 def _legend(explanation: Explanation) -> Text:
     lines = [
-        "Cycles: of one execution, from the cheapest way through the line's branches to the dearest.",
+        "Cycles: of one execution, from the fastest path through the line's branches to the slowest.",
         "Operations: how many and which, with their cycles where these are not 1.",
     ]
     if explanation.calls is not None:

@@ -28,7 +28,7 @@ def verification_report(found: Verification, top: int) -> RenderableType:
         )
     left_out = len(found.kernels) - len(table.rows)
     note = (
-        f"Issue cycles, both cores, without memory and interlocks; {found.played:,} calls "
+        f"Issue cycles, all cores, without memory and interlocks; {found.played:,} calls "
         f"of {len(found.kernels)} kernel{'s' if len(found.kernels) > 1 else ''} were played, spread evenly over {found.frames} frame{'s' if found.frames > 1 else ''}."
         + (f" {left_out} more with --top {len(found.kernels)}." if left_out else "")
     )
@@ -46,7 +46,8 @@ def verdict(found: Verification) -> str:
     )
     return (
         f"GCC {found.compiler}'s code takes {found.measured_cclk / MILLION:.2f} M cycles a frame; the estimate is off by "
-        f"{100 * found.signed_error:+.1f} %, and by {100 * found.error_by_share:.1f} % if no kernel makes up for another. {bits} {_judged(found)}"
+        f"{100 * found.signed_error:+.1f} % in all, and by {100 * found.error_by_share:.1f} % kernel by kernel (the mean, weighted by cycles). "
+        f"{bits} {_judged(found)}"
     )
 
 
