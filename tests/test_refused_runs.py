@@ -106,7 +106,7 @@ def test_mistakes_of_the_firmware_are_named(tmp_path: Path) -> None:
     recording = write_recording(tmp_path / "small.mcap")
     for options in ((), ("--sanitize",)):
         message = refused("run", recording, "--firmware", "mine:bad_index", *options, cwd=tmp_path)
-        assert "mine.py:7: index 16 is outside of row in kernel outside" in message
+        assert "mine.py:7:18: index 16 is outside of row in kernel outside" in message
         assert "core B, frame 0, outside of stages (" in message
     for core, firmware in (("A", "late_in_l1"), ("B", "late_in_sdram")):
         message = refused("run", recording, "--firmware", f"mine:{firmware}", cwd=tmp_path)

@@ -1,14 +1,15 @@
-"""A guard's note → the error for the author of the kernel: file and line, kernel, array, index and length."""
+"""A guard's note → the error for the author of the kernel: file, line and column, kernel, array, index and length."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from bfsim.errors import KernelError
 from bfsim.kernel.emitting.emit import Sites, sites_of
 from bfsim.kernel.host_code.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, Shift, SourcePlace
 from bfsim.kernel.language import tree
 from bfsim.kernel.language.function import Function
+from bfsim.kernel.language.refusal import KernelSource
 from bfsim.kernel.types import i32, u32
 
 _, HIGHEST = i32.bounds
@@ -21,14 +22,12 @@ def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> Kernel
     here, *callers = _way(guarded, guard, note)
     routine, sites = routines[here.routine], _sites(guard, sites_of(function)[here.routine])
     first, *others = sorted({each.line for each in sites}) or [max(1, here.line)]
+    place, shown = _pointed(routine, first, {each.column for each in sites if each.line == first})
     same = f"; or line {' or '.join(str(routine.first_line + each - 1) for each in others)}" if others else ""
     calls = "".join(f"; called at {_place(routines[each.routine], each.line)}" for each in callers)
     told = {tree.Binary: _of_divisor, tree.For: _of_steps, Shift: _of_shift}.get(guard.node, _of_index)
     what, must_be = told(sites, note[FIRST], note[SECOND])
-    return KernelError(
-        f"{_place(routine, first)}: {what} in kernel {routine.name}{same}; {must_be}{calls}\n"
-        f"    {routine.lines[first - 1].strip()}"
-    )
+    return KernelError(f"{place}: {what} in kernel {routine.name}{same}; {must_be}{calls}{shown}")
 
 
 def _way(guarded: Guarded, guard: Guard, note: Sequence[int]) -> Iterator[SourcePlace]:
@@ -92,6 +91,13 @@ def _of_steps(_sites: Sites, step: int, stop: int) -> tuple[str, str]:
 def _of_shift(_sites: Sites, count: int, _: int) -> tuple[str, str]:
     """Return what is wrong with a shift, and what it must be."""
     return f"a shift is by {count}", "a shift must be by 0 to 31"
+
+
+def _pointed(routine: Function, line: int, columns: Collection[int]) -> tuple[str, str]:
+    """Return a place and its line, with the column and a caret if the failure can only be in one of the `columns`."""
+    if len(columns) == 1:
+        return KernelSource(routine.file, routine.first_line, routine.source).place(line, *columns)
+    return _place(routine, line), f"\n    {routine.lines[line - 1].strip()}"
 
 
 def _place(routine: Function, line: int) -> str:

@@ -101,7 +101,7 @@ class Assignments:
         if isinstance(target, ast.Subscript):
             name, element = scope.array_of(target)
             stored = scope.number(value, f32) if element is f32 else scope.integer(value)
-            return [tree.Store(name, element, scope.index(target), stored, target.lineno)]
+            return [tree.Store(name, element, scope.index(target), stored, target.lineno, target.col_offset)]
         if not isinstance(target, ast.Name) or target.id in scope.arrays:
             scope.source.refuse(
                 target, "only a local name or an array element can be assigned", "write x = or a[i] ="

@@ -94,7 +94,7 @@ class Expressions(Names):
         if _are_ints(left, right):
             return self._folded(node, op, left, right)
         assert isinstance(left.type, IntType)
-        return tree.Binary(op, left, right, left.type, node.lineno)
+        return tree.Binary(op, left, right, left.type, node.lineno, node.col_offset)
 
     def _arithmetic(self, node: ast.expr, op: str, left_node: ast.expr, right_node: ast.expr) -> tree.Expr:
         left, right = self.number(left_node), self.number(right_node)
@@ -109,7 +109,7 @@ class Expressions(Names):
             as_type(self.source, left_node, left, kind),
             as_type(self.source, right_node, right, kind),
         )
-        return tree.Binary(op, left, right, kind, node.lineno)
+        return tree.Binary(op, left, right, kind, node.lineno, node.col_offset)
 
     def _folded(self, node: ast.expr, op: str, left: tree.Expr, right: tree.Expr) -> tree.Expr:
         assert isinstance(left, tree.Const)
@@ -132,7 +132,7 @@ class Expressions(Names):
             )
         if op not in ON_FLOATS:
             self.source.refuse(node, f"{op} is not for f32", "use + - * / min max, or convert with i32(...)")
-        return tree.Binary(op, left, right, f32, node.lineno)
+        return tree.Binary(op, left, right, f32, node.lineno, node.col_offset)
 
     def _pair(
         self, left_node: ast.expr, left: tree.Expr, right_node: ast.expr, right: tree.Expr
@@ -242,7 +242,7 @@ class Expressions(Names):
 
     def _subscript(self, node: ast.Subscript) -> tree.Expr:
         name, element = self.array_of(node)
-        return tree.Load(name, element, self.index(node), promoted(element), node.lineno)
+        return tree.Load(name, element, self.index(node), promoted(element), node.lineno, node.col_offset)
 
     def array_of(self, node: ast.Subscript) -> tuple[str, Number]:
         """Return the name and element type of the array that `node` indexes."""

@@ -24,8 +24,11 @@ class KernelSource:
 
     def refuse(self, node: ast.AST, what: str, instead: str) -> NoReturn:
         """Raise a KernelError that points at `node`."""
-        line: int = getattr(node, "lineno", 1)
+        place, shown = self.place(getattr(node, "lineno", 1), getattr(node, "col_offset", 0))
+        raise KernelError(f"{place}: {what}; {instead}{shown}")
+
+    def place(self, line: int, column: int) -> tuple[str, str]:
+        """Return a place as file:line:column, and its line with a caret. `column` is in bytes, as in `ast`."""
         shown = lines_of(self.text)[line - 1]
-        before = shown.encode()[: getattr(node, "col_offset", 0)].decode()  # `ast` counts columns in bytes
-        place = f"{self.file}:{self.first_line + line - 1}:{len(before) + 1}"
-        raise KernelError(f"{place}: {what}; {instead}{pointed(shown, len(before))}")
+        before = shown.encode()[:column].decode()
+        return f"{self.file}:{self.first_line + line - 1}:{len(before) + 1}", pointed(shown, len(before))

@@ -119,7 +119,7 @@ class Statements:
         self.scope.assigned = before
         self.breaks.pop()
         self.ended = False
-        return [*done_before, tree.For(name, *bounds, body, node.lineno)]
+        return [*done_before, tree.For(name, *bounds, body, node.lineno, node.col_offset)]
 
     def _no_else(self, node: ast.While | ast.For) -> None:
         if node.orelse:

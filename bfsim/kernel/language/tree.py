@@ -1,6 +1,7 @@
 """The typed tree of a kernel: what `language` makes of the Python source and `emit` turns into LLVM IR.
 
-Every node carries `line`, counted from the first line of the kernel's source (its decorator) = 1.
+Every node carries `line`, counted from the first line of the kernel's source (its decorator) = 1. What may fail in a run
+also has its `column`, in bytes from 0 on.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ class Load:
     index: Expr
     type: Number
     line: int
+    column: int = field(default=0, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,7 @@ class Binary:
     right: Expr
     type: Number
     line: int
+    column: int = field(default=0, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +171,7 @@ class Store:
     index: Expr
     value: Expr
     line: int
+    column: int = field(default=0, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +199,7 @@ class For:
     step: int | Local
     body: tuple[Stmt, ...]
     line: int
+    column: int = field(default=0, compare=False, repr=False)
 
     @property
     def goes_up(self) -> bool:

@@ -150,6 +150,18 @@ def place(of: Kernel, text: str) -> str:
     return f"{__file__}:{of.function.first_line + number}"
 
 
+def column(of: Kernel, text: str) -> str:
+    """Return file:line:column of `text` in a kernel."""
+    line = next(each for each in of.function.source.splitlines() if text in each)
+    return f"{place(of, text)}:{line.index(text) + 1}"
+
+
+def caret(of: Kernel, text: str) -> str:
+    """Return the line of a kernel that has `text`, with a caret under it."""
+    line = next(each for each in of.function.source.splitlines() if text in each)
+    return f"\n    {line}\n    {' ' * line.index(text)}^"
+
+
 def fails(how: str, called: Kernel, *arguments: Any) -> str:
     """Return the message of a run that fails; what lies around its arrays must stay as it was."""
     with pytest.raises(KernelError) as caught:
@@ -177,8 +189,8 @@ both_ways = pytest.mark.parametrize("how", ["checked", "sanitized"])
 def test_an_index_outside_of_its_array_is_an_error(how: str, index: int) -> None:
     """A load below 0 or at the length of its array is refused with file, line, kernel, array, index and length."""
     assert fails(how, load, row_of(np.uint8), index) == (
-        f"{place(load, 'return row')}: index {index} is outside of row in kernel load; "
-        "an index must be 0 or more and less than len(row), which is 8\n    return row[i]"
+        f"{column(load, 'row[i]')}: index {index} is outside of row in kernel load; "
+        f"an index must be 0 or more and less than len(row), which is 8{caret(load, 'row[i]')}"
     )
 
 
@@ -215,7 +227,7 @@ def test_a_store_outside_of_its_array_does_not_happen(how: str, index: int) -> N
     row = row_of(np.uint8)
     message = fails(how, store, row, row_of(np.uint32, 2), index)
     assert message.startswith(
-        f"{place(store, 'other[i]')}: index {index} is outside of other in kernel store;"
+        f"{column(store, 'other[i]')}: index {index} is outside of other in kernel store;"
     )
     assert row[1] == 1
 
@@ -230,8 +242,10 @@ def test_floats_are_checked(how: str) -> None:
 def test_accesses_that_the_compiler_merges_are_told_apart_as_far_as_can_be(how: str) -> None:
     """Of two stores that have become one, both lines are named; what is as it is written has one, and so has a load of one of two arrays."""
     message = fails(how, store_one_of_two, row_of(np.int32), 8)
-    number = int(place(store_one_of_two, "row[i] = 1").rsplit(":", 1)[1])
-    assert f":{number}: index 8 is outside of row in kernel store_one_of_two" in message
+    assert (
+        f"{column(store_one_of_two, 'row[i] = 1')}: index 8 is outside of row in kernel store_one_of_two"
+        in message
+    )
     assert ("; or line " in message) == (how == "checked")
     message = fails(how, store_one_of_three, row_of(np.int32), 8)
     assert "index 8 is outside of row in kernel store_one_of_three" in message
@@ -250,18 +264,19 @@ def test_accesses_of_several_kernels_that_the_compiler_merges_name_the_one_they_
         "index 8 is outside of an array in kernel put_one_of_two; an index must be 0 or more and less than 8"
         in message
     )
+    assert "^" not in message
     message = fails("sanitized", put_one_of_two, row_of(np.int32), 8)
-    assert f"{place(put_one, 'row[i] = 1')}: index 8 is outside of row in kernel put_one" in message
+    assert f"{column(put_one, 'row[i] = 1')}: index 8 is outside of row in kernel put_one" in message
 
 
 @both_ways
 def test_an_error_in_a_callee_names_it_and_the_way_to_it(how: str) -> None:
     """The message points into the kernel whose line it is, and says from where it was called: each way of two."""
-    wrong = f"{place(store, 'other[i]')}: index {{}} is outside of other in kernel store; an index must be 0 or more"
+    wrong = f"{column(store, 'other[i]')}: index {{}} is outside of other in kernel store; an index must be 0 or more"
     message = fails(how, two_ways, row_of(np.uint8), row_of(np.uint32, 2), 2)
     assert message.startswith(wrong.format(2))
     direct = place(two_ways, "        store(")
-    assert f"len(other), which is 2; called at {direct}\n    other[i] = 1" in message
+    assert f"len(other), which is 2; called at {direct}{caret(store, 'other[i]')}" in message
     message = fails(how, two_ways, row_of(np.uint8), row_of(np.uint32, 2), 4)
     assert message.startswith(wrong.format(5))
     way = f"; called at {place(store_behind, 'store(')}; called at {place(two_ways, 'store_behind(')}\n"
@@ -282,8 +297,9 @@ def test_an_error_in_a_callee_names_it_and_the_way_to_it(how: str) -> None:
 )
 def test_a_division_by_zero_is_an_error(how: str, divide: Kernel, shown: str) -> None:
     """It is named with its kernel, file and line, whatever kind of division it is."""
-    wrong = f"{place(divide, 'return')}: {shown} is undefined in kernel {divide.name}; the divisor must not be 0\n    return "
-    assert fails(how, divide, 7, 0).startswith(wrong)
+    what = divide.function.source.partition("return ")[2].strip()
+    wrong = f"{column(divide, what)}: {shown} is undefined in kernel {divide.name}; the divisor must not be 0"
+    assert fails(how, divide, 7, 0) == f"{wrong}{caret(divide, what)}"
 
 
 @both_ways
