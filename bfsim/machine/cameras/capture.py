@@ -17,12 +17,16 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.clocks import Clocks
+from bfsim.errors import ConfigError
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.memories import Row
-from bfsim.machine.simulation import Simulation
+from bfsim.machine.simulation import END_OF_TIME, Simulation
+
+LAST_START = END_OF_TIME // 2
+"""The last tick at which a picture may begin, so that there is time to work on it."""
 
 
 class Feed(StrEnum):
@@ -194,11 +198,22 @@ class Capture:
                 starts = [self._clocks.ticks_of_ns(each - origin_ns) for each in stamps]
             else:
                 starts = [each.start_of(frame) for each in self._ppis.values()]
+            self._require_in_time(pictures.index, max(starts))
             yield self._env.after(max(0, min(starts) - self._env.tick))
             self._change_sizes(frame)
             self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
         self._ended = True
         self._notify()
+
+    def _require_in_time(self, index: int, start: int) -> None:
+        """Raise ConfigError if a picture begins too late for ticks of 64 bits."""
+        if start > LAST_START:
+            most_s, start_s = (self._clocks.ns_of_ticks(each) / 1e9 for each in (LAST_START, start))
+            raise ConfigError(
+                f"frame {index} must begin at most {most_s:,.0f} s after the first one, not {start_s:,.0f} s: time is counted "
+                f"in ticks of {float(self._clocks.tick_hz):.3g} Hz, the common multiple of clocks.cclk_hz and clocks.sclk_hz; "
+                "give rounder clocks, fewer frames, or --feed demand, which leaves out the time between frames"
+            )
 
     def _when_wanted(self) -> Generator[simpy.Event, Any, list[int]]:
         """Wait until the firmware has taken the previous picture, a buffer is free and the sensors are ready."""

@@ -18,8 +18,9 @@ from hypothesis import strategies as st
 
 from bfsim.chip.sensor_spec import SensorMode, SensorSpec
 from bfsim.clocks import Clocks
+from bfsim.errors import ConfigError
 from bfsim.machine.buffers import FrameSize
-from bfsim.machine.cameras.capture import Capture, Feed, Pair
+from bfsim.machine.cameras.capture import LAST_START, Capture, Feed, Pair
 from bfsim.machine.cameras.ppi import Ppi
 from tests.machine.bench import Bench
 from tests.machine.rig import STEADY, Picture
@@ -156,6 +157,17 @@ def test_the_newest_picture_wins() -> None:
     studio = play(both([0, 300, 600]), [640], frame_buffers=3)
     assert studio.seen["A"].frames == [(200, 0), (840, 2)]
     assert studio.capture.missed == [1]
+
+
+def test_a_picture_later_than_any_run_is_refused() -> None:
+    """Times that no longer fitted 64 bits ended in an OverflowError. The last tick that is allowed is taken."""
+    last = play(both([0, LAST_START]), [1])
+    assert last.seen["A"].frames == [(200, 0), (LAST_START + 200, 1)]
+    with pytest.raises(
+        ConfigError, match=r"frame 1 must begin at most 2,305,843,009 s after .* of 1e\+09 Hz"
+    ):
+        play(both([0, LAST_START + 1]), [1])
+    play(both([0, LAST_START + 1]), [1], feed=Feed.DEMAND)
 
 
 def test_a_third_buffer_saves_the_wait_for_one_that_is_being_filled() -> None:
