@@ -42,10 +42,12 @@ MAKERS: dict[str, Callable[..., Any]] = {
 
 def kept_script(source: Source, made: Callable[[], LinkerScript]) -> LinkerScript:
     """Return the script of a preprocessed LDF as it is kept, or as it is `made` now. Errors are not kept."""
-    found = store.kept(
-        _key(source), lambda: [_written(getattr(made(), each.name)) for each in fields(LinkerScript)[1:]]
-    )
-    return LinkerScript(source, *map(_read, found))
+
+    def parts() -> list[Any]:
+        script = made()
+        return [_written(getattr(script, each.name)) for each in fields(LinkerScript)[1:]]
+
+    return LinkerScript(source, *map(_read, store.kept(_key(source), parts)))
 
 
 def _key(source: Source) -> str:
