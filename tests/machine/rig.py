@@ -24,6 +24,7 @@ from bfsim.machine.program import Main
 from bfsim.machine.symbols import symbols_of
 from bfsim.shipped import DEFAULT_LDFS
 from bfsim.trace import BoardRecord, CoreFrame, FrameRecord, StageCost
+from tests.machine.kernels import copy
 
 SIZE = FrameSize(16, 8)
 STAGES = ("Work", "More work")
@@ -114,6 +115,12 @@ def through_rings(core: Core, frame: Frame, kernel: Kernel) -> Play:
         yield core.run(kernel, source, target)
         out.send()
     yield from out.flush()
+
+
+def copied_in_a_stage(core: Core, frame: Frame) -> Play:
+    """A stage as firmware has them: lines in, a kernel a line, lines out."""
+    with core.stage(STAGES[0]):
+        yield from through_rings(core, frame, copy)
 
 
 def board_of(
