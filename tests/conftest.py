@@ -26,6 +26,8 @@ settings.load_profile("bfsim")
 
 PATH = os.environ["PATH"]
 TESTS = Path(__file__).parent
+Write = Callable[[str, str], Path]
+"""The fixture `write`."""
 WHOLE_COMMANDS = (TESTS, TESTS / "cli")
 """Folders of tests that do what users do."""
 COMPILES = (
@@ -89,7 +91,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 @pytest.fixture
-def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], Path]:
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
     """Write a file of a name and a text into the current folder, which is a new one."""
     monkeypatch.chdir(tmp_path)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from bfsim.errors import ConfigError
 from bfsim.kernel.profile import DEFAULT
 from bfsim.loading.hardware import find_board, find_profile
 from bfsim.run import simulate
+from tests.conftest import Write
 from tests.eyes import FIRMWARE, record
 
 MINE = """\
@@ -29,8 +29,6 @@ from bfsim.kernel import VDSP_O2
 FAST = replace(CM_BF561, title="CL 2", sdram=replace(CM_BF561.sdram, nCL=2))
 PLAIN = replace(VDSP_O2, parallel_issue=False)
 """
-
-Write = Callable[[str, str], Path]
 
 
 def test_a_board_in_a_file_or_package_is_found(write: Write) -> None:
