@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from bfsim.kernel.estimate.induction_variables.pointer_differences import sum_of
+from bfsim.kernel.estimate.induction_variables.counter_wishes import sum_of
 from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.estimate.loops.same_values import is_same
 from bfsim.kernel.estimate.loops.scalar_evolution import Affine, ScalarEvolution

@@ -12,14 +12,10 @@ from collections import Counter as Tally
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from bfsim.kernel.estimate.induction_variables.counter_wishes import homes_of, is_multiple, wishes_of
 from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
-from bfsim.kernel.estimate.induction_variables.pointer_differences import (
-    Choice,
-    homes_of,
-    is_multiple,
-    wishes_of,
-)
+from bfsim.kernel.estimate.induction_variables.pointer_differences import Choice
 from bfsim.kernel.estimate.loops.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.estimate.loops.scalar_evolution import ScalarEvolution
 from bfsim.kernel.ir.control_flow import ControlFlow, Loop
