@@ -17,6 +17,6 @@ def line_ring(rows: Sequence[Row], height: int) -> Lines:
 
 
 def windows(lines: Sequence[Row], reach: int = 1) -> Sequence[tuple[Row, ...]]:
-    """Return for each line of a picture `reach` lines above it, itself, and as many below; at the ends, lines repeat."""
+    """Return for each line of a picture `reach` lines above it, itself and as many below; at the ends lines repeat."""
     padded = (*lines[:1] * reach, *lines, *lines[-1:] * reach)
     return tuple(zip(*(padded[step:] for step in range(2 * reach + 1)), strict=False))

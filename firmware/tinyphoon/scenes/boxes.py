@@ -1,4 +1,4 @@
-"""A box from all sides and at many distances, for its detection: `bfsim record render tinyphoon.scenes.boxes:BOXES boxes.mcap`."""
+"""A box from all sides and at many distances: `bfsim record render tinyphoon.scenes.boxes:BOXES boxes.mcap`."""
 
 from __future__ import annotations
 

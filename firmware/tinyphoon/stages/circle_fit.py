@@ -120,7 +120,7 @@ def expect_bulge(fit: i32[:], geometry: i32[:], width: i32, height: i32) -> None
 
 @kernel
 def outside_of(nx: i32, ny: i32, away: i32, fit: i32[:]) -> i32:
-    """Return how far outside the outline a point is, in 1/64 px, `away` from the centre along a unit vector in 1/128."""
+    """Return how far outside the outline a point is, in 1/64 px: `away` from the centre by a unit vector in 1/128."""
     bulge = fit[BULGE_COSINE] * (nx * nx - ny * ny) + 2 * fit[BULGE_SINE] * nx * ny >> 2 * NORMAL_BITS
     return away - fit[RADIUS] - (fit[RADIUS] * bulge >> BULGE_BITS)
 

@@ -32,7 +32,7 @@ LINK_BEFORE, LINK_LEFT, LINK_RIGHT = 0, 1, 2
 LINK_WORDS = 3
 
 STEP = 4
-"""The cost on a path of each pixel of change in disparity from a pair to the next: 8 px cost as much as a row without support."""
+"""The cost on a path of each pixel that the disparity changes by: 8 px cost as much as a row without support."""
 
 UNSEEN = WORST // 4
 """What a path gains by an edge beyond the other picture's border: half of what one in a pair is worth. It is explained, but nothing

@@ -24,7 +24,7 @@ def mean_disparities(
     below2: i16[:],
     means: i16[:],
 ) -> None:
-    """Set for each left edge the mean of its disparity and similar ones beside it in the rows around, in 1/16 px, or 0."""
+    """Set for each left edge the mean of its disparity and of similar ones in the rows around, in 1/16 px, or 0."""
     for left in range(left_count):
         x = i32(left_row[left] >> 16)
         disparity = i32(here[x])

@@ -176,7 +176,7 @@ def suppress_row(
 
 @kernel
 def clear_rim(edges: u8[:], first: u16[:], last: u16[:], y: i32, x: i32) -> None:
-    """Remove a row's edges at the rim of a rectified picture; the row begins at column `x` of that picture's row `y`."""
+    """Remove a row's edges at the rim of a rectified picture; it begins at column `x` of that picture's row `y`."""
     for column in range(min(first[y] - x, len(edges))):
         edges[column] = 0
     for column in range(max(last[y] + 1 - x, 0), len(edges)):

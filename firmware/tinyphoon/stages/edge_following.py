@@ -63,7 +63,7 @@ def is_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
 
 @kernel
 def like_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
-    """Return a disparity (plus 1), sure or not, like this, to a pixel, of an edge within `away` of column `x`; else 0."""
+    """Return a disparity (plus 1), sure or not, like this to a pixel, of an edge within `away` of column `x`, or 0."""
     for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
         known = abs(i32(disparities[column]))
         if known != 0 and abs(known - disparity) <= 1:

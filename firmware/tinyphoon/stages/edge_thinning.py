@@ -118,7 +118,7 @@ def take_candidates(
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """The candidates of a picture: written row by row, then taken into the edge store. `bands`: the band of each row."""
+    """The candidates of a picture, written row by row, then taken into the edge store. `bands`: that of each row."""
 
     core: Core
     bands: Sequence[int]

@@ -50,7 +50,7 @@ FLATTER = int((arctangent_table() < 17).sum())
 
 @kernel
 def root8(square: i32, roots: u8[:]) -> i32:
-    """Return the root of `square`, below 65,536, rounded down: from its 16th, which may be 1 too low. Small ones are in the table."""
+    """Return the root of `square` < 65,536, rounded down: from its 16th, maybe 1 too low; small ones by the table."""
     if square < SMALL:
         return roots[square]
     root = roots[SMALL + (square >> 4)] + 1
@@ -61,7 +61,7 @@ def root8(square: i32, roots: u8[:]) -> i32:
 
 @kernel
 def slope8(minor: i32, major: i32, reciprocals: u32[:]) -> i32:
-    """Return `minor / major` in 256ths, rounded down, for 0 <= minor <= major <= 1020, by a multiplication; 0 for 0 / 0."""
+    """Return `minor / major` in 256ths, rounded down, for 0 <= minor <= major <= 1020, by a product; 0 for 0 / 0."""
     return i32(u32(minor) * reciprocals[major] >> 20)
 
 
@@ -93,7 +93,7 @@ def hue_of(
     eps_white: i32,
     least_chroma: i32,
 ) -> u32:
-    """Return the word of a V and U pair's hue, or 0 if it has none; `brightness`: luma minus chroma of its two pixels."""
+    """Return the word of a V and U pair's hue, 0 if it has none; `brightness`: luma minus chroma of its pixels."""
     brightest = max(low_of_fr2x16(brightness), high_of_fr2x16(brightness))
     darker = min(low_of_fr2x16(brightness), high_of_fr2x16(brightness))
     if chroma < least_chroma or brightest < darkest or darker > eps_white:
@@ -300,7 +300,7 @@ def peak_words(
 
 @kernel
 def first_sighted(first: u16[:], y: i32, x: i32) -> i32:
-    """Return the first column of row `y` inside the rim of a rectified picture and the border; a row begins at column `x`."""
+    """Return the first column of row `y` inside a rectified picture's rim and the border; a row begins at `x`."""
     return max(first[y] - x, 1)
 
 

@@ -1,4 +1,4 @@
-"""Open & closing column by column, bit-identical to `open_closing.py`: three pixels in a column are combined only once."""
+"""Open & closing column by column, bit-identical to `open_closing.py`: three pixels of a column are combined once."""
 
 from __future__ import annotations
 

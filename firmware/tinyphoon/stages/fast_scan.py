@@ -1,4 +1,4 @@
-"""The scan of `edge_detection.py` by the kernels of `fast_gradients.py` and `fast_edges.py`: same colours, same candidates."""
+"""The scan of `edge_detection.py` by kernels of `fast_gradients.py` and `fast_edges.py`, with the same results."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ Pixels = Callable[[], NDArray[np.int64]]
 
 
 def segment_pixels(segments: Row, count: int) -> Pixels:
-    """Return a function for the pixels (row, column) between the outermost edges of the table's first `count` places."""
+    """Return a function for the (row, column) of pixels between the outer edges of the table's first `count` places."""
 
     def pixels() -> NDArray[np.int64]:
         table = segments.array[: count * SEGMENT_WORDS].reshape(-1, SEGMENT_WORDS)

@@ -45,7 +45,7 @@ def erode_pixels(lines: u32[:], starts: i32[:], eroded: u32[:]) -> None:
 def looped_row(
     core: Core, kernel: Kernel, ring: str, y: int, height: int, target: Row
 ) -> Generator[Any, Any, None]:
-    """Make row `y` of a picture of `height` rows from the lines around it; line y lies in row y modulo the ring's rows."""
+    """Make row `y` of a picture of `height` rows of the lines around it; line y is row y modulo the ring's rows."""
     rows = core.rows(ring)
     width = len(rows[0].array)
     starts = core.array("line_starts")

@@ -219,7 +219,7 @@ def area_passes(blob_data: u32[:], blob: i32, shape: i32, ball_area: i32, rectan
 
 @kernel
 def circle_area_passes(blob_data: u32[:], blob: i32, circles: i16[:], circle: i32, ball_area: i32) -> i32:
-    """Return 1 if a blob has as many pixels as its circle, P_a of T Eq. 2.13, to `ball_area` 256ths; 0 without a radius."""
+    """Return 1 if a blob has as many pixels as its circle, P_a of T Eq. 2.13, to `ball_area` 256ths; 0 of no radius."""
     if circle == NO_OUTLINE:
         return 0
     diameter = 2 * circles[circle * CIRCLE_WORDS + CIRCLE_RADIUS]

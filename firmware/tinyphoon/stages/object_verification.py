@@ -118,7 +118,7 @@ def average_places(left: i16[:], one: i32, right: i16[:], other: i32) -> None:
 
 @kernel
 def agree_on_floor(left: i16[:], one: i32, right: i16[:], other: i32) -> i32:
-    """Return 0 if both cameras measure an object by the floor, and their depths are more than an eighth apart; else 1."""
+    """Return 0 if both cameras measure an object by the floor with depths more than an eighth apart, else 1."""
     at = one * OBJECT_WORDS
     to = other * OBJECT_WORDS
     if left[at + OBJECT_MEASURES] != BY_FLOOR or right[to + OBJECT_MEASURES] != BY_FLOOR:

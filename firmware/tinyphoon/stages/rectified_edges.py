@@ -139,7 +139,7 @@ def store_moved_row(
 
 
 def rectified_edges(core: Core, frame: Frame) -> Generator[Any, Any, int]:
-    """Move the edges of the store; return how many are in the rectified picture, and publish it as `edges_rectified`."""
+    """Move the edges of the store; return, and publish as `edges_rectified`, how many are in the rectified picture."""
     store, places = edge_store(core), core.array("places")
     moved = as_words(core, "edge_candidates")
     counts, *_ = core.overlay("segments", u16, frame.height)  # the lines have been fitted

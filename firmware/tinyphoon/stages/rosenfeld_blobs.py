@@ -34,7 +34,7 @@ SEGMENTS = 256  # [assumed]: 8 KB of records; number 0 is none
 
 
 def rosenfeld_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
-    """Return the buffers: the picture of labels in the memory of `images`, its ring, the table, each label's segment."""
+    """Return the buffers: the picture of labels in the memory of `images`, its ring, the table, and the segments."""
     return (
         Buffer("label_image", u16, size.width_px, images, rows=size.height_px),
         Buffer("label_ring", u16, size.width_px, "L1_data_a", rows=3),
@@ -183,7 +183,7 @@ def label_picture(core: Core, frame: Frame, colours: int) -> Generator[Any, Any,
 def segment_colours(
     core: Core, frame: Frame, colours: int, segments: int
 ) -> Generator[Any, Any, tuple[int, int]]:
-    """Add the segments of these colours to the `segments` earlier records; return their number, and the missing labels."""
+    """Add these colours' segments to the `segments` earlier records; return their number, and the missing labels."""
     labels = core.rows("label_image")
     table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
     used = yield from label_picture(core, frame, colours)

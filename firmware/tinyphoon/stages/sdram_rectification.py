@@ -49,7 +49,7 @@ def _core_buffers(sources: SourcePixels) -> Sequence[Buffer]:
 
 @kernel
 def move_row(camera: u8[:], words: u32[:], places: i32[:], rectified: u32[:]) -> None:
-    """Take one UYVY row of `len(places)` pixels from a picture; a place counts pixels. `words` are the pairs of `camera`."""
+    """Take a UYVY row of `len(places)` pixels from a picture; places count pixels. `words`: the pairs of `camera`."""
     for pair in range(len(rectified)):
         left = places[2 * pair]
         right = places[2 * pair + 1]

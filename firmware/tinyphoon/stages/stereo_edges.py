@@ -66,7 +66,7 @@ class StereoEdgeThresholds:
 
 
 def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
-    """Return the buffers of the stage on core A, in the memory of `images`: they are only written, which costs little."""
+    """Return the stage's buffers on core A, in the memory of `images`: they are only written, which costs little."""
     return (Buffer("edges_3d", i16, EDGE3D_WORDS * EDGE3D_CAPACITY, images),)
 
 

@@ -1,4 +1,4 @@
-"""Which edge of the other picture corresponds to an edge of this one, the thesis's way: the nearest of similar direction."""
+"""Which edge of the other picture corresponds to an edge, the thesis's way: the nearest of similar direction."""
 
 from __future__ import annotations
 

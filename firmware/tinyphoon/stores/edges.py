@@ -25,7 +25,7 @@ def edge_store(core: Core) -> tuple[Row, Row, Row]:
 
 
 def edge_columns(store: tuple[Row, Row, Row], y: int) -> list[int]:
-    """Return the columns of the edges of row `y` in an edge store, for `core.at`: nothing on the chip reads them here."""
+    """Return the columns of the edges of a store's row `y`, for `core.at`: nothing on the chip reads them here."""
     edge_data, edge_index, edge_counts = (each.array for each in store)
     first, count = int(edge_index[y]), int(edge_counts[y])
     found: list[int] = (edge_data[first : first + count] >> 16).tolist()

@@ -30,7 +30,7 @@ from tinyphoon.strategy.models import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mode:
-    """The thresholds of every stage, for the lighting and the cameras rather than a picture, and the area to look at."""
+    """The thresholds of every stage, which suit the lighting and the cameras, and the area to look at."""
 
     edges: EdgeThresholds
     noise: NoiseRemoval

@@ -74,7 +74,7 @@ def order_word(message: u16[:], number: i32) -> i32:
 
 @kernel
 def words_refusal(message: u16[:], limits: i32[:], most: i32) -> i32:
-    """Return why the words of an order are not allowed, or 0. It may have 1 to `most` records of the words in `limits`."""
+    """Return why an order's words are not allowed, or 0. It may have 1 to `most` records of the words in `limits`."""
     words = len(limits) // LIMIT_WORDS
     size = i32(message[3])
     records = size // (4 * words)

@@ -41,7 +41,7 @@ SIDES = "width_mm", "height_mm", "depth_mm"
 
 
 def words_of_models(models: Sequence[object], at: str) -> list[int]:
-    """Return the words of models, one after the other. Raises FirmwareError that names the model or its key under `at`."""
+    """Return the words of models, one after the other. Raises FirmwareError that names the model or its key `at`."""
     given = [{"name": each} if isinstance(each, str) and each in BY_NAME else each for each in models]
     numbers = {each.number for each in MODELS}
     numbers |= {
