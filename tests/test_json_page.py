@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from bfsim.report.kernels.verification import verification_json
+from bfsim.shipped import RECORDING
 from bfsim.trace.verification import Verification, VerifiedKernel
 from tests.commands import bfsim
 from tests.tiers import exhaustive
@@ -26,7 +27,7 @@ def sections() -> dict[str, str]:
     return {
         command: text
         for heading, text in (part.split("\n", 1) for part in parts)
-        for command in re.findall(r"`bfsim (\w+)`", heading)
+        for command in re.findall(r"`bfsim ([\w ]+)`", heading)
     }
 
 
@@ -63,6 +64,13 @@ def test_every_key_of_a_check_is_on_the_page(tmp_path: Path) -> None:
     found = written("check", "--baseline", "budget.toml", cwd=tmp_path)
     named = set(re.findall(r"`(\w+)`", sections()["check"]))
     assert found.keys() - COMMON | found["runs"][0].keys() <= named
+
+
+def test_every_key_of_a_recording_is_on_the_page() -> None:
+    """Those of each camera, too."""
+    found = written("record", "info", str(RECORDING))
+    named = set(re.findall(r"`(\w+)`", sections()["record info"]))
+    assert found.keys() - COMMON | found["left"].keys() <= named
 
 
 def test_every_key_of_a_verification_is_on_the_page() -> None:
