@@ -82,7 +82,9 @@ def _require_range(path: str, value: int | Fraction) -> None:
     if path in POWERS_OF_TWO and int(value).bit_count() != 1:
         raise ConfigError(f"{path} must be a power of two, not {_told(value)}")
     if isinstance(value, Fraction) and value.denominator > FINEST:
-        raise ConfigError(f"{path} must be a fraction by at most {FINEST:,}, not by {value.denominator:.6g}")
+        raise ConfigError(
+            f"{path} must have a denominator of at most {FINEST:,}, not of {value.denominator:.6g}"
+        )
 
 
 def _told(value: int | Fraction) -> str:

@@ -35,7 +35,7 @@ def require_name(path: Path) -> None:
     """Raise ConfigError if a path means standard output."""
     if path == _STDOUT:
         raise ConfigError(
-            f"{path} must be a name: what is written is there as a whole, which standard output cannot be"
+            f"{path} must be the name of a file, not standard output: the file appears only once it is whole"
         )
 
 

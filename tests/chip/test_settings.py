@@ -176,7 +176,7 @@ def test_the_memory_map_follows_from_the_sdram() -> None:
         ({"sensor.modes.0.line_clocks": 1279}, "line_clocks must hold a line's pixels, 1280, not 1279"),
         ({"sensor.modes.0.frame_lines": 480}, "frame_lines must hold the picture, 480 lines"),
         ({"chip.dma.read_word_sclk": "1000001/1000000.1"}, "must be a number"),
-        ({"chip.dma.read_word_sclk": "1000002/1000001"}, "must be a fraction by at most 1,000,000"),
+        ({"chip.dma.read_word_sclk": "1000002/1000001"}, "must have a denominator of at most 1,000,000"),
         ({"sdram.trp": 3, "sdram.nRP": 4}, "--set sdram.nRP=4: sdram.nRP must be set once, not twice"),
         ({"pll.ssel": 6, "clocks.sclk_hz": "100e6"}, "pll and clocks must not both be set"),
     ],

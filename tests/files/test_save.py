@@ -58,7 +58,7 @@ def test_standard_output_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     """A file or a folder called - would be in the way of every later command."""
     monkeypatch.chdir(tmp_path)
     for refused in (require_place, OverlayWriter):
-        with pytest.raises(ConfigError, match="- must be a name: what is written is there as a whole"):
+        with pytest.raises(ConfigError, match="- must be the name of a file, not standard output"):
             refused(Path("-"))
 
 

@@ -72,7 +72,9 @@ def link(file: ObjectFile, *, is_whole: bool = True) -> Image:
     segments.sort(key=lambda each: each.address)
     for one, other in pairwise(segments):
         if one.end > other.address:
-            raise KernelError(f"{file.name} must have sections apart, but two lie at 0x{other.address:08X}")
+            raise KernelError(
+                f"{file.name} must have sections that do not overlap, but two do at 0x{other.address:08X}"
+            )
     symbols = {
         each.name: _value(each, file, places) for each in file.symbols if each.is_defined and each.name
     }

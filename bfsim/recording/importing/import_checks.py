@@ -36,7 +36,7 @@ def check_call(
     """Raise RecordingError unless the options fit each other and the number of sources, and `output` may be written."""
     if output == Path("-"):
         raise RecordingError(
-            "-: recording must have a name like run.mcap: it is written as a whole, which standard output cannot be"
+            "-: recording must have a name like run.mcap, not be standard output: it appears only once it is whole"
         )
     if output.suffix.lower() != ".mcap" and guess_format(os.fspath(output)):
         raise RecordingError(
