@@ -15,7 +15,7 @@ from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measure
 from bfsim.report.check.baseline_file import update_command
 from bfsim.report.check.judge import require_stages
 from bfsim.run import Feed, Fidelity
-from bfsim.running.identifying import recording_digest
+from bfsim.running.digested_frames import recording_digest
 
 
 def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:

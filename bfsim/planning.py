@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from bfsim.run import simulate
-from bfsim.running.identifying import recording_digest
+from bfsim.running.digested_frames import recording_digest
 from bfsim.trace import Identity
 
 

@@ -42,7 +42,8 @@ from bfsim.running.assumptions import (
 )
 from bfsim.running.compiled_ahead import compiled_ahead
 from bfsim.running.devices import told_devices
-from bfsim.running.identifying import DigestedFrames, identity_of, written
+from bfsim.running.digested_frames import DigestedFrames
+from bfsim.running.identifying import identity_of, written
 from bfsim.running.inputs import opened, read_placement
 from bfsim.running.retiming import retimed
 from bfsim.running.room import outside_l1

@@ -27,7 +27,7 @@ from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.what_ran.digest import cycle_digest
 from bfsim.running.inputs import calibration_of, files_of_run
 from bfsim.running.watchers import Watchers, calling
-from bfsim.trace import BudgetRow, Identity, RunRecord
+from bfsim.trace import DIGITS_SHOWN, BudgetRow, Identity, RunRecord
 
 _PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
 
@@ -73,10 +73,11 @@ def write_page(run: RunRecord, again: partial[Any], path: Path, target: Target |
             calling(each) for each in (watchers.before, watchers.seen, watchers.spans)
         )
         done = again(before=before, on_seen=on_seen, on_spans=on_spans)
-        if cycle_digest(done.frames) != cycle_digest(run.frames):
+        now, then = (cycle_digest(each.frames) for each in (done, run))
+        if now != then:
             raise ConfigError(
                 "firmware, recording and LDF must be as they were in the run, for its page repeats it: the digest of its cycles "
-                f"is now {cycle_digest(done.frames)[:12]}, not {cycle_digest(run.frames)[:12]}"
+                f"is now {now[:DIGITS_SHOWN]}, not {then[:DIGITS_SHOWN]}"
             )
         for each in watchers.done:
             each(done)

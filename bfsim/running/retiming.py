@@ -22,8 +22,8 @@ from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.recording.stereo.stereo_check import StereoCheck
-from bfsim.running.identifying import DigestedFrames
-from bfsim.trace import Identity
+from bfsim.running.digested_frames import DigestedFrames
+from bfsim.trace import DIGITS_SHOWN, Identity
 
 if TYPE_CHECKING:
     from bfsim.running.work_file import WorkReader
@@ -39,8 +39,6 @@ SAME = {
     "llvm_version": "version of LLVM",
 }
 """Fields of an identity that a recorded run must share with the run that plays it, in words."""
-DIGEST_SHOWN = 12
-"""Digits of a digest that messages show."""
 SAID_BY = {"recording": "a RECORDING before the options", "firmware": "--firmware", "compiler": "--profile"}
 """How to give the same as in the recorded run, which is not taken from its file."""
 
@@ -184,7 +182,7 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
         now, then = getattr(identity, field), recorded.identity.get(field)
         if now != then:
             if field.endswith("digest"):
-                now, then = (str(each)[:DIGEST_SHOWN] for each in (now, then))
+                now, then = (str(each)[:DIGITS_SHOWN] for each in (now, then))
             again = f"give it again by {SAID_BY[field]}, or " if field in SAID_BY else ""
             raise WorkError(
                 f"{path} must be recorded with the same {what}, {shown(now)}, not with {shown(then)}: {again}record it again"

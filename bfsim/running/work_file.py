@@ -28,7 +28,7 @@ from bfsim.machine.retiming.work import FrameWork
 from bfsim.machine.retiming.work_check import check
 from bfsim.recording.stereo.stereo_check import Counts
 from bfsim.running import frame_file
-from bfsim.running.identifying import KnownFrames
+from bfsim.running.digested_frames import KnownFrames
 
 FORMAT = 9
 PACKED_HOW_WELL = 3

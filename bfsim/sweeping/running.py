@@ -25,7 +25,7 @@ from bfsim.report.run.warnings import warnings_of
 from bfsim.report.sweep.figures import sweep_figures
 from bfsim.result import Run
 from bfsim.run import simulate
-from bfsim.running.identifying import recording_digest
+from bfsim.running.digested_frames import recording_digest
 from bfsim.trace import Identity, StallReason
 
 PACKAGE = Path(__file__).parent.parent

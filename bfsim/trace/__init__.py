@@ -10,9 +10,19 @@ from bfsim.trace.frames import NO_STAGES, REST, CoreFrame, FrameRecord, OwnerCos
 from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
 from bfsim.trace.kernels import AccessRecord, KernelRecord, LineCost, PathRecord
 from bfsim.trace.later import Later
-from bfsim.trace.run import BoardRecord, BudgetRow, Identity, Reference, RunRecord, RunWarning, WarningKind
+from bfsim.trace.run import (
+    DIGITS_SHOWN,
+    BoardRecord,
+    BudgetRow,
+    Identity,
+    Reference,
+    RunRecord,
+    RunWarning,
+    WarningKind,
+)
 
 __all__ = [
+    "DIGITS_SHOWN",
     "NO_STAGES",
     "REST",
     "AccessRecord",

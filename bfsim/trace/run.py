@@ -10,6 +10,9 @@ from bfsim.trace.frames import FrameRecord
 from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
 from bfsim.trace.kernels import AccessRecord, KernelRecord, PathRecord
 
+DIGITS_SHOWN = 12
+"""Digits of a digest that people are shown: enough to see that two runs are the same."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:

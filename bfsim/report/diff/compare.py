@@ -11,9 +11,8 @@ from bfsim.report.diff.difference import NOTHING, Change, Difference, FrameChang
 from bfsim.report.diff.result_side import result_side
 from bfsim.report.diff.side import FRAMES, SEPARATOR, Side
 from bfsim.report.results.result import Result
+from bfsim.trace import DIGITS_SHOWN
 
-DIGEST_SHOWN = 12
-"""Digits of a digest that are shown."""
 CONTENT = ": content"
 RECORDING_CONTENT = f"recording{CONTENT}"
 
@@ -63,7 +62,7 @@ def _configuration(before: Side, after: Side) -> Iterator[Change]:
             one, other = old.split(SEPARATOR), new.split(SEPARATOR)
             old = SEPARATOR.join(each for each in one if each not in other)
             new = SEPARATOR.join(each for each in other if each not in one)
-        cut = DIGEST_SHOWN if what.endswith(CONTENT) else None
+        cut = DIGITS_SHOWN if what.endswith(CONTENT) else None
         yield Change(what=what, before=old[:cut] or NOTHING, after=new[:cut] or NOTHING)
 
 

@@ -7,10 +7,7 @@ from collections.abc import Iterator
 from bfsim.report.what_ran.code import TRUST, code_in_words
 from bfsim.report.what_ran.digest import cycle_digest, identity_digest
 from bfsim.report.wording.units import mhz
-from bfsim.trace import RunRecord
-
-DIGITS_TOLD = 12
-"""Enough digits of a digest to see that two runs are the same."""
+from bfsim.trace import DIGITS_SHOWN, RunRecord
 
 
 def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
@@ -29,4 +26,4 @@ def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
     yield "Run", f"{identity.recording} {size}, {identity.firmware}, {board}, {', '.join(extras)}"
     yield TRUST
     digests = identity_digest(identity), cycle_digest(run.frames)
-    yield "Digests", "identity {}, cycles {}".format(*(each[:DIGITS_TOLD] for each in digests))
+    yield "Digests", "identity {}, cycles {}".format(*(each[:DIGITS_SHOWN] for each in digests))
