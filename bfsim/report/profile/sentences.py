@@ -104,7 +104,7 @@ def _of_kernels(profile: Profile) -> str:
         max(kernels.values(), key=lambda same: sum(each.cost.elapsed_cclk for each in same))
     )
     cclk = first.cost.elapsed_cclk
-    text = f"The dearest kernel is {first.owner} ({first.place}), {_percent(profile.share(cclk))}"
+    text = f"The kernel that takes most is {first.owner} ({first.place}), {_percent(profile.share(cclk))}"
     if first.calls:
         count = _number(first.calls / profile.frames)
         calls = f"{count} {'call' if count == '1' else 'calls'} a frame of {cclk / first.calls:,.0f} cycles"

@@ -166,7 +166,7 @@ def test_three_sentences_say_what_matters() -> None:
     stages, kernels, waits = sentences_of(owned_run(100, 100))
     assert stages == "81 % of core A's frame (0.16 ms) is Edge detection; then waiting for pictures 19 %."
     assert kernels == (
-        "The dearest kernel is sobel (edges.py:10), 69 %: 1 call a frame of 110 cycles, 86 % of them in line 10, "
+        "The kernel that takes most is sobel (edges.py:10), 69 %: 1 call a frame of 110 cycles, 86 % of them in line 10, "
         "`for x in range(n):`, which runs once a call and takes 95 each time."
     )
     assert (
@@ -178,7 +178,7 @@ def test_sentences_of_a_stage_are_of_the_stage() -> None:
     """How much of the frame it is; then its parts in percent of itself."""
     stages, kernels, waits = sentences_of(owned_run(100, 100), stage=EDGES)
     assert stages == "Edge detection takes 0.13 ms a frame on core A, 81 % of its frame."
-    assert kernels.startswith("The dearest kernel is sobel (edges.py:10), 85 %: 1 call")
+    assert kernels.startswith("The kernel that takes most is sobel (edges.py:10), 85 %: 1 call")
     assert (
         waits
         == "Memory costs 7.7 %, 100 % of that for table in L2, mostly L2 latency; there are no other waits."
@@ -316,7 +316,7 @@ def test_the_routine_is_named_below_the_line() -> None:
     assert not any("divsi3" in each for each in lines)
     named = [each for each in lines if each.startswith("library division")]
     assert [each.split()[2:4] for each in named] == [["3", "52.0"], ["1", "52.0"], ["2", "52.0"]]
-    assert "The dearest kernel is sobel (edges.py:10)" in sentences_of(dividing_run())[1]
+    assert "The kernel that takes most is sobel (edges.py:10)" in sentences_of(dividing_run())[1]
     assert "72 % of them in line 10" in sentences_of(dividing_run())[1]
 
 
