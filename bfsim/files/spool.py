@@ -27,7 +27,7 @@ class Spool(Mapping[int, bytes]):
         self._file.close()
 
     def put(self, index: int, content: bytes) -> None:
-        """Keep the bytes of a frame."""
+        """Keep the bytes of a frame. Raises ConfigError if there is no room for them."""
         try:
             self._places[index] = self._file.seek(0, os.SEEK_END), self._file.write(content)
             self._file.flush()

@@ -51,7 +51,8 @@ class Loaded(Generic[Wanted]):
 def load_named(name: str, kind: NamedKind[Wanted], apart: Collection[Wanted] = ()) -> Loaded[Wanted]:
     """Import the object called FILE.py:NAME or PACKAGE:NAME, as `load_firmware` does.
 
-    :NAME may be left out if the module has only one object of that kind; those in `apart` do not count.
+    :NAME may be left out if the module has only one object of that kind; those in `apart` do not count. Raises
+    FirmwareError if there is no such module or object.
     """
     place, attribute = parted(name, kind.must_be)
     module, own = import_own(*located(place, kind.advice(attribute)))

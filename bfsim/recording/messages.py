@@ -17,7 +17,10 @@ from bfsim.recording.frames import DisparityImage, UyvyImage
 
 
 def picture_of(message: Message, width: int, height: int, where: str) -> UyvyImage:
-    """Return a camera's picture, which must have the given size."""
+    """Return a camera's picture: read-only UYVY bytes, (height, 2 · width).
+
+    Raises RecordingError, which says `where`, unless the message is an image of the given size in pixels.
+    """
     image = image_of(message, where)
     if (image.width, image.height) != (width, height):
         raise RecordingError(
@@ -29,7 +32,7 @@ def picture_of(message: Message, width: int, height: int, where: str) -> UyvyIma
 
 
 def truth_of(message: Message, where: str) -> Mapping[str, Any]:
-    """Return the ground truth of a frame."""
+    """Return the ground truth of a frame. Raises RecordingError unless it is a JSON object."""
     try:
         truth = json.loads(message.data)
     except (ValueError, RecursionError) as error:
@@ -40,7 +43,10 @@ def truth_of(message: Message, where: str) -> Mapping[str, Any]:
 
 
 def disparity_of(message: Message, width: int, height: int, where: str) -> DisparityImage:
-    """Return the exact disparities of a frame whose pictures have the given size."""
+    """Return the exact disparities of a frame in pixels, float32, (height, width).
+
+    Raises RecordingError unless they are as many as the pictures, of the given size, have pixels.
+    """
     image = _parsed(message, where)
     found = (image.encoding, image.width, image.height, len(image.data))
     wanted = (layout.DISPARITY_ENCODING, width, height, 4 * width * height)
@@ -53,7 +59,7 @@ def disparity_of(message: Message, width: int, height: int, where: str) -> Dispa
 
 
 def image_of(message: Message, where: str) -> RawImage:
-    """Return a camera's message as an image whose sizes match each other and its data."""
+    """Return a camera's message as an image. Raises RecordingError unless its sizes match each other and its data."""
     image = _parsed(message, where)
     if image.encoding not in layout.IMAGE_ENCODINGS:
         raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {shown(image.encoding)} {where}")

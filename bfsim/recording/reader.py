@@ -79,7 +79,10 @@ class RecordingReader:
         return self._file.stored_digest(end)
 
     def residual_plot(self) -> bytes:
-        """The plot (PNG) of how far the chessboards' corners are from those of the fitted cameras."""
+        """The plot (PNG) of how far the chessboards' corners are from those of the fitted cameras.
+
+        Raises RecordingError if the recording is not calibrated.
+        """
         plot = self._file.attachment(layout.RESIDUAL_PLOT_NAME)
         if plot is None:
             raise RecordingError(
@@ -121,7 +124,7 @@ class RecordingReader:
         """Yield stereo frames from the first, at most `limit`.
 
         The k-th picture of the left camera is paired with the k-th of the right. The pictures are read-only. Each
-        camera's time stamps rise strictly.
+        camera's time stamps rise strictly. Raises RecordingError at a frame that is damaged or missing.
         """
         count = self.frame_count if limit is None else min(limit, self.frame_count)
         frames = self._pair()

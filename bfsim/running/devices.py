@@ -11,7 +11,10 @@ from bfsim.machine.peripherals.table import devices_of, makers_of
 
 
 def told_devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Device], str]:
-    """Return the firmware's devices, which have the script if there is one, and the digest of the script."""
+    """Return the firmware's devices, which have the script if there is one, and the digest of the script.
+
+    Raises ConfigError if no device takes a script, or if the script cannot be read or is refused by one.
+    """
     if path is None:
         return devices_of(loaded.firmware, {}), ""
     if not makers_of(loaded.firmware):

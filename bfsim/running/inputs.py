@@ -32,7 +32,8 @@ def read_placement(
 ) -> LinkerScript:
     """Read an LDF for chip and SDRAM of the board: a file, a shipped one by its name, or the one that suits the chip.
 
-    `defines` are macros that add to those of bfsim, or replace them.
+    `defines` are macros that add to those of bfsim, or replace them. Raises LinkError if there is no such LDF or
+    it is not one.
     """
     path = shipped.ldf_at(Path(ldf)) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
     if path is None:

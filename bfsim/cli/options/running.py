@@ -92,7 +92,7 @@ takes_work = takes(_WORK_PARAMETERS)
 
 
 def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **what: Any) -> RunRecord:
-    """Run the simulation behind a progress bar and return at least one frame."""
+    """Run the simulation behind a progress bar. Raises ConfigError if no frame was finished."""
     from bfsim.run import Feed, Fidelity, simulate
 
     watchers = watchers or Watchers()

@@ -108,7 +108,10 @@ def _pictures(
 
 
 def picture_of_file(path: Path) -> UyvyImage:
-    """Return an image as a camera would send it, UYVY; without its last column if the width is odd."""
+    """Return an image as a camera would send it, UYVY; without its last column if the width is odd.
+
+    Raises RecordingError if it cannot be read or is one pixel wide.
+    """
     picture = load_image(path).convert("RGB")
     if picture.width < 2:
         raise RecordingError(f"{path}: image must be at least 2 pixels wide, not {picture.width}")
@@ -116,7 +119,10 @@ def picture_of_file(path: Path) -> UyvyImage:
 
 
 def images_and_others(source: str) -> tuple[list[Path], list[Skipped]]:
-    """Return the images of a folder, a pattern or one file, in natural order, and the other files there."""
+    """Return the images of a folder, a pattern or one file, in natural order, and the other files there.
+
+    Raises RecordingError if there is no such source, or no image in it.
+    """
     path = Path(source)
     if is_pattern(source):
         found = _matching(path)
@@ -180,7 +186,10 @@ def _natural_key(path: Path) -> tuple[list[int | str], str]:
 
 
 def load_image(path: Path, bits: int | None = None) -> Image.Image:
-    """Return the decoded image, upright according to its EXIF orientation; `bits` as in `decoded`."""
+    """Return the decoded image, upright according to its EXIF orientation; `bits` as in `decoded`.
+
+    Raises RecordingError, with the file, if Pillow cannot read it or it is not one picture of 8 bits, or grey of 16.
+    """
     try:
         return decoded(path, bits=bits)
     except RecordingError as error:

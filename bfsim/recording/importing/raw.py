@@ -175,7 +175,10 @@ def _open_raw(
 
 
 def open_y4m(source: str) -> PictureSource:
-    """Open frames of a YUV4MPEG2 file with 8 bits a sample, 4:2:0, 4:2:2, 4:4:4 or mono."""
+    """Open frames of a YUV4MPEG2 file with 8 bits a sample, 4:2:0, 4:2:2, 4:4:4 or mono.
+
+    Raises RecordingError for anything else; reading the pictures raises it, with the frame, where the file breaks off.
+    """
     with _open(source) as stream:
         header = _read_line(stream, source, 0).split(" ")
         start = stream.tell()

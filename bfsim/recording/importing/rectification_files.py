@@ -17,7 +17,10 @@ LARGEST_TABLE_MB = 256
 
 
 def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[str]) -> RectificationTables:
-    """Return rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing."""
+    """Return rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing.
+
+    Raises RecordingError for a file that cannot be read or holds anything else.
+    """
     tables = []
     for path in (left, right):
         try:

@@ -46,7 +46,10 @@ class Stamps:
 
 
 def frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> Fraction:
-    """Return the number of stereo frames per second: `fps`, or what the sources say."""
+    """Return the number of stereo frames per second: `fps`, or what the sources say.
+
+    Raises RecordingError if the sources do not agree, or if `fps` is out of its range.
+    """
     rates = {source.fps for source in sources if source.fps is not None and source.times_ns is None}
     rates = rates or {sources[0].fps or DEFAULT_FPS}  # their times decide whether pictures belong together
     if fps is None and len(rates) > 1:

@@ -24,7 +24,8 @@ DURATION = re.compile(r"(\d+):(\d+):(\d+(?:\.\d+)?)$")
 def open_video(source: str) -> PictureSource:
     """Open the first video stream of a file, upright as it says, in full-range BT.601 whatever its range and matrix.
 
-    Pictures that do not come at the video's nominal rate, such as those of phones, keep their times.
+    Pictures that do not come at the video's nominal rate, such as those of phones, keep their times. Raises
+    RecordingError if no picture of the file can be decoded, or if PyAV is missing.
     """
     with _stream_of(source) as (container, stream):
         rate = Fraction(stream.average_rate) if stream.average_rate else None

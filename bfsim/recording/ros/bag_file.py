@@ -50,7 +50,10 @@ class BagFile:
             ]
 
     def messages(self, topic: str) -> Iterator[tuple[int, bytes]]:
-        """Yield the time at which each message of a topic was logged, in ns, and its bytes."""
+        """Yield the time at which each message of a topic was logged, in ns, and its bytes.
+
+        Raises RecordingError if they are not as ROS defines their type.
+        """
         with self._open() as reader:
             connections = [each for each in reader.connections if each.topic == topic]
             for connection, time_ns, raw in reader.messages(connections=connections):
@@ -61,7 +64,7 @@ class BagFile:
                 yield time_ns, bytes(raw)
 
     def stamp_ns(self, raw: bytes) -> int:
-        """Return the time stamp in the header of a message, which is its first field."""
+        """Return the time stamp in the header of a message, its first field. Raises RecordingError if it has none."""
         try:
             if self.is_ros1:
                 _, seconds, nanoseconds = struct.unpack_from("<III", raw)

@@ -78,7 +78,7 @@ def parsed(path: Path) -> TOMLDocument:
 
 
 def validated(document: TOMLDocument, path: Path) -> Baseline:
-    """Return the baseline in a document from `path`; this checks every sentence in it."""
+    """Return the baseline in a document from `path`. Raises ConfigError for a wrong key, value or sentence in it."""
     plain = document.unwrap()
     runs = plain.get("run")
     cases = [each for each in runs if isinstance(each, dict)] if isinstance(runs, list) else []
