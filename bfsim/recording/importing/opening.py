@@ -15,11 +15,11 @@ from bfsim.recording.importing.raw import (
     open_i420,
     open_nv12,
     open_uyvy,
-    open_y4m,
     open_yuyv,
 )
 from bfsim.recording.importing.sources import SOURCE_FORMATS, PictureSource, SourceFormat, guess_format
 from bfsim.recording.importing.video import open_video
+from bfsim.recording.importing.y4m import open_y4m
 
 _FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
 _RAW_OPENERS: dict[SourceFormat, Callable[[str, tuple[int, int]], PictureSource]] = {
