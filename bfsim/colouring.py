@@ -15,7 +15,7 @@ from bfsim.loading.firmware import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import failure_of, line_of
 from bfsim.machine.peripherals.device import Script
 from bfsim.recording import RecordingReader
-from bfsim.recording.importing.images import picture_of_file
+from bfsim.recording.importing.image_files import picture_of_file
 from bfsim.running.device_script import read_script
 from bfsim.seen import NamedColour, PictureColours
 

@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from bfsim.cli.main import main
-from bfsim.recording.importing.images import picture_of_file
+from bfsim.recording.importing.image_files import picture_of_file
 from bfsim.recording.writer import RecordingWriter
 from bfsim.shipped import RECORDING
 

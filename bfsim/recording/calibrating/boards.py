@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.importing.images import images_among, images_and_others, load_image
+from bfsim.recording.importing.image_files import load_image
+from bfsim.recording.importing.images import images_among, images_and_others
 from bfsim.recording.importing.pairs import SIDES, pairs_of, side_of
 from bfsim.recording.importing.sources import Skipped
 from bfsim.recording.planes import Plane, YuvPlanes, fit_matrix

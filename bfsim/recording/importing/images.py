@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 import re
-import struct
-import warnings
 from collections.abc import Iterable, Iterator
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError, cut
-from bfsim.recording.frames import UyvyImage
 from bfsim.recording.importing.bayer import BayerPattern, planes_of_bayer
-from bfsim.recording.importing.deep_pixels import MOST_BITS, upper_bits
+from bfsim.recording.importing.image_files import load_image
 from bfsim.recording.importing.pairs import pairs_of
 from bfsim.recording.importing.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 from bfsim.recording.planes import YuvPlanes
-
-_DEEP = ";16"
-"""In Pillow's names of modes with 16 bits a pixel: `I;16`, `RGB;16B`."""
-_BRIGHTEST = (1 << MOST_BITS) - 1
-_EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
 
 
 def open_image_pair(
@@ -45,7 +35,7 @@ def open_images(
     """Return the images of a folder, of a pattern or of one file, in natural order of their names (2 before 10).
 
     Unreadable images are skipped, unless all are; images of another size than the first are refused, unless sizes may
-    be `mixed`. `bits` as in `decoded`. `pattern`: the pattern of the sensor's colour filters, if grey images are its
+    be `mixed`. `bits` as in `load_image`. `pattern`: the pattern of the sensor's colour filters, if grey images are its
     raw pixels.
     """
     return _source(source, *images_and_others(source), mixed=mixed, bits=bits, pattern=pattern)
@@ -105,17 +95,6 @@ def _pictures(
                 f"{path}: image must be grey for `--format {pattern}`, not of the pixel format {image.mode}"
             )
         yield planes_of_bayer(np.asarray(image), pattern) if pattern else YuvPlanes.from_image(image)
-
-
-def picture_of_file(path: Path) -> UyvyImage:
-    """Return an image as a camera would send it, UYVY; without its last column if the width is odd.
-
-    Raises RecordingError if it cannot be read or is one pixel wide.
-    """
-    picture = load_image(path).convert("RGB")
-    if picture.width < 2:
-        raise RecordingError(f"{path}: image must be at least 2 pixels wide, not {picture.width}")
-    return YuvPlanes.from_image(picture.crop((0, 0, picture.width // 2 * 2, picture.height))).to_uyvy()
 
 
 def images_and_others(source: str) -> tuple[list[Path], list[Skipped]]:
@@ -183,68 +162,3 @@ def _natural_key(path: Path) -> tuple[list[int | str], str]:
     """Return words and numbers alternately: 2 comes before 10, and `IMG.jpg` before its copy `IMG (1).jpg`."""
     parts = re.split(r"(\d+)", str(path.with_suffix("")))
     return [int(part) if part.isdecimal() else part for part in parts], path.suffix
-
-
-def load_image(path: Path, bits: int | None = None) -> Image.Image:
-    """Return the decoded image, upright according to its EXIF orientation; `bits` as in `decoded`.
-
-    Raises RecordingError, with the file, if Pillow cannot read it or it is not one picture of 8 bits, or grey of 16.
-    """
-    try:
-        return decoded(path, bits=bits)
-    except RecordingError as error:
-        raise RecordingError(f"{path}: {error}") from None
-
-
-def decoded(
-    file: Path | BytesIO, formats: tuple[str, ...] | None = None, *, bits: int | None = None
-) -> Image.Image:
-    """Return the image in a file of any format, or of one of `formats`, as `load_image`. Errors do not name the file.
-
-    `bits`: how many the camera uses of 16-bit pixels. A PGM whose maximum is not 65,535 says that itself.
-    """
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of files that Pillow reads all the same
-            warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(file, formats=formats) as image:
-                # A phone may store a smaller copy behind the picture (MPO).
-                count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
-                has_deep_colours = _DEEP in str(image.tile) and image.mode in _EIGHT_BIT_MODES
-                deep_bits = MOST_BITS if _says_its_maximum(image) else bits
-                image.load()
-                upright = ImageOps.exif_transpose(image)
-    except UnidentifiedImageError:
-        kinds = " or ".join(formats) if formats else "an image that Pillow reads"
-        raise RecordingError(f"file must be {kinds}, not something else") from None
-    # Pillow's decoders report damage with any of these errors, and fail on it with those below.
-    except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
-        raise RecordingError(f"image must be readable: {error}") from None
-    except (LookupError, TypeError, AttributeError, ArithmeticError, struct.error) as error:
-        stumble = f"{type(error).__name__}: {cut(str(error))}"
-        raise RecordingError(f"image must be whole, but Pillow stops in it ({stumble})") from None
-    if count > 1:
-        raise RecordingError(
-            f"image must be one picture, not {count}; `--format video` reads GIF and animated PNG, and "
-            "`magick in.webp -coalesce %03d.png` makes one file of each picture of others"
-        )
-    if upright.mode == "I" or upright.mode.startswith(f"I{_DEEP}"):
-        return Image.fromarray(upper_bits(np.asarray(upright), deep_bits))
-    if upright.mode not in _EIGHT_BIT_MODES:
-        raise RecordingError(
-            f"image must have pixels of 8 bits, or grey ones of 16, not the pixel format {upright.mode}"
-        )
-    if bits is not None and not (has_deep_colours and bits == MOST_BITS):
-        # Pillow keeps the upper 8 of 16 bits of colours.
-        raise RecordingError(
-            f"image must have grey pixels of 16 bits for `--bits {bits}`, not {'colours' if has_deep_colours else 'pixels of 8'}"
-        )
-    return upright
-
-
-def _says_its_maximum(image: ImageFile.ImageFile) -> bool:
-    """Whether an unloaded grey image states its maximum: Pillow stretches a PGM's maximum above 255 to 65,535."""
-    if image.format != "PPM" or image.mode != "I":
-        return False
-    found = image.tile[0].args  # (mode, maximum), or a name if Pillow does not stretch
-    return isinstance(found, tuple) and found[-1] != _BRIGHTEST

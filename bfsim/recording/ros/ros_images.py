@@ -12,7 +12,7 @@ from PIL import Image
 from bfsim.errors import RecordingError, shown
 from bfsim.recording.importing.bayer import BAYER_PATTERNS, planes_of_bayer
 from bfsim.recording.importing.deep_pixels import upper_bits, words
-from bfsim.recording.importing.images import decoded
+from bfsim.recording.importing.image_files import decoded
 from bfsim.recording.layout import LARGEST_PICTURE_BYTES
 from bfsim.recording.planes import YuvPlanes
 
