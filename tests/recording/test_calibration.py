@@ -16,12 +16,8 @@ from bfsim.cli.record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RectificationTables, StereoGeometry
 from bfsim.recording.calibrating.boards import BoardView
-from bfsim.recording.calibrating.calibration import (
-    StereoCalibration,
-    _fit_without_outliers,
-    calibrate,
-    calibrate_recording,
-)
+from bfsim.recording.calibrating.calibrated_recording import calibrate_recording
+from bfsim.recording.calibrating.calibration import StereoCalibration, _fit_without_outliers, calibrate
 from bfsim.recording.calibrating.residual_plot import draw_residuals
 from bfsim.recording.calibration_report import CalibrationReport, ViewError, mean_focal_px
 from bfsim.recording.cameras.fisheye_model import FisheyeModel

@@ -66,7 +66,7 @@ def calibrate_command(
       bfsim record calibrate boards/ phone.mcap --mono
     """
     from bfsim.recording import RecordingReader
-    from bfsim.recording.calibrating.calibration import calibrate_recording
+    from bfsim.recording.calibrating.calibrated_recording import calibrate_recording
 
     with progress_bar("Looking for boards", with_time=False) as progress:
         found = calibrate_recording(
