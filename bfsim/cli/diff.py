@@ -63,7 +63,7 @@ def diff(
 
     BEFORE and AFTER are each a result, FILE.json as `bfsim run --json` writes it; a run of a baseline of `bfsim check`,
     FILE.toml or FILE.toml:NAME; or, in quotes, the arguments of a `bfsim run`, which is then run on the spot. The
-    contributions sum to the difference. Waits for the other core or for the cameras are shown apart, because they follow
+    contributions sum to the difference. Waits for other cores or for the cameras are shown apart, because they follow
     from the rest.
 
     \b

@@ -81,6 +81,7 @@ def test_the_whole_tree_is_there() -> None:
         assert f"{each.cclk:+,}" in found.words
         assert each.name in found.words
     assert found.names.count("summary") == 4 + FRAMES
+    assert "Cycles of all cores in 2 frames" in found.words  # a board may have one
     text = "".join(DiffPage(DIFFERENCE, PagedSide("a", None), PagedSide("b", None)).chunks())
     assert text.count("width:50.00%") == 4
     assert text.count("width:25.00%") == 2
