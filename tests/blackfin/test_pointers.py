@@ -79,11 +79,16 @@ def _hit(kernel: Kernel, arguments: tuple) -> Counter:
 
 
 def test_an_instruction_knows_the_origins_of_what_it_makes() -> None:
-    """P1 = P2 + P3; R0 = R1 - R2; R3 = [FP + -8]: of sums both, of differences one less the other, of loads the word."""
+    """P1 = P2 + P3; R0 = R1 - R2; R3 = [FP + -8]; P1 = -148; R0 <<= 1: of sums both, of differences one less the other, of loads
+    the word, of a number that, and of twice a number no sum."""
     added = made_by(decode(bytes.fromhex("5a5a"), 0)).writes["P1"]
-    assert (added.of, added.less, added.base) == ({"P2", "P3"}, set(), "")
+    assert added == Origin(frozenset({"P2", "P3"}), terms=("P2", "P3"))
+    number = made_by(decode(bytes.fromhex("29e16cff"), 0)).writes["P1"]
+    assert number == Origin(terms=(), offset=-148)
+    doubled = made_by(decode(bytes.fromhex("084f"), 0)).writes["R0"]
+    assert doubled == Origin(frozenset({"R0"}))
     less = made_by(decode(bytes.fromhex("1152"), 0)).writes["R0"]
     assert (less.of, less.less) == ({"R1"}, {"R2"})
     loaded = made_by(decode(bytes.fromhex("e3b9"), 0))
-    assert loaded.writes["R3"] == Origin(frozenset({"load 0"}), frozenset(), "load 0")
+    assert loaded.writes["R3"] == Origin(frozenset({"load 0"}), terms=("load 0",))
     assert (loaded.accesses[0].address.base, loaded.accesses[0].address.offset) == ("FP", -8)

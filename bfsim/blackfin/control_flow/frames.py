@@ -19,6 +19,8 @@ Places = Mapping[int, tuple[int | None, ...]]
 """For each instruction with accesses, by address, how far each is from the entry's stack pointer; None outside the frame."""
 _State = dict[str, int | None]
 """How far registers that point into the frame are from there; None if they may point into it."""
+_Numbers = dict[str, int]
+"""Registers that the block has set to a number: a frame that is too large for an offset is taken and given back with one."""
 SAVING = frozenset({"link", "push", "push_multiple"})
 """Instructions that save registers for a caller: an address that is saved is not used meanwhile."""
 
@@ -53,9 +55,9 @@ class _Frames:
         while self._waiting:
             start = self._waiting.pop()
             state = dict(self._begins[start])
-            block = self._code.blocks[start]
+            block, numbers = self._code.blocks[start], _Numbers()
             for each in block.instructions:
-                self._execute(each, state)
+                self._execute(each, state, numbers)
             if block.returns and RESULT in state:
                 _give_up()
             for way in self._ways.get(start, ()):
@@ -79,20 +81,23 @@ class _Frames:
                 self._begins[start] = both
                 self._waiting.append(start)
 
-    def _execute(self, instruction: Instruction, state: _State) -> None:
+    def _execute(self, instruction: Instruction, state: _State, numbers: _Numbers) -> None:
         made = made_by(instruction)
         places: list[int | None] = []
         for each in made.accesses:
-            places.append(_place(each.address, state))
+            places.append(_place(each.address, state, numbers))
             if each.stored and not (does(instruction) in SAVING and each.stored.base in KEPT):
                 _refuse(each.stored, state)
         if places:
             self._found[instruction.address] = tuple(places)
-        written = {name: _place(origin, state) for name, origin in made.writes.items()}
-        for name, place in written.items():
-            state.pop(name, None)
-            if place is not None:
-                state[name] = place
+        written = {
+            name: (_place(each, state, numbers), _sum(each, numbers)) for name, each in made.writes.items()
+        }
+        for name, (place, number) in written.items():
+            for known, new in ((state, place), (numbers, number)):
+                known.pop(name, None)
+                if new is not None:
+                    known[name] = new
 
 
 def _behind_call(state: _State) -> _State:
@@ -100,13 +105,22 @@ def _behind_call(state: _State) -> _State:
     return {name: place if name in KEPT else None for name, place in state.items()}
 
 
-def _place(origin: Origin, state: _State) -> int | None:
+def _place(origin: Origin, state: _State, numbers: _Numbers) -> int | None:
     """Return the place in the frame that a value points to, if it does."""
-    place = state.get(origin.base)
-    if place is not None:
-        return place + origin.offset
+    pointers = [each for each in origin.terms or () if each in state]
+    if len(pointers) == 1 and (place := state[pointers[0]]) is not None:
+        found = _sum(origin, {**numbers, pointers[0]: place})
+        if found is not None:
+            return found
     _refuse(origin, state)
     return None
+
+
+def _sum(origin: Origin, numbers: _Numbers) -> int | None:
+    """Return the number that a value is, if that is known."""
+    if origin.terms is None or not all(each in numbers for each in origin.terms):
+        return None
+    return origin.offset + sum(numbers[each] for each in origin.terms)
 
 
 def _refuse(origin: Origin, state: _State) -> None:

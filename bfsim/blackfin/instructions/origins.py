@@ -24,14 +24,19 @@ NOWHERE = frozenset[str]()
 class Origin:
     """Where a value comes from: registers, by their names, and words that the instruction has loaded, as "load 0", "load 1" ...
 
-    `less`: what was subtracted from it: a pointer less a pointer into the same array is a number. `base`: what it is,
-    apart from the constant `offset`.
+    `less`: what was subtracted from it: a pointer less a pointer into the same array is a number. `terms`: what it is the
+    sum of, apart from the constant `offset`, so a constant has none; None if it is no such sum.
     """
 
     of: frozenset[str] = NOWHERE
     less: frozenset[str] = NOWHERE
-    base: str = ""
+    terms: tuple[str, ...] | None = None
     offset: int = 0
+
+    @property
+    def base(self) -> str:
+        """What it is, apart from `offset`, if that is one register or loaded word."""
+        return self.terms[0] if self.terms and len(self.terms) == 1 else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +74,12 @@ class _Builder:
         return self._sum(one, other, -1)
 
     def select(self, _condition: Any, one: Any, other: Any) -> _Known:
-        return _mixed(one.type, one, other)
+        same = _origin(one) == _origin(other)
+        return _Known(one.type, _origin(one) if same else _mixed(one, other))
+
+    def shl(self, one: Any, other: Any) -> _Known:
+        is_same = isinstance(other, ir.Constant) and not other.constant
+        return _Known(one.type, _origin(one) if is_same else _mixed(one, other))
 
     def icmp_signed(self, *_operands: Any) -> _Known:
         return _Known(ir.IntType(1), Origin())
@@ -82,33 +92,32 @@ class _Builder:
     @staticmethod
     def _sum(one: Any, other: Any, sign: int) -> _Known:
         left, right = _origin(one), _origin(other)
-        if isinstance(other, ir.Constant):
-            step = other.constant - (1 << one.type.width) * (other.constant >> one.type.width - 1)
-            return _Known(one.type, Origin(left.of, left.less, left.base, left.offset + sign * step))
-        if sign < 0:
+        if sign < 0 and right.terms != ():
             return _Known(one.type, Origin(left.of, left.less | right.of))
-        if isinstance(one, ir.Constant):
-            return _Builder._sum(other, one, 1)
-        return _mixed(one.type, one, other)
+        terms = None if left.terms is None or right.terms is None else left.terms + right.terms
+        found = Origin(left.of | right.of, left.less | right.less, terms, left.offset + sign * right.offset)
+        return _Known(one.type, found)
 
 
 def _converted(*operands: Any) -> _Known:
     """Return the result of an operation on some values, perhaps of another type."""
     kinds = [each for each in operands if isinstance(each, ir.IntType)]
     values = [each for each in operands if not isinstance(each, ir.IntType)]
-    return _mixed(kinds[0] if kinds else values[0].type, *values)
+    is_same = len(values) == 1 and isinstance(values[0], _Known)
+    return _Known(kinds[0] if kinds else values[0].type, values[0].origin if is_same else _mixed(*values))
 
 
-def _mixed(kind: ir.IntType, *values: Any) -> _Known:
+def _mixed(*values: Any) -> Origin:
     origins = [_origin(each) for each in values]
     of = frozenset(name for each in origins for name in each.of)
-    less = frozenset(name for each in origins for name in each.less)
-    same = origins[0] if len(set(origins)) == 1 else Origin()
-    return _Known(kind, Origin(of, less, same.base, same.offset))
+    return Origin(of, frozenset(name for each in origins for name in each.less))
 
 
 def _origin(value: Any) -> Origin:
-    return value.origin if isinstance(value, _Known) else Origin()
+    if isinstance(value, _Known):
+        return value.origin
+    number = value.constant
+    return Origin(terms=(), offset=number - (1 << value.type.width) * (number >> value.type.width - 1))
 
 
 @dataclass(slots=True)
@@ -130,7 +139,7 @@ class _Tracking(Effects):
 
 
 def _named(builder: Any, name: str, bits: int) -> Value:
-    return Value(builder, _Known(ir.IntType(bits), Origin(frozenset({name}), NOWHERE, name)))
+    return Value(builder, _Known(ir.IntType(bits), Origin(frozenset({name}), NOWHERE, (name,))))
 
 
 _known: dict[tuple[object, ...], Made] = {}
