@@ -7,7 +7,7 @@ from collections.abc import Callable
 from llvmlite import ir
 
 from bfsim.blackfin.control_flow.frames import Places
-from bfsim.blackfin.instructions.effects import I8, I64, POINTER
+from bfsim.blackfin.instructions.effects import I8, I32, I64, POINTER
 from bfsim.blackfin.instructions.registers import WORD_BYTES
 from bfsim.blackfin.translation.native_function import NativeFunction
 
@@ -21,7 +21,8 @@ class Frame:
         self._first, self._end = min(words, default=0), max(words, default=0) + WORD_BYTES
         self._kept: ir.Value | None = None
         if words:
-            kind = ir.ArrayType(I8, self._end - self._first)
+            # of words: LLVM makes registers of elements, and would put words together from bytes
+            kind = ir.ArrayType(I32, (self._end - self._first) // WORD_BYTES)
             self._kept = ir.IRBuilder(function.entry).alloca(kind, name="frame")
             self._kept.align, self._kept.type = WORD_BYTES, POINTER
 
