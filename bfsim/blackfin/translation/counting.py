@@ -31,12 +31,12 @@ class Counting:
         self, function: NativeFunction, counted: Counted, implied: Iterable[Implied], reports: Reports | None
     ) -> None:
         self._address, self._counters, self._reports = function.counts, counted.counters, reports
+        self._implied = {each.block: each for each in implied}
         self._counts = Counts(function.entry, self._address)
         self._counts.make_writable(len(self._counters) + SUMS)
         self._numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(self._counters)
         }
-        self._implied = {each.block: each for each in implied}
         self._clock = self._sum(
             function.module, "clock", [each.cclk + each.stall_cclk for each in self._counters]
         )
@@ -57,11 +57,11 @@ class Counting:
             self._add(builder, self._numbers[start, False, None], I64(1))
         self.let_pass(builder, I64(cclk))
 
-    def branched(self, builder: ir.IRBuilder, start: int, taken: ir.Value) -> None:
-        """Count the branch of a block, if it is taken."""
+    def branched(self, builder: ir.IRBuilder, start: int) -> None:
+        """Count the branch of a block, where it is taken: on the other way nothing is added."""
         number = self._numbers[start, True, None]
-        self._add(builder, number, taken)
-        self.let_pass(builder, builder.mul(taken, I64(self._counters[number].cclk)))
+        self._add(builder, number, I64(1))
+        self.let_pass(builder, I64(self._counters[number].cclk))
 
     def went(self, builder: ir.IRBuilder, edge: Edge) -> None:
         """Count an edge from one block to another, if it causes other waits there."""

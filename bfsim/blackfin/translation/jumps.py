@@ -65,6 +65,8 @@ class Jumps:
             builder.position_at_end(stays)
             self._fall(builder, block)
             builder.position_at_end(goes)
+            if block.branches:
+                self._counting.branched(builder, block.start)
         self._loops(builder, block, jumps=False)
         target = flow.target.ir if isinstance(flow.target, Value) else I32(flow.target)
         if flow.event is not None:

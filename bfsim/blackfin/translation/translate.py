@@ -147,8 +147,6 @@ class _Translation:
         for register in written:
             self.function.write(builder, register, self.values[register])
         self.counting.executed(builder, block.start, cclk)
-        if flow and flow.condition and block.branches:
-            self.counting.branched(builder, block.start, flow.condition.zero_extended(64).ir)
         self.jumps.end(builder, block, flow)
 
     def _burn(self, builder: ir.IRBuilder, start: int) -> None:
