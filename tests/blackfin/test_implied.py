@@ -11,6 +11,7 @@ from bfsim.blackfin.control_flow.implied import implied
 from bfsim.blackfin.execution.processor import Processor
 from bfsim.blackfin.timing.tables import GNU
 from bfsim.blackfin.translation.counters import Counted
+from bfsim.blackfin.translation.counts import MOST_IN_REGISTERS
 from tests.blackfin.code import CODE, ISQRT, processor
 
 CLOCKED = ISQRT.replace("1000", "be31 1000")
@@ -21,6 +22,9 @@ CALLS = (
 )
 """[GNU as] From two places it calls the function at 0x2c, which has two returns. Then two loops: that from 0x1a comes back by a jump without
 a condition, so that the counts of its two blocks need each other, and that at 0x24 by its branch."""
+BITS = [bit for bit in range(32) for _ in range(MOST_IN_REGISTERS // 32 + 1)]
+BRANCHING = "0160" + "".join(f"{bit << 3:02x}49 0210 0964" for bit in BITS) + "0130 1000"
+"""`R1 = 0;`, then for each of these bits `CC = BITTST(R0, bit); IF !CC JUMP over; R1 += 1; over:`, and at last `R0 = R1;`."""
 COUNTED = (0x00, 0x0A, 0x16, 0x1A)
 """Its entry, what is behind the calls, and one of the circle: what must be counted of it."""
 NUMBERS = (0, 1, 80, 81, 12345, 2**32 - 1)
@@ -74,3 +78,17 @@ def test_code_that_goes_on_behind_events_or_asks_for_its_cycles_makes_every_coun
     assert counted_in(ISQRT, resumes=True) == every
     assert counted_in(CLOCKED) == every
     assert calls(CLOCKED, fuel=None) == calls(CLOCKED, fuel=1000)
+
+
+def test_of_many_branches_each_is_counted_when_it_is_taken() -> None:
+    core = processor(BRANCHING)
+    branches = [each.taken for each in counted_once(core, frozenset({CODE}), resumes=False).counters]
+    assert sum(branches) == len(BITS) > MOST_IN_REGISTERS
+    before = [0] * len(BITS)
+    for number, call in zip(NUMBERS, calls(BRANCHING, fuel=None), strict=True):
+        set_bits = [number >> bit & 1 for bit in BITS]
+        assert call.result == sum(set_bits)
+        now = [count for count, taken in zip(call.counts, branches, strict=False) if taken]
+        assert [one - other for one, other in zip(now, before, strict=True)] == [1 - bit for bit in set_bits]
+        before = now
+    assert calls(BRANCHING, fuel=None) == calls(BRANCHING, fuel=1000)

@@ -18,7 +18,7 @@ from bfsim.blackfin.instructions.effects import I64
 from bfsim.blackfin.instructions.value import Value
 from bfsim.blackfin.timing.stalls import Waits
 from bfsim.blackfin.translation.counters import Counted
-from bfsim.blackfin.translation.counts import Counts, sum_of, without
+from bfsim.blackfin.translation.counts import MOST_IN_REGISTERS, Counts, sum_of, without
 from bfsim.blackfin.translation.native_function import NativeFunction
 from bfsim.blackfin.translation.reports import Reports
 from bfsim.blackfin.translation.room import SUMS
@@ -32,7 +32,8 @@ class Counting:
     ) -> None:
         self._address, self._counters, self._reports = function.counts, counted.counters, reports
         self._implied = {each.block: each for each in implied}
-        self._counts = Counts(function.entry, self._address)
+        in_memory = len(self._counters) - len(self._implied) > MOST_IN_REGISTERS
+        self._counts = Counts(function.entry, self._address, in_memory=in_memory)
         self._counts.make_writable(len(self._counters) + SUMS)
         self._numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(self._counters)

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from llvmlite import ir
+from llvmlite.ir.instructions import StoreAtomicInstr
 
 from bfsim.blackfin.control_flow.flow import Edge
 from bfsim.blackfin.control_flow.implied import Implied
 from bfsim.blackfin.instructions.effects import I8, I64, POINTER
 
 COUNT_BYTES = 8
+MOST_IN_REGISTERS = 64
+"""[ours] LLVM has no registers of the host for more counts, and would move them between places on its stack."""
 Numbers = Mapping[tuple[int, bool, Edge | None], int]
 """Numbers of counters, by the address of the block, whether its branch is taken, and the edge by which it is entered."""
 
@@ -19,10 +22,11 @@ class Counts:
     """The counts at an address.
 
     The address of each is computed once, in the block `entry`: LLVM looks less closely at a value that is used often.
+    If they stay `in_memory`, the host adds to each by one instruction.
     """
 
-    def __init__(self, entry: ir.Block, address: ir.Value) -> None:
-        self._entry, self._address = entry, address
+    def __init__(self, entry: ir.Block, address: ir.Value, *, in_memory: bool = False) -> None:
+        self._entry, self._address, self._in_memory = entry, address, in_memory
         self._places: dict[int, ir.Value] = {}
 
     def make_writable(self, number: int) -> None:
@@ -44,8 +48,16 @@ class Counts:
         builder.store(count, self._place(number), align=COUNT_BYTES)
 
     def add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
-        """Add to a count."""
-        self.write(builder, number, builder.add(self.read(builder, number), amount))
+        """Add to a count. LLVM leaves what is atomic in memory, and the host takes no longer for it."""
+        if not self._in_memory:
+            self.write(builder, number, builder.add(self.read(builder, number), amount))
+            return
+        place = self._place(number)
+        sum_ = builder.add(builder.load_atomic(place, "monotonic", COUNT_BYTES, typ=I64), amount)
+        # llvmlite's own `store_atomic` does not know pointers without a type
+        store = StoreAtomicInstr(builder.block, sum_, place, "monotonic", COUNT_BYTES)
+        builder.block.instructions.append(store)
+        builder.position_at_end(builder.block)
 
     def work_out(self, builder: ir.IRBuilder, implied: Iterable[Implied], numbers: Numbers) -> None:
         """Store the counts that follow from others."""
