@@ -27,7 +27,9 @@ def fitted(exact: Value, bits: int, *, saturate: int) -> tuple[Value, Value]:
 
 def negated(number: Value) -> tuple[Value, Value]:
     """Return minus `number`, for the least number the largest one, and whether it was the least."""
-    return saturated(-number.sign_extended(number.bits + 1), number.bits)
+    least = 1 << number.bits - 1
+    over = number.equals(least)
+    return over.choose(number.constant(least - 1), -number), over
 
 
 def magnitude(number: Value) -> tuple[Value, Value]:
