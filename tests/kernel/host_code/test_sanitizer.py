@@ -132,3 +132,13 @@ def test_checking_changes_no_cycles() -> None:
     before = cclk(cost_kernels.copy_words, words, words.copy())
     cost_kernels.copy_words.sanitize((words, words.copy()))
     assert cclk(cost_kernels.copy_words, words, words.copy()) == before
+
+
+@kernel
+def doubled(a: i32, n: i32) -> i32:
+    return a << n
+
+
+def test_an_estimated_shift_takes_the_lower_five_bits_of_its_amount() -> None:
+    """As the page of the kernel language says: without `--sanitize` nothing checks it."""
+    assert [doubled(3, n) for n in (1, 33, -31, 32)] == [6, 6, 6, 3]
