@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from bfsim.api import Buffer, Buffers, Calibration, FrameSize, u8, u16, u32
 from tinyphoon.exchange import exchange_buffers
-from tinyphoon.geometry import geometry_buffer, thesis_geometry_buffer
+from tinyphoon.geometry import check_thesis_geometry, geometry_buffer, thesis_geometry_buffer
 from tinyphoon.stages.blob_detection import blob_buffers
 from tinyphoon.stages.circle_detection import circle_buffers
 from tinyphoon.stages.colour_reduction import colour_buffers
@@ -67,7 +67,12 @@ def calibration_buffers(calibration: Calibration) -> Buffers:
 
 
 def with_geometry(tables: Buffers, calibration: Calibration) -> Buffers:
-    """Return the tables of each core and the geometry of a recording."""
+    """Return the tables of each core and the geometry of a recording.
+
+    Raises FirmwareError if there is none, and the pictures are too large for the thesis's.
+    """
+    if calibration.size and not calibration.geometries:
+        check_thesis_geometry(calibration.size)
     geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
     return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
 

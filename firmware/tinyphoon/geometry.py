@@ -50,32 +50,32 @@ THESIS_GEOMETRY = (
 
 def geometry_buffer(geometry: Geometry) -> Buffer:
     """Return the geometry of a recording as a buffer; unknown height or tilt are those of the thesis's robot."""
-    height_mm, tilt_deg = geometry.height_mm, geometry.tilt_deg
-    return _buffer(
-        geometry.focal_px,
-        geometry.baseline_mm,
-        THESIS_HEIGHT_MM if height_mm is None else height_mm,
-        THESIS_TILT_DEG if tilt_deg is None else tilt_deg,
-    )
+    height_mm = THESIS_HEIGHT_MM if geometry.height_mm is None else geometry.height_mm
+    tilt_deg = THESIS_TILT_DEG if geometry.tilt_deg is None else geometry.tilt_deg
+    _check(geometry.focal_px, geometry.baseline_mm, height_mm)
+    return _buffer(geometry.focal_px, geometry.baseline_mm, height_mm, tilt_deg)
 
 
 def thesis_geometry_buffer(size: FrameSize) -> Buffer:
-    """Return the geometry of the thesis's robot, for recordings without one.
+    """Return the geometry of the thesis's robot, for recordings without one."""
+    return _buffer(_thesis_focal_px(size), THESIS_BASELINE_MM, THESIS_HEIGHT_MM, THESIS_TILT_DEG)
 
-    Raises FirmwareError for pictures so large that nothing can be computed with its cameras.
-    """
-    focal_px = THESIS_FOCAL_PX * size.width_px / THESIS_WIDTH_PX
-    try:
-        return _buffer(focal_px, THESIS_BASELINE_MM, THESIS_HEIGHT_MM, THESIS_TILT_DEG)
-    except FirmwareError as error:
+
+def check_thesis_geometry(size: FrameSize) -> None:
+    """Raise FirmwareError for pictures so large that nothing can be computed with the thesis's cameras."""
+    widest = int(DEEPEST / (SUBPIXELS * MICROMETRES * THESIS_BASELINE_MM) * THESIS_WIDTH_PX / THESIS_FOCAL_PX)
+    if size.width_px > widest:
         raise FirmwareError(
-            f"a recording of {size} pixels must say its geometry (bfsim record import --geometry), "
-            f"for with the thesis's {error}"
-        ) from error
+            f"a recording without geometry must have pictures at most {widest} px wide, not of {size}: `bfsim record import --resize` "
+            "scales them, and `--geometry` says what cameras it has, for with those of the thesis's robot depths leave 32 bits"
+        )
+
+
+def _thesis_focal_px(size: FrameSize) -> float:
+    return THESIS_FOCAL_PX * size.width_px / THESIS_WIDTH_PX
 
 
 def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: float) -> Buffer:
-    _check(focal_px, baseline_mm, height_mm)
     words = (
         round(SUBPIXELS * focal_px),
         round(MICROMETRES * baseline_mm),

@@ -17,7 +17,7 @@ from bfsim.recording.writer import RecordingWriter
 from bfsim.running.assumptions import assumed_geometry, geometry_in_words
 from bfsim.running.inputs import calibration_of
 from tests.firmware.whole_pictures import buffer, random_frames, run
-from tinyphoon import one_eye, tinyphoon
+from tinyphoon import fast, one_eye, tinyphoon
 from tinyphoon.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
 from tinyphoon.stages.object_places import depth_by_floor
 from tinyphoon.stores.lines import SUBPIXELS
@@ -136,10 +136,20 @@ def test_the_highest_camera_sees_the_floor_where_it_is(focal_px: float, height_m
 
 
 def test_pictures_too_large_for_the_geometry_of_the_thesis_must_bring_theirs() -> None:
-    """The message says how."""
-    tinyphoon.buffers(FrameSize(3648, 16))
-    with pytest.raises(FirmwareError, match=r"4096x16 pixels must say .* --geometry\), .* must be below"):
-        tinyphoon.buffers(FrameSize(4096, 16))
+    """The message says how. With a geometry of its own, no picture is too large but for the memory."""
+    tinyphoon.calibrated(Calibration(size=FrameSize(3648, 16)))
+    for firmware in (tinyphoon, one_eye, fast):
+        with pytest.raises(
+            FirmwareError, match=r"at most 3651 px wide, not of 4096x16: .* --resize.* `--geometry`"
+        ):
+            firmware.calibrated(Calibration(size=FrameSize(4096, 16)))
+    own = Calibration(size=FrameSize(4096, 16), geometries=(StereoGeometry(386.0, 30.0, 120.0, 10.0),))
+    (found,) = (
+        each
+        for each in tinyphoon.calibrated(own).buffers(FrameSize(4096, 16))["A"]
+        if each.name == "geometry"
+    )
+    assert list(found.values)[:2] == [386 * 16, 30000]
 
 
 @given(st.integers(1, 1 << 15), st.integers(1, 65535), st.integers(-100, 1 << 15))
