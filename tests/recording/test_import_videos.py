@@ -111,9 +111,10 @@ def test_uneven_videos_of_two_cameras_must_have_been_taken_at_once(tmp_path: Pat
         (
             [7, 40, 240, 273],
             [0, 33, 233, 266],
-            "pictures are 33 to 200 ms apart, as there; `--fps` spaces them",
+            "pictures are 33 to 200 ms apart, as in the video; `--fps` spaces them",
         ),
-        ([0, 67, 133, 200], [0, 67, 133, 200], "pictures are 66 to 67 ms apart, as there"),
+        ([0, 67, 133, 200], [0, 67, 133, 200], "pictures are 66 to 67 ms apart, as in the video"),
+        ([0, 40, 80, 120], [0, 40, 80, 120], "pictures are 40 ms apart, as in the video"),
     ],
 )
 def test_pictures_of_a_video_come_when_they_came(

@@ -47,6 +47,7 @@ def open_video(source: str) -> PictureSource:
     if is_even or not any(gaps_s):
         return own
     least, most = (f"{float(each) * 1000:.0f}" for each in (min(gaps_s), max(gaps_s)))
+    apart = least if least == most else f"{least} to {most}"
     times_ns: list[int] = []
     return replace(
         own,
@@ -54,7 +55,7 @@ def open_video(source: str) -> PictureSource:
         pictures=lambda: _pictures(source, times_ns),
         times_ns=times_ns,
         notes_on_times=(
-            f"{source}: pictures are {least} to {most} ms apart, as there; `--fps` spaces them evenly",
+            f"{source}: pictures are {apart} ms apart, as in the video; `--fps` spaces them evenly",
         ),
     )
 
