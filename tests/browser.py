@@ -25,6 +25,14 @@ _FLAGS = (
 
 PATIENCE_S = 60
 
+PAPER_PX = 717
+"""An A4 page between Chromium's margins."""
+
+CUT_OFF = """Array.from(document.querySelectorAll('body :not(.unseen)')).filter(
+    each => each.clientWidth && each.scrollWidth > each.clientWidth && getComputedStyle(each).overflowX != 'visible'
+).map(each => each.outerHTML.slice(0, 99))"""
+"""An expression for what has more in it than it shows."""
+
 
 def needs_chromium(test: Callable[..., None]) -> Callable[..., None]:
     """Skip a test where there is none. To start one takes seconds: such tests are exhaustive."""
@@ -38,10 +46,10 @@ class Browser:
     def __init__(self, driver: webdriver.Chrome) -> None:
         self.driver = driver
 
-    def look(self, *, width: int = 1280, height: int = 900, scheme: str = "light") -> None:
-        """Be as wide as this, and as light or dark."""
+    def look(self, *, width: int = 1280, height: int = 900, scheme: str = "light", medium: str = "") -> None:
+        """Be as wide as this, and as light or dark; the medium is "print" for paper."""
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
-        media = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+        media = {"media": medium, "features": [{"name": "prefers-color-scheme", "value": scheme}]}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", media)
 

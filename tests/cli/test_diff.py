@@ -14,7 +14,7 @@ from selenium.webdriver.common.keys import Keys
 
 from bfsim.cli.main import main
 from bfsim.recording.writer import RecordingWriter
-from tests.browser import browsing, needs_chromium
+from tests.browser import CUT_OFF, PAPER_PX, browsing, needs_chromium
 
 FIRMWARE = """
 from bfsim.api import Buffer, BudgetRow, Firmware, i32, kernel, u8
@@ -223,7 +223,7 @@ def test_a_page_that_cannot_be_written_is_refused_before_the_run(home: Path) -> 
 
 @needs_chromium
 def test_the_page_opens_in_a_browser(home: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Without a complaint; the keyboard opens the tree down to the cause; it fits a phone."""
+    """Without a complaint; the keyboard opens the tree down to the cause; it fits a phone, and paper."""
     bfsim(
         "diff",
         "drive.mcap --firmware slow.py:firmware",
@@ -241,3 +241,5 @@ def test_the_page_opens_in_a_browser(home: Path, tmp_path_factory: pytest.TempPa
         assert closed.find_element(By.XPATH, "..").get_attribute("open")
         causes = browser.driver.find_elements(By.CSS_SELECTOR, ".row.cause")
         assert any(each.is_displayed() for each in causes)
+        browser.look(width=PAPER_PX, medium="print")
+        assert not browser.ask(CUT_OFF)  # of a kernel's name, eight letters were printed

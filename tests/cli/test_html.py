@@ -17,7 +17,7 @@ from bfsim import run_page
 from bfsim.cli.main import main
 from bfsim.report.html.pictures import Pictures
 from bfsim.shipped import accuracy_on
-from tests.browser import PATIENCE_S, Browser, browsing, needs_chromium
+from tests.browser import CUT_OFF, PAPER_PX, PATIENCE_S, Browser, browsing, needs_chromium
 from tests.pages import ROOT
 from tests.report.evil import evil_run
 from tests.report.pages_by_hand import page_of
@@ -235,6 +235,13 @@ def test_it_fits_a_phone_and_a_screen_in_light_and_dark(opened: Browser, width: 
         )
         paper = str(opened.ask("getComputedStyle(document.body).backgroundColor"))
         assert contrast(ink, paper) >= 4.5, (where, ink, paper)
+
+
+@needs_chromium
+def test_on_paper_nothing_is_cut_off(opened: Browser) -> None:
+    """Tables that scroll on a screen ended at the edge of the page, with the bar that nobody can move."""
+    opened.look(width=PAPER_PX, medium="print")
+    assert not opened.ask(CUT_OFF)  # what is wider than the page, browsers shrink to it
 
 
 def contrast(one: str, other: str) -> float:
