@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from rosbags.rosbag1 import Writer as Writer1
-from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_typestore
 
@@ -105,14 +105,23 @@ class Ros:
     def imu(self) -> Any:
         return self.store.types["std_msgs/msg/String"](data="imu")
 
-    def write(self, folder: Path, messages: Iterable[Message], empty: Sequence[tuple[str, str]] = ()) -> Path:
+    def write(
+        self,
+        folder: Path,
+        messages: Iterable[Message],
+        empty: Sequence[tuple[str, str]] = (),
+        compression: CompressionMode = CompressionMode.NONE,
+    ) -> Path:
         """Write a bag; return the file, or the folder of a ROS 2 bag. `empty` topics have a type and no message."""
         path = folder / ("drive.bag" if self.is_ros1 else f"drive-{self.kind}")
         plugin = StoragePlugin.MCAP if self.kind == "mcap" else StoragePlugin.SQLITE3
         serialize: Callable[..., Any] = (
             self.store.serialize_ros1 if self.is_ros1 else self.store.serialize_cdr
         )
-        with Writer1(path) if self.is_ros1 else Writer2(path, version=9, storage_plugin=plugin) as writer:
+        bag = Writer1(path) if self.is_ros1 else Writer2(path, version=9, storage_plugin=plugin)
+        if compression is not CompressionMode.NONE:
+            bag.set_compression(compression, CompressionFormat.ZSTD)
+        with bag as writer:
             connections = {
                 topic: writer.add_connection(topic, kind, typestore=self.store) for topic, kind in empty
             }

@@ -10,6 +10,7 @@ from random import Random
 import numpy as np
 import pytest
 from PIL import Image
+from rosbags.rosbag2 import CompressionMode
 
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader
@@ -47,6 +48,18 @@ def test_a_recording_is_no_bag_and_a_bag_no_recording(tmp_path: Path) -> None:
     (bag,) = ros.write(tmp_path, grey_pair(ros, range(2))).glob("*.mcap")
     with pytest.raises(RecordingError, match="`bfsim record import` makes a recording of a bag of ROS"):
         RecordingReader(bag)
+
+
+@pytest.mark.parametrize("kind", ["mcap", "db3"])
+@pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
+def test_a_compressed_bag_is_read_by_its_folder(kind: str, mode: CompressionMode, tmp_path: Path) -> None:
+    """Its file alone does not say how it is compressed: pictures were of an unsupported encapsulation, or no bag at all."""
+    folder = Ros(kind).write(tmp_path, grey_pair(Ros(kind), range(2)), compression=mode)
+    assert len(imported(folder)) == 2
+    (file,) = (each for each in folder.iterdir() if each.name != "metadata.yaml")
+    advice = r"it is compressed, as metadata\.yaml beside it says: give the folder with both"
+    with pytest.raises(RecordingError, match=rf"{file.name}: .*{advice}"):
+        import_recording([file], tmp_path / "a.mcap")
 
 
 @each_kind

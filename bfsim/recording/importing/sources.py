@@ -34,7 +34,7 @@ _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ".i420": "i420", ".yuv": "i420", ".yuv420": "i420",
     ".nv12": "nv12", ".grey": "grey", ".gray": "grey", ".y8": "grey",
     ".y4m": "y4m",
-    ".bag": "rosbag", ".db3": "rosbag", ".mcap": "rosbag",
+    ".bag": "rosbag", ".db3": "rosbag", ".mcap": "rosbag", ".zstd": "rosbag",
     **dict.fromkeys((
         ".264", ".265", ".3gp", ".apng", ".asf", ".avi", ".flv", ".gif", ".h264", ".h265", ".hevc", ".m2ts", ".m2v", ".m4v", ".mjpeg",
         ".mjpg", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".ogv", ".ts", ".webm", ".wmv",

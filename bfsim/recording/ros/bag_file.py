@@ -21,6 +21,10 @@ from bfsim.recording.layout import IMAGE_SCHEMA
 METADATA = "metadata.yaml"
 """The file that is in the folder of a ROS 2 bag besides its data."""
 
+ZSTANDARD = b"\x28\xb5\x2f\xfd"
+"""The first bytes of what Zstandard compressed, such as each message of a ROS 2 bag of compression mode `message`."""
+WHERE_COMPRESSION_IS = f"as {METADATA} beside it says: give the folder with both"
+
 
 @dataclass(frozen=True, slots=True)
 class Topic:
@@ -80,7 +84,10 @@ class BagFile:
         try:
             return store.deserialize_ros1(raw, kind) if self.is_ros1 else store.deserialize_cdr(raw, kind)
         except Exception as error:  # noqa: BLE001  # bytes of others: the parser may fail in any way
-            raise RecordingError(f"message must be a {kind}: {cut(str(error))}") from None
+            said = cut(str(error)).rstrip(".")
+            if raw.startswith(ZSTANDARD):
+                said = f"it is compressed, {WHERE_COMPRESSION_IS}"
+            raise RecordingError(f"message must be a {kind}: {said}") from None
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
@@ -108,6 +115,8 @@ class BagFile:
         """Say what the file is, or how to repair it."""
         if self.is_ros1:
             return "; `rosbag reindex` may mend it"
+        if self.path.suffix.lower() == ".zstd":
+            return f"; it is compressed, {WHERE_COMPRESSION_IS}"
         if self.path.is_dir() and not (self.path / METADATA).exists():
             return f"; {METADATA} is written at the end of a recording: `ros2 bag reindex` does it later"
         if is_recording(self.path):
