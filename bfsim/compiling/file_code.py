@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from bfsim.blackfin.elf.image import Image, Routine, Use
+from bfsim.blackfin.elf.image import LINKED_FROM, Image, Routine, Use
 from bfsim.blackfin.elf.linking import link
 from bfsim.blackfin.elf.objects import MOST_BYTES, read_object
 from bfsim.blackfin.execution.subroutines import LoadedImage
@@ -130,7 +130,8 @@ def _files(path: Path) -> dict[str, bytes]:
     """Read a file, and what it includes if it is source, by their names relative to its folder."""
     kinds = (*SOURCES, *OBJECTS)
     if path.suffix not in kinds:
-        raise KernelError(f"a kernel must come from a file {', '.join(kinds)}, not from {path.name}")
+        advice = f"; {LINKED_FROM.format(path.name)} makes an object file of it" if path.suffix == ".a" else ""
+        raise KernelError(f"a kernel must come from a file {', '.join(kinds)}, not from {path.name}{advice}")
     found: dict[str, bytes] = {}
     waiting = [path.name]
     while waiting:
