@@ -117,7 +117,7 @@ def test_error_is_one_paragraph_on_stderr(tmp_path: Path) -> None:
     assert result.exit_code == 2
     assert result.stdout == ""
     assert result.stderr == (
-        f"bfsim: error: {path} must be a baseline file, but there is none: make it with --update\n"
+        f"bfsim: error: {path} must be a baseline file, but there is none: `bfsim check --update` makes it\n"
     )
 
 
