@@ -100,7 +100,11 @@ def test_code_without_a_name_is_refused() -> None:
     ("file", "what", "why"),
     [
         ("sums.txt", {}, r"must come from a file .c, .s, .S, .o, .elf, .doj, .dxe, not from sums.txt"),
-        ("lib.a", {}, r"not from lib.a; bfin-elf-gcc -r .* -Wl,--whole-archive lib.a .* makes an object file of it"),
+        (
+            "lib.a",
+            {},
+            r"not from lib.a; bfin-elf-gcc -r .* -Wl,--whole-archive lib.a .* makes an object file of it",
+        ),
         ("nowhere.o", {}, r"nowhere.o must be a file that can be read \(No such file or directory\)"),
         ("sums.o", {"row": "u8"}, r"row of sums must have a type such as i32 or u8\[:\], not 'u8'"),
         ("sums.o", {"row": int}, r"row of sums must have a type such as i32 or u8\[:\], not int$"),

@@ -130,7 +130,9 @@ def _files(path: Path) -> dict[str, bytes]:
     """Read a file, and what it includes if it is source, by their names relative to its folder."""
     kinds = (*SOURCES, *OBJECTS)
     if path.suffix not in kinds:
-        advice = f"; {LINKED_FROM.format(path.name)} makes an object file of it" if path.suffix == ".a" else ""
+        advice = (
+            f"; {LINKED_FROM.format(path.name)} makes an object file of it" if path.suffix == ".a" else ""
+        )
         raise KernelError(f"a kernel must come from a file {', '.join(kinds)}, not from {path.name}{advice}")
     found: dict[str, bytes] = {}
     waiting = [path.name]

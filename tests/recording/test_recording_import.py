@@ -164,6 +164,22 @@ def test_of_colours_of_16_bits_the_upper_8_are_taken(tmp_path: Path) -> None:
         import_recording([tmp_path / "a.png"], tmp_path / "b.mcap", mono=True, bits=12)
 
 
+@pytest.mark.parametrize(("brightest", "left"), [(4095, 15), (0x3FFF, 63), (0x4000, None)])
+def test_colours_of_16_bits_that_are_dark_are_told_of(
+    tmp_path: Path, brightest: int, left: int | None
+) -> None:
+    """Those of a camera that uses 12 of the bits were imported nearly black, without a word."""
+    cv2 = pytest.importorskip("cv2")
+    cv2.imwrite(str(tmp_path / "a.png"), np.full((4, 8, 3), brightest, np.uint16))
+    Image.new("RGB", (8, 4), (9, 9, 9)).save(tmp_path / "night.png")  # 8 bits may be dark
+    notes, none = (
+        import_recording([tmp_path / each], tmp_path / "a.mcap", mono=True, force=True).notes
+        for each in ("a.png", "night.png")
+    )
+    assert [f"reach only {left} of 255 in a.png" in each for each in notes] == ([True] if left else [])
+    assert not none
+
+
 @pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
 def test_raw_frames_of_a_sensor_have_the_colours_of_their_filters(tmp_path: Path, pattern: str) -> None:
     """Light of one colour, of which only the pixels behind its filter see anything."""

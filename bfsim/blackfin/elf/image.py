@@ -16,7 +16,9 @@ MOST_NAMES = 5
 """The most names that an error lists."""
 LINKED_WITH = "bfin-elf-gcc -O2 -g -r -nostdlib -o whole.o FILES -lm -lc -lgcc"
 """Makes one object file of several, in C or object code, and of the parts of the libraries that they call."""
-LINKED_FROM = "bfin-elf-gcc -r -nostdlib -o whole.o -Wl,--whole-archive {} -Wl,--no-whole-archive -lm -lc -lgcc"
+LINKED_FROM = (
+    "bfin-elf-gcc -r -nostdlib -o whole.o -Wl,--whole-archive {} -Wl,--no-whole-archive -lm -lc -lgcc"
+)
 """The same of all object files in an archive."""
 NOWHERE, REGISTERS = 0xFFB80000, 0xFFC00000
 """[HRM] A reserved range between the scratchpad and the memory-mapped registers, which holds nothing, not even of a

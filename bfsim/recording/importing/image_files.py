@@ -57,7 +57,7 @@ def decoded(
             with Image.open(file, formats=formats) as image:
                 # A phone may store a smaller copy behind the picture (MPO).
                 count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
-                has_deep_colours = _DEEP in str(image.tile) and image.mode in _EIGHT_BIT_MODES
+                is_deep = _has_deep_colours(image)
                 deep_bits = MOST_BITS if _says_its_maximum(image) else bits
                 image.load()
                 upright = ImageOps.exif_transpose(image)
@@ -81,12 +81,25 @@ def decoded(
         raise RecordingError(
             f"image must have pixels of 8 bits, or grey ones of 16, not the pixel format {upright.mode}"
         )
-    if bits is not None and not (has_deep_colours and bits == MOST_BITS):
+    if bits is not None and not (is_deep and bits == MOST_BITS):
         # Pillow keeps the upper 8 of 16 bits of colours.
         raise RecordingError(
-            f"image must have grey pixels of 16 bits for `--bits {bits}`, not {'colours' if has_deep_colours else 'pixels of 8'}"
+            f"image must have grey pixels of 16 bits for `--bits {bits}`, not {'colours' if is_deep else 'pixels of 8'}"
         )
     return upright
+
+
+def has_deep_colours(path: Path) -> bool:
+    """Whether an image that could be loaded has colours of 16 bits in its file, of which Pillow keeps the upper 8."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with Image.open(path) as image:
+            return _has_deep_colours(image)
+
+
+def _has_deep_colours(image: ImageFile.ImageFile) -> bool:
+    """Whether an unloaded image has colours of 16 bits."""
+    return _DEEP in str(image.tile) and image.mode in _EIGHT_BIT_MODES
 
 
 def _says_its_maximum(image: ImageFile.ImageFile) -> bool:

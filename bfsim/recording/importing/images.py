@@ -7,13 +7,17 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from bfsim.errors import RecordingError, cut
 from bfsim.recording.importing.bayer import BayerPattern, planes_of_bayer
-from bfsim.recording.importing.image_files import load_image
+from bfsim.recording.importing.image_files import has_deep_colours, load_image
 from bfsim.recording.importing.pairs import pairs_of
 from bfsim.recording.importing.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 from bfsim.recording.planes import YuvPlanes
+
+_DARK = 64
+"""Colours of 16 bits whose upper 8 are below this are of a dark scene, or of a camera that uses at most 14 bits."""
 
 
 def open_image_pair(
@@ -50,23 +54,35 @@ def _source(
     bits: int | None,
     pattern: BayerPattern | None,
 ) -> PictureSource:
-    first = _first_readable(paths, bits)
+    path, image = _first_readable(paths, bits)
+    first = path.name, image.size
     return PictureSource(
         name=source,
-        size=first[1],
+        size=image.size,
         count=len(paths),
         fps=None,
         pictures=lambda: _pictures(paths, None if mixed else first, bits, pattern),
         skipped=tuple(skipped),
+        notes=tuple(_doubts(source, path, image)),
     )
 
 
-def _first_readable(paths: list[Path], bits: int | None) -> tuple[str, tuple[int, int]]:
-    """Return name and size of the first readable image; if there is none, raise the error of the first image."""
+def _doubts(source: str, path: Path, image: Image.Image) -> Iterator[str]:
+    """Yield a warning if an image's colours have 16 bits and seem to use the lower ones: of 12, black would be left."""
+    brightest = int(np.asarray(image.convert("RGB")).max()) if has_deep_colours(path) else _DARK
+    if brightest < _DARK:
+        yield (
+            f"Warning: {source}: of colours of 16 bits the upper 8 are taken, which reach only {brightest} of 255 in "
+            f"{path.name}; if the camera uses fewer bits, multiply them first, for `--bits` is for grey pixels"
+        )
+
+
+def _first_readable(paths: list[Path], bits: int | None) -> tuple[Path, Image.Image]:
+    """Return the first readable image and its path; if there is none, raise the error of the first image."""
     errors = []
     for path in paths:
         try:
-            return path.name, load_image(path, bits).size
+            return path, load_image(path, bits)
         except RecordingError as error:
             errors.append(error)
     raise errors[0]

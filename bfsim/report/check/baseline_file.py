@@ -36,7 +36,9 @@ WRITTEN = (["limits"], ["measured_on"], ["costs"])
 def read_baseline(path: Path) -> Baseline:
     """Read a baseline file. Raises ConfigError that names the file, the key and what belongs there."""
     if not path.exists():
-        raise ConfigError(f"{path} must be a baseline file, but there is none: `bfsim check --update` makes it")
+        raise ConfigError(
+            f"{path} must be a baseline file, but there is none: `bfsim check --update` makes it"
+        )
     return validated(parsed(path), path)
 
 
