@@ -215,7 +215,7 @@ def _apply(
         what = (
             "are of position-independent code, as compilers for Linux make it: -mno-fdpic, and no -mid-shared-library, makes other"
             if kind in INDEPENDENT
-            else "are not for plain programs"
+            else "are not for plain programs, or for a BF7xx, whose code is not read"
         )
         raise _refused(file, section, each, f"relocations of the type 0x{kind:02X} {what}")
     field = FIELDS[RelocationKind(kind)]
