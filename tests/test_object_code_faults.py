@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -22,6 +23,13 @@ def test_what_is_missing_is_told_when_the_code_comes_to_it() -> None:
         match=r"but it comes to __divsi3, which missing.o does not define and missing calls at \S+; define it there, or give one",
     ):
         kernel(3)
+
+
+def test_what_an_object_file_of_visualdsp_lacks_is_in_its_program(tmp_path: Path) -> None:
+    """GCC, which it was told to be linked by, has no library of VisualDSP++."""
+    shutil.copy(DATA / "missing.o", tmp_path / "missing.doj")
+    with pytest.raises(KernelError, match=r"give the program that it was linked to \(\.dxe\)"):
+        kernel_from(tmp_path / "missing.doj", "missing", a=i32, result=i32)(3)
 
 
 @pytest.mark.toolchain

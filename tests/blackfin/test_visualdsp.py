@@ -179,7 +179,10 @@ def test_what_is_relocated_may_be_computed() -> None:
 
 def test_what_cannot_be_computed_is_refused() -> None:
     """Its number is told."""
-    with pytest.raises(KernelError, match="relocations of the type 0xEE are not for plain programs, or for a BF7xx, whose code is not read$"):
+    with pytest.raises(
+        KernelError,
+        match="relocations of the type 0xEE are not for plain programs, or for a BF7xx, whose code is not read$",
+    ):
         table_of([(LENGTH, 0), (RelocationKind.WORD, 0)])
 
 

@@ -83,11 +83,11 @@ class FailedCall:
     def _lacks(self, symbol: str, users: str) -> str:
         """Describe a symbol that is not defined, and who uses it."""
         name, file = cut(symbol.removeprefix("_")), self._image.name
-        advice = (
-            f"C's library asks an operating system for it, and a kernel has none: do without what leads there, or define {name} in {file}"
-            if name in SYSTEM
-            else f"define it there, or give one object file of all that it needs ({LINKED_WITH})"
-        )
+        advice = f"define it there, or give one object file of all that it needs ({LINKED_WITH})"
+        if name in SYSTEM:
+            advice = f"C's library asks an operating system for it, and a kernel has none: do without what leads there, or define {name} in {file}"
+        elif file.endswith(".doj"):
+            advice = "give the program that it was linked to (.dxe), which has all that it needs"
         return f"it comes to {name}, which {file} does not define{users and f' and {users}'}; {advice}"
 
     def _goes(self, source: int) -> str:
