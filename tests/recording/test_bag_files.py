@@ -21,6 +21,7 @@ from tests.recording.bags import (
     Ros,
     grey_pair,
 )
+from tests.recording.test_recording_foreign import raw_image, write_foreign
 
 
 @each_kind
@@ -44,6 +45,11 @@ def test_a_recording_is_no_bag_and_a_bag_no_recording(tmp_path: Path) -> None:
         writer.add(np.zeros((4, 16), np.uint8), np.zeros((4, 16), np.uint8), 0, 0)
     with pytest.raises(RecordingError, match="it is a recording already, which `bfsim run` plays"):
         import_recording([own], tmp_path / "a.mcap")
+    foreign = write_foreign(tmp_path / "seen.mcap", [("/camera/left/image_rect", 0, raw_image())])
+    with pytest.raises(RecordingError, match=r"its messages are not those of ROS but foxglove\.RawImage$"):
+        import_recording(
+            [foreign], tmp_path / "a.mcap"
+        )  # `bfsim run`, which was told to play it, refused it, too
     ros = Ros("mcap")
     (bag,) = ros.write(tmp_path, grey_pair(ros, range(2))).glob("*.mcap")
     with pytest.raises(RecordingError, match="`bfsim record import` makes a recording of a bag of ROS"):

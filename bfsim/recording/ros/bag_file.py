@@ -16,7 +16,7 @@ from typing import Any
 
 from bfsim.errors import RecordingError, cut
 from bfsim.recording.container import McapContainer
-from bfsim.recording.layout import IMAGE_SCHEMA
+from bfsim.recording.layout import LEFT_TOPIC, RIGHT_TOPIC
 
 METADATA = "metadata.yaml"
 """The file that is in the folder of a ROS 2 bag besides its data."""
@@ -119,20 +119,25 @@ class BagFile:
             return f"; it is compressed, {WHERE_COMPRESSION_IS}"
         if self.path.is_dir() and not (self.path / METADATA).exists():
             return f"; {METADATA} is written at the end of a recording: `ros2 bag reindex` does it later"
-        if is_recording(self.path):
-            return "; it is a recording already, which `bfsim run` plays"
+        if advice := _if_of_others(self.path):
+            return advice
         has_mcap = self.path.suffix == ".mcap" or any(self.path.glob("*.mcap"))
         return "; `mcap recover` may mend it" if has_mcap else ""
 
 
-def is_recording(path: Path) -> bool:
-    """Whether a file is a recording and not a bag, by the schemas of its topics."""
+def _if_of_others(path: Path) -> str:
+    """Say what an MCAP file is that is whole and has no messages of ROS; nothing about other files."""
     try:
         file = McapContainer(path)
     except RecordingError:
-        return False
+        return ""
     file.close()
-    return any(each.name == IMAGE_SCHEMA for each in file.summary.schemas.values())
+    kinds = sorted({each.name for each in file.summary.schemas.values()})
+    if any(each.startswith("sensor_msgs/") for each in kinds):
+        return ""
+    if {LEFT_TOPIC, RIGHT_TOPIC} <= {each.topic for each in file.summary.channels.values()}:
+        return "; it is a recording already, which `bfsim run` plays"
+    return f"; its messages are not those of ROS but {cut(', '.join(kinds)) or 'none'}"
 
 
 @cache
