@@ -66,8 +66,9 @@ def check_thesis_geometry(size: FrameSize) -> None:
     widest = int(DEEPEST / (SUBPIXELS * MICROMETRES * THESIS_BASELINE_MM) * THESIS_WIDTH_PX / THESIS_FOCAL_PX)
     if size.width_px > widest:
         raise FirmwareError(
-            f"a recording without geometry must have pictures at most {widest} px wide, not of {size}: `bfsim record import --resize` "
-            "scales them, and `--geometry` says what cameras it has, for with those of the thesis's robot depths leave 32 bits"
+            f"a recording without geometry must have pictures at most {widest} px wide, not of {size}: `bfsim record "
+            "import --resize` scales them, and `--geometry` says what cameras it has, for with those of the thesis's robot "
+            "depths leave 32 bits"
         )
 
 

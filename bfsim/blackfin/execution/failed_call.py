@@ -85,7 +85,10 @@ class FailedCall:
         name, file = cut(symbol.removeprefix("_")), self._image.name
         advice = f"define it there, or give one object file of all that it needs ({LINKED_WITH})"
         if name in SYSTEM:
-            advice = f"C's library asks an operating system for it, and a kernel has none: do without what leads there, or define {name} in {file}"
+            advice = (
+                "C's library asks an operating system for it, and a kernel has none: do without what leads there, or "
+                f"define {name} in {file}"
+            )
         elif file.endswith(".doj"):
             advice = "give the program that it was linked to (.dxe), which has all that it needs"
         return f"it comes to {name}, which {file} does not define{users and f' and {users}'}; {advice}"

@@ -31,7 +31,11 @@ SPI = "SPI"
 
 
 class Core:
-    """One core. Firmware gets it as the argument of its main loop."""
+    """One core. Firmware gets it as the argument of its main loop.
+
+    `yield core.run(kernel, *arguments)` runs a kernel on rows and ints, charges its cycles and gives its value.
+    `core.name` is A or B.
+    """
 
     run: Run
     """Run a kernel on rows and ints. Yield the result to charge the cycles and get the kernel's value."""

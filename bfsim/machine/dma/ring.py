@@ -118,7 +118,7 @@ class _TakenLines:
 
 
 class InputRing:
-    """Lines of a picture, first to last, one line ahead of the core."""
+    """Lines of a picture, first to last, one line ahead of the core: `yield from ring.line()` gives the next one."""
 
     line: Callable[[], Generator[Any, Any, Row]]
     """Wait for the next line and return its row. With a ring of n rows, it stays valid for n - 1 calls."""
@@ -225,7 +225,10 @@ class _SentLines:
 
 
 class OutputRing:
-    """Finished lines on their way to a picture in memory."""
+    """Finished lines on their way to a picture in memory.
+
+    `yield from ring.row()` gives a row to write, and `ring.send()` sends it.
+    """
 
     row: Callable[[], Generator[Any, Any, Row]]
     """Wait until a row is free and return it, to be written and then sent."""
