@@ -206,7 +206,7 @@ REPORT = _sets(
         "ldf": "wording jsonable tables",
         "viewers": "budget run",
         "heat": "",
-        "overlay": "",
+        "overlay": "wording",
         "colours": "jsonable tables overlay",
         "html": "wording budget what_ran run profile diff ldf overlay",
     }

@@ -13,6 +13,7 @@ from bfsim.errors import ConfigError, legible
 from bfsim.report.ldf.drawing import drawing_of
 from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.ldf.sheet import PAPER, FilledBox, Sheet, Words
+from bfsim.report.wording.letters import in_letters_of_pillow
 
 PIXELS = 2
 """PNG pixels per px of the drawing, so that small letters stay readable."""
@@ -47,7 +48,8 @@ def png_of(sheet: Sheet) -> bytes:
     for words in sheet.words:
         font = ImageFont.load_default(words.font_px * PIXELS)
         place = (words.x * PIXELS, words.y * PIXELS)
-        pen.text(place, words.text, fill=words.colour, font=font, anchor="rm" if words.is_right else "lm")
+        text = in_letters_of_pillow(words.text)
+        pen.text(place, text, fill=words.colour, font=font, anchor="rm" if words.is_right else "lm")
     file = BytesIO()
     image.save(file, "PNG")
     return file.getvalue()

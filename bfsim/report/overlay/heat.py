@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from bfsim.report.overlay import style
+from bfsim.report.wording.letters import in_letters_of_pillow
 from bfsim.seen import Colour, SeenHeat
 from bfsim.seen.heat import COLOURS
 
@@ -72,7 +73,7 @@ def _words(heats: Sequence[SeenHeat], stages: Sequence[str]) -> Iterator[tuple[s
     for stage in stages:
         placed = sum(float(each.stages_us[stage].sum()) for each in heats)
         elsewhere = sum(each.elsewhere_us[stage] for each in heats)
-        yield f"{stage}  {placed / 1000:.2f} ms", f" + {elsewhere / 1000:.2f} elsewhere"
+        yield f"{in_letters_of_pillow(stage)}  {placed / 1000:.2f} ms", f" + {elsewhere / 1000:.2f} elsewhere"
 
 
 def _lines(stages: Sequence[str], width: int) -> list[tuple[int, int]]:
@@ -80,7 +81,7 @@ def _lines(stages: Sequence[str], width: int) -> list[tuple[int, int]]:
     font = style.font(style.FONT)
     places, x, line = [], 0, 0
     for stage in stages:
-        words = f"{stage}  0000.00 ms + 0000.00 elsewhere"
+        words = f"{in_letters_of_pillow(stage)}  0000.00 ms + 0000.00 elsewhere"
         step = SWATCH + GAP + round(font.getlength(words)) + 3 * GAP
         if x and x + step > width:
             x, line = 0, line + 1

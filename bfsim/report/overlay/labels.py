@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from PIL import ImageDraw
 
 from bfsim.report.overlay import style
+from bfsim.report.wording.letters import in_letters_of_pillow
 from bfsim.seen import Colour
 
 PAD = 4
@@ -55,7 +56,8 @@ def write_labels(pen: ImageDraw.ImageDraw, labels: Sequence[Label], panel: Box) 
     taken: list[Box] = []
     for each in (*named, *(each for each in labels if not each.is_boxed)):
         font = style.font(style.LABEL_FONT if each.is_boxed else style.DEPTH_FONT)
-        size = pen.textlength(each.text, font) + 2 * PAD, style.LABEL_FONT + 2 * PAD
+        text = in_letters_of_pillow(each.text)
+        size = pen.textlength(text, font) + 2 * PAD, style.LABEL_FONT + 2 * PAD
         free = (box for box in _places(each, size, panel) if not _meets(box, taken))
         if each.is_boxed:
             free = (box for box in free if not _meets(box, kept))
@@ -66,7 +68,7 @@ def write_labels(pen: ImageDraw.ImageDraw, labels: Sequence[Label], panel: Box) 
         if each.is_boxed:
             pen.rounded_rectangle(box, PAD, fill=style.PAPER, outline=each.colour)
         place = (box[0] + box[2]) / 2, (box[1] + box[3]) / 2
-        pen.text(place, each.text, each.colour, font, anchor="mm", stroke_width=HALO, stroke_fill=style.PAPER)
+        pen.text(place, text, each.colour, font, anchor="mm", stroke_width=HALO, stroke_fill=style.PAPER)
 
 
 def _one_a_place(labels: Sequence[Label]) -> list[Label]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from PIL import Image, ImageDraw
 
+from bfsim.report.overlay import style
 from bfsim.report.overlay.labels import Label, write_labels
+from bfsim.report.wording.letters import in_letters_of_pillow
 
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
@@ -32,6 +36,22 @@ def test_a_label_stands_above_what_it_names_and_below_where_there_is_no_room() -
     assert rows_of(written(label(200, 150, RED)), RED).max() < 130
     assert rows_of(written(label(200, 15, RED)), RED).min() > 35
     assert (written(label(200, 150, RED))[130:170, 180:220] == 0).all()
+
+
+def test_letters_that_the_font_lacks_are_others() -> None:
+    """Pillow's own font has no accents: a published `größe` had two boxes in it."""
+    font = style.font(style.LABEL_FONT)
+    missing = bytes(font.getmask("\uffff"))
+    for text, drawn in (
+        ("größe", "gro?e"),
+        ("Röte 赤い", "Rote ??"),
+        ("±3 °C · 50 %", "±3 °C · 50 %"),
+        ("m² …", "m2 ..."),
+    ):
+        assert in_letters_of_pillow(text) == drawn
+        assert all(bytes(font.getmask(each)) != missing for each in drawn)
+    both = (written(replace(label(200, 150, RED), text=text)) for text in ("größe", "gro?e"))
+    np.testing.assert_array_equal(*both)
 
 
 def test_one_place_has_one_label_that_of_the_greatest_weight() -> None:
