@@ -38,8 +38,8 @@ class Flow:
 class Report(Protocol):
     """Called for each access to memory, before it is made."""
 
-    def __call__(self, address: Value, nbytes: int, *, writes: bool) -> None:
-        """Report an access of `nbytes` bytes."""
+    def __call__(self, address: Value, nbytes: int, *, writes: bool, in_frame: bool) -> None:
+        """Report an access of `nbytes` bytes; whether it is to a stack frame that is kept elsewhere."""
 
 
 @dataclass(slots=True)
@@ -136,9 +136,7 @@ class Effects:
 
     def load(self, address: Value, nbytes: int) -> Value:
         """Return the little-endian number of 1, 2 or 4 bytes in memory."""
-        if self.report:
-            self.report(address, nbytes, writes=False)
-        kind, place = ir.IntType(8 * nbytes), self._place(address)
+        kind, place = ir.IntType(8 * nbytes), self._place(address, nbytes, writes=False)
         with self._marked():
             loaded = self.builder.load(place, typ=kind, align=1)
         is_part = nbytes < WORD_BYTES and self.mark is None
@@ -146,9 +144,7 @@ class Effects:
 
     def store(self, address: Value, value: Value) -> None:
         """Store a value of 8, 16 or 32 bits, little-endian."""
-        if self.report:
-            self.report(address, value.bits // 8, writes=True)
-        place = self._place(address)
+        place = self._place(address, value.bits // 8, writes=True)
         with self._marked():
             self.builder.store(value.ir, place, align=1)
 
@@ -199,8 +195,12 @@ class Effects:
         yield
         self.builder.debug_metadata = None
 
-    def _place(self, address: Value) -> ir.Value:
-        if self.frame and (kept := self.frame()):
+    def _place(self, address: Value, nbytes: int, *, writes: bool) -> ir.Value:
+        """Return where an access goes, and report it."""
+        kept = self.frame() if self.frame else None
+        if self.report:
+            self.report(address, nbytes, writes=writes, in_frame=kept is not None)
+        if kept is not None:
             return kept
         return self.builder.gep(self.memory, [address.zero_extended(64).ir], source_etype=I8)
 

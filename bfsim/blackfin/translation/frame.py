@@ -13,16 +13,16 @@ from bfsim.blackfin.translation.native_function import NativeFunction
 
 
 class Frame:
-    """The words around the entry's stack pointer that are accessed, at known `places`."""
+    """The words around the entry's stack pointer that are accessed, at known `places`; the `span` of bytes that they are in."""
 
     def __init__(self, function: NativeFunction, places: Places) -> None:
         self._function, self._places = function, places
         words = {each & -WORD_BYTES for one in places.values() for each in one if each is not None}
-        self._first, self._end = min(words, default=0), max(words, default=0) + WORD_BYTES
+        self.span = range(min(words), max(words) + WORD_BYTES) if words else range(0)
         self._kept: ir.Value | None = None
         if words:
             # of words: LLVM makes registers of elements, and would put words together from bytes
-            kind = ir.ArrayType(I32, (self._end - self._first) // WORD_BYTES)
+            kind = ir.ArrayType(I32, len(self.span) // WORD_BYTES)
             self._kept = ir.IRBuilder(function.entry).alloca(kind, name="frame")
             self._kept.align, self._kept.type = WORD_BYTES, POINTER
 
@@ -37,7 +37,7 @@ class Frame:
             return
         builder.store(ir.Constant(self._kept.allocated_type, None), self._kept)
         stack = self._function.read(builder, "SP")
-        for place in range(max(self._first, 0), self._end, WORD_BYTES):
+        for place in range(max(self.span.start, 0), self.span.stop, WORD_BYTES):
             address = builder.zext(builder.add(stack, stack.type(place)), I64)
             word = builder.load(
                 builder.gep(self._function.memory, [address], source_etype=I8), typ=stack.type, align=1
@@ -47,4 +47,4 @@ class Frame:
     def _at(self, builder: ir.IRBuilder, place: int | None) -> ir.Value | None:
         if place is None:
             return None
-        return builder.gep(self._kept, [I64(place - self._first)], source_etype=I8)
+        return builder.gep(self._kept, [I64(place - self.span.start)], source_etype=I8)

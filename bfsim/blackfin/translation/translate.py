@@ -19,7 +19,7 @@ from bfsim.blackfin.control_flow.flow import is_closed, returns
 from bfsim.blackfin.control_flow.frames import frame_places
 from bfsim.blackfin.control_flow.implied import implied
 from bfsim.blackfin.instructions.decode import Instruction
-from bfsim.blackfin.instructions.effects import I32, I64, POINTER, Effects
+from bfsim.blackfin.instructions.effects import I32, I64, Effects
 from bfsim.blackfin.instructions.event import Event
 from bfsim.blackfin.instructions.registers import SLOTS
 from bfsim.blackfin.instructions.semantics import SEMANTICS
@@ -94,11 +94,7 @@ class _Translation:
         self.places = HostPlaces(self.function.module, self.function.function) if is_checked else None
         self.frame = Frame(self.function, frame_places(of.code, *of.code.entries) if goes_back else {})
         self.alignment = Alignment(self.function) if is_checked else None
-        self.reports = None
-        if tracing:
-            entry = ir.IRBuilder(self.function.entry)
-            block_at = entry.load(self.function.place(entry, "TRACE"), typ=POINTER)
-            self.reports = reports_of(entry, block_at, asks=is_small(of.code))
+        self.reports = reports_of(self.function, self.frame.span, asks=is_small(of.code)) if tracing else None
         self.counting = Counting(self.function, of, () if fuel else implied(of.code), self.reports)
         self.jumps = Jumps(
             self.function,
@@ -194,12 +190,14 @@ class _Translation:
         nbytes: int,
         *,
         writes: bool,
+        in_frame: bool,
     ) -> None:
         """Report an access, and note it for the test of alignment, if these are wanted."""
         if self.tracing and self.reports:
             access = nbytes + self.tracing.write * writes
             site = self.tracing.site_of(block, instruction.address)
-            self.reports.report(builder, address.zero_extended(64).ir, access, cclk, site)
+            wide = address.zero_extended(64).ir
+            self.reports.report(builder, wide, access, cclk, site, in_frame=in_frame)
         if self.alignment:
             self.alignment.note(builder, address, nbytes, instruction.address)
 
