@@ -87,8 +87,7 @@ def _new_machine(effort: Effort) -> llvm.TargetMachine:
     llvm.initialize_native_asmprinter()
     # instructions without a line in the line table do not inherit the previous one
     llvm.set_option("bfsim", "-use-unknown-locations=Enable")
-    # counts are used often, but no address of them is kept, so a loop's counts can be in registers: in code with up to some 70 of them;
-    # more would only be moved between places on the stack
+    # counts are used often, but no address of them is kept, so a loop's counts can be in registers (`counts.MOST_IN_REGISTERS`)
     llvm.set_option("bfsim", "-capture-tracking-max-uses-to-explore=300")
     return llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
