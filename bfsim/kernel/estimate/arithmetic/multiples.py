@@ -9,12 +9,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 from bfsim.kernel.operations import ADDRESS_SHIFTS, Op
 
+STEP = ".step"
+"""Comes after the name of a product, in the names of what its instructions leave on the way."""
 PRODUCT_COST = 4  # of a multiplication and of its constant, in operations
-SHIFTED = (Op.SHIFT, Op.ALU)
 SHIFTED_SUMS = (2, 4)  # factors by which a sum may be multiplied as it is added up
+
+
+class Step(NamedTuple):
+    """An instruction, and by how much it shifts; a sum or difference is with the factor, or with the value that was just shifted."""
+
+    op: Op
+    shift: int = 0
+    with_itself: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +33,7 @@ class Plan:
 
     cost: int
     latency: int
-    ops: tuple[Op, ...]
+    steps: tuple[Step, ...]
     is_sum: bool = False
     """Whether the last instruction adds, and could shift the sum by 1 or 2 as well."""
     subtracts: bool = False
@@ -35,34 +45,55 @@ class Plan:
 
     def then(self, step: Plan, factor: int) -> Plan:
         """Return this one followed by a step that multiplies by `factor`."""
-        joins = self.is_sum and factor in SHIFTED_SUMS and step.ops == (Op.SHIFT,)
-        ops = (*self.ops[:-1], Op.ADD_SHIFT) if joins else (*self.ops, *step.ops)
+        joins = self.is_sum and factor in SHIFTED_SUMS and [each.op for each in step.steps] == [Op.SHIFT]
+        steps = (
+            (*self.steps[:-1], self.steps[-1]._replace(op=Op.ADD_SHIFT))
+            if joins
+            else (*self.steps, *step.steps)
+        )
         latency = max(self.latency + step.latency, step.cost)
-        return Plan(self.cost + step.cost, latency, ops, step.is_sum, self.subtracts or step.subtracts)
+        return Plan(self.cost + step.cost, latency, steps, step.is_sum, self.subtracts or step.subtracts)
 
 
-SHIFT = Plan(1, 1, (Op.SHIFT,))
-SUM = Plan(1, 1, (Op.ALU,), is_sum=True)
-DIFFERENCE = Plan(1, 1, (Op.ALU,), subtracts=True)
-SHIFTED_SUM = Plan(1, 1, (Op.ADD_SHIFT,))
-SHIFTED_DIFFERENCE = Plan(1, 1, SHIFTED, subtracts=True)
-LONG_SUM = Plan(2, 1, SHIFTED, is_sum=True)
+ADD = Step(Op.ALU)
+SUM = Plan(1, 1, (ADD,), is_sum=True)
+DIFFERENCE = Plan(1, 1, (ADD,), subtracts=True)
+
+
+def _shifted(shift: int) -> Plan:
+    return Plan(1, 1, (Step(Op.SHIFT, shift),))
+
+
+def _shifted_difference(shift: int, *, with_itself: bool = False) -> Plan:
+    return Plan(1, 1, (Step(Op.SHIFT, shift), ADD._replace(with_itself=with_itself)), subtracts=True)
+
+
+def _shifted_sum(shift: int, *, with_itself: bool = False) -> Plan:
+    if shift in ADDRESS_SHIFTS:
+        return Plan(1, 1, (Step(Op.ADD_SHIFT, with_itself=with_itself),))
+    return Plan(2, 1, (Step(Op.SHIFT, shift), ADD._replace(with_itself=with_itself)), is_sum=True)
+
+
+def multiple(factor: int) -> tuple[Op, ...] | None:
+    """Return the operations that multiply by `factor`, or None if GCC multiplies."""
+    steps = steps_of(factor)
+    return None if steps is None else tuple(each.op for each in steps)
 
 
 @cache
-def multiple(factor: int) -> tuple[Op, ...] | None:
-    """Return the operations that multiply by `factor`, or None if GCC multiplies."""
+def steps_of(factor: int) -> tuple[Step, ...] | None:
+    """Return the instructions that multiply by `factor`, or None if GCC multiplies."""
     if factor == 1:
         return ()
     if factor > 0:
         found = _plan(factor, PRODUCT_COST, PRODUCT_COST)
-        return found.ops if found else None
+        return found.steps if found else None
     if factor < 0 and (1 - factor).bit_count() == 1:
-        return SHIFTED
+        return _shifted_difference((1 - factor).bit_length() - 1).steps
     negated = _plan(-factor, PRODUCT_COST - 1, PRODUCT_COST - 1) if factor < 0 else None
     if negated is None:
         return None
-    return negated.ops if negated.subtracts else (*negated.ops, Op.ALU)
+    return negated.steps if negated.subtracts else (*negated.steps, ADD)
 
 
 @cache
@@ -83,7 +114,7 @@ def _steps(factor: int) -> Iterator[tuple[int, Plan]]:
     """The numbers that `factor` can be made from, and how."""
     lowest = factor & -factor
     if lowest > 1:
-        yield factor // lowest, SHIFT
+        yield factor // lowest, _shifted(lowest.bit_length() - 1)
     elif factor & 3 == 3 and factor != 3:
         yield factor + 1, DIFFERENCE
     else:
@@ -91,13 +122,13 @@ def _steps(factor: int) -> Iterator[tuple[int, Plan]]:
     for shift in range((factor - 1).bit_length() - 1, 1, -1):
         times = (1 << shift) + 1
         if factor % times == 0 and factor > times:
-            yield factor // times, SHIFTED_SUM if shift in ADDRESS_SHIFTS else LONG_SUM
+            yield factor // times, _shifted_sum(shift, with_itself=True)
         times = (1 << shift) - 1
         if factor % times == 0 and factor > times:
-            yield factor // times, SHIFTED_DIFFERENCE
+            yield factor // times, _shifted_difference(shift, with_itself=True)
     if lowest == 1:
         shift = ((factor - 1) & -(factor - 1)).bit_length() - 1
         if shift in ADDRESS_SHIFTS:
-            yield (factor - 1) >> shift, SHIFTED_SUM
+            yield (factor - 1) >> shift, _shifted_sum(shift)
         shift = ((factor + 1) & -(factor + 1)).bit_length() - 1
-        yield (factor + 1) >> shift, SHIFTED_DIFFERENCE
+        yield (factor + 1) >> shift, _shifted_difference(shift)

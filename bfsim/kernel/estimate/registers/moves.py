@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 
+from bfsim.kernel.estimate.arithmetic.multiples import STEP
 from bfsim.kernel.estimate.registers.phi_copies import PhiCopies
 from bfsim.kernel.estimate.registers.webs import Webs
 from bfsim.kernel.estimate.selection.constants import load_constant
@@ -64,9 +65,15 @@ class Moves:
 
     def _moves(self) -> None:
         """Insert a move wherever a value is used in the other bank; outside the loop if the value does not change there."""
+        reuses = self.webs.context.profile.applies(Rule.PRODUCT_STEPS)
         for label in self.flow.order:
             block: list[MachineInstruction] = []
+            product, copied = "", set[str]()
+            """What the instructions of one product were moved for: they reuse it [reload_inheritance in reload1.cc]."""
             for instruction in self.code.of[label]:
+                made = (instruction.result or "").partition(STEP)[0]
+                if made != product:
+                    product, copied = made, set()
                 for position, (name, wanted) in enumerate(instruction.uses):
                     bank = self._wanted(instruction, wanted)
                     if name.startswith("#") or bank in (
@@ -79,7 +86,8 @@ class Moves:
                     move = MachineInstruction(
                         Op.MOVE, instruction.line, copy, bank, ((name, RegisterBank.ANY),)
                     )
-                    is_there = (copy, bank) in instruction.uses[:position]
+                    is_there = (copy, bank) in instruction.uses[:position] or (reuses and copy in copied)
+                    copied.add(copy)
                     if place == label and not is_there:
                         block.insert(
                             self._behind_definition(block, name) if bank is RegisterBank.DATA else len(block),

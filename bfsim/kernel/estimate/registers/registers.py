@@ -18,6 +18,7 @@ from bfsim.kernel.estimate.registers.moves import Moves
 from bfsim.kernel.estimate.registers.pressure import Pressure
 from bfsim.kernel.estimate.registers.register_classes import RegisterClasses
 from bfsim.kernel.estimate.registers.taken_registers import TakenRegisters
+from bfsim.kernel.estimate.registers.waiting_arguments import let_arguments_wait
 from bfsim.kernel.estimate.registers.webs import Webs
 from bfsim.kernel.estimate.selection.context import Context
 from bfsim.kernel.estimate.selection.machine_code import MachineCode, MachineInstruction, RegisterBank
@@ -55,6 +56,8 @@ def allocate(context: Context, code: MachineCode) -> Allocation:
         RegisterClasses(webs).place()
     if context.profile.applies(Rule.HALF_WORD_POINTERS):
         HalfWordPointers(webs).place()
+    if context.profile.applies(Rule.ADDRESS_CLASSES):
+        let_arguments_wait(webs)
     moves = Moves(webs)
     if context.profile.applies(Rule.INDEX_REGISTERS):
         IndexRegisters(webs).place()

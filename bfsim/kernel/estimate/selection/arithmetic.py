@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bfsim.kernel import operations
-from bfsim.kernel.estimate.arithmetic.multiples import multiple
+from bfsim.kernel.estimate.arithmetic.multiples import STEP, Step
 from bfsim.kernel.estimate.selection.divisions import Divisions
 from bfsim.kernel.estimate.selection.emitter import Emitter
 from bfsim.kernel.estimate.selection.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.ir.text import Instruction, is_number
-from bfsim.kernel.ir.widths import BYTE
 from bfsim.kernel.operations import Op
 from bfsim.kernel.rules import Rule
 
@@ -111,22 +110,9 @@ class Arithmetic:
         left, right = each.operands[:2]
         if self._steps_along(each) or self.context.folding.accumulated(each) is not None:
             return
-        if (
-            is_number(right)
-            and (plan := multiple(int(right))) is not None
-            and (self.context.narrow.in_narrow_tree(each) or not self._short(each))
-            and not self._is_made_narrow(each)
-        ):
-            value = left
-            for number, op in enumerate(plan):
-                result = each.result if number == len(plan) - 1 else f"{each.result}.{number}"
-                is_sum = (
-                    Op.SHIFT in plan[max(number - 1, 0) : number]
-                )  # of (x << 7) + x: its shift is free in either bank
-                bank = POINTER if op is Op.ADD_SHIFT and not is_sum else ANY
-                self.append(op, each, result, bank, (value, bank), (left, bank))
-                value = result or ""
-        elif self._short(each) or self._is_made_narrow(each) or self.context.narrow.in_narrow_tree(each):
+        if (steps := self.context.folding.steps_of(each)) is not None:
+            self._multiple(each, left, steps)
+        elif self.context.folding.is_short_product(each) or self.context.narrow.in_narrow_tree(each):
             for factor in dict.fromkeys((left, right)):
                 is_extended = (self.emitter.label, factor) in self.factors
                 if self.context.narrow.extended_for_product(factor) and not is_extended:
@@ -138,10 +124,24 @@ class Arithmetic:
                 Op.MUL32, each, each.result, DATA, (left, DATA), (right, DATA), overwrites=(left, right)
             )
 
-    def _is_made_narrow(self, each: Instruction) -> bool:
-        """Whether LLVM multiplies bytes because the product fits: it becomes a product of half-words."""
-        users = self.flow.users.get(each.result or "", [])
-        return each.bits == BYTE and bool(users) and all(user.opcode == "zext" for user in users)
+    def _multiple(self, each: Instruction, factor: str, steps: tuple[Step, ...]) -> None:
+        """Shifts and sums; a pointer register is shifted by 1 or 2 only, and what is shifted further is added to where it is."""
+        value = before = factor
+        bank = ANY
+        knows_banks = self.context.profile.applies(Rule.PRODUCT_STEPS)
+        is_whole = not self.context.folding.in_shifted_addition(each)
+        for number, step in enumerate(steps if is_whole else steps[:-1]):
+            result = each.result if number == len(steps) - 1 else f"{each.result}{STEP}{number}"
+            is_shift = step.op is Op.SHIFT
+            follows_shift = number > 0 and steps[number - 1].op is Op.SHIFT
+            if knows_banks and is_shift:
+                bank = ANY if step.shift in operations.ADDRESS_SHIFTS else DATA
+            elif not (knows_banks and follows_shift):
+                bank = POINTER if step.op is Op.ADD_SHIFT and not follows_shift else ANY
+            other = (before if follows_shift else value) if knows_banks and step.with_itself else factor
+            others = () if knows_banks and is_shift else ((other, bank),)
+            self.append(step.op, each, result, bank, (value, bank), *others)
+            before, value = value, result or ""
 
     def _steps_along(self, each: Instruction) -> bool:
         """Whether it is a product of a counter: an addition per iteration replaces it (strength reduction)."""
@@ -157,9 +157,6 @@ class Arithmetic:
         )
         self.emitter.code.add(loop.latch, MachineInstruction(Op.ALU, each.line, each.result, ANY, uses))
         return True
-
-    def _short(self, each: Instruction) -> bool:
-        return all(self.context.folding.is_short(operand) for operand in each.operands[:2])
 
     def extend(self, each: Instruction) -> None:
         if self.context.is_alias(each):

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from bfsim.kernel.emitting.divisions import FLOOR, ROUNDED, SIGNED
+from bfsim.kernel.estimate.arithmetic.narrow_factors import NARROW
 from bfsim.kernel.estimate.arithmetic.powers import divided_by_power
 from bfsim.kernel.estimate.ranges.range_arithmetic import ANY, Range, is_positive
 from bfsim.kernel.estimate.ranges.unsigned_ranges import UnsignedRanges
-from bfsim.kernel.estimate.selection.folding import NARROW
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.text import Instruction, is_number
 from bfsim.kernel.profile import CompilerProfile

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from bfsim.kernel.estimate.selection.folding import NARROW
+from bfsim.kernel.estimate.arithmetic.narrow_factors import NARROW
 from bfsim.kernel.ir.text import OF_VARIABLE, Instruction
 
 CUT = {"add", "sub", "mul", "and", "or", "xor", "shl"}

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import Enum, auto
 
+from bfsim.kernel.estimate.arithmetic.narrow_factors import BITWISE, NARROW, is_extended_for_product
 from bfsim.kernel.estimate.induction_variables.induction_variable import InductionVariable
 from bfsim.kernel.estimate.induction_variables.induction_variables import InductionVariables
 from bfsim.kernel.estimate.induction_variables.kept_addresses import is_threaded
 from bfsim.kernel.estimate.memory.predictive_commoning import ALONG
-from bfsim.kernel.estimate.selection.folding import NARROW, Folding
+from bfsim.kernel.estimate.selection.folding import Folding
 from bfsim.kernel.estimate.selection.loop_counters import LoopCounters
 from bfsim.kernel.estimate.selection.narrow_trees import is_cut_tree
 from bfsim.kernel.ir.control_flow import pointee_nbytes
@@ -67,6 +68,8 @@ class NarrowValues:
     def extended_for_product(self, operand: str) -> bool:
         """Whether a factor is a byte that is also used in another way: it is extended once more, for the product."""
         each = self.flow.instruction(operand)
+        if self.profile.applies(Rule.NARROW_FACTORS) and is_extended_for_product(self.flow, operand):
+            return True
         if each is None or each.opcode != "zext":
             return False
         load = self.flow.instruction(each.operands[0])
@@ -93,7 +96,7 @@ class NarrowValues:
         if (
             user.opcode == "mul"
             and self.profile.applies(Rule.FACTORS)
-            and all(map(self.folding.is_short, user.operands[:2]))
+            and self.folding.is_short_product(user)
         ):
             return Use.FACTOR if load.bits == BYTE else Use.RAW  # a product takes the low half of a register
         if is_distance(user) and load.bits == BYTE and self.profile.applies(Rule.FACTORS):
@@ -115,7 +118,8 @@ class NarrowValues:
             ALONG in (user.result or "") or (user.result or "").endswith(FOLLOWING)
         )
         narrow = (self.in_narrow_tree(user) and user.opcode != "shl") or self.narrowed(user)
-        return user.opcode == "store" or stored or along or narrow or self._masks(load, user)
+        changed = user.opcode in BITWISE and self.folding.is_narrow_factor(user)
+        return user.opcode == "store" or stored or along or narrow or changed or self._masks(load, user)
 
     def _masks(self, load: Instruction, user: Instruction) -> bool:
         """Whether a mask takes some bits of what was loaded, and so none that an extension makes."""
