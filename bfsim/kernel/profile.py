@@ -202,7 +202,7 @@ VDSP_O2 = CompilerProfile(
              Rule.FIELD_ADDRESSES, Rule.HALF_WORD_POINTERS, Rule.SHIFTED_COUNTS, Rule.STEPPED_VALUES, Rule.ROW_POINTERS, Rule.SPILLED_SUMS, Rule.INDEX_REGISTERS, Rule.OPPOSITE_FLAGS, Rule.EVEN_ADDRESSES,
              Rule.FIRST_ITERATIONS, Rule.COMPUTED_STARTS, Rule.ENDS_OF_RANGES, Rule.EITHER_BANK,
              Rule.COMMON_FACTORS, Rule.KNOWN_VALUES,
-             Rule.ADJACENT_NUMBERS, Rule.SMALL_NUMBERS, Rule.ADDRESS_CLASSES, Rule.NARROW_FACTORS, Rule.PRODUCT_STEPS),  # GCC's alone: nothing says that VisualDSP++ does so
+             Rule.ADJACENT_NUMBERS, Rule.SMALL_NUMBERS, Rule.ADDRESS_CLASSES, Rule.NARROW_FACTORS, Rule.PRODUCT_STEPS, Rule.STEPPED_BEFORE),  # GCC's alone: nothing says that VisualDSP++ does so
 )  # fmt: skip
 GCC_ADI = replace(
     GCC, name="gcc-adi", interlocks=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]

@@ -120,6 +120,9 @@ class Rule(StrEnum):
     STAYING_ARGUMENTS = "an argument on the stack that is seldom used stays there where a register would have to be saved for it"
     EXPANSION_ORDER = "what is used once is computed where it is used, the longer operand first"
     BYTE_ADDRESSES = "of an array of bytes that comes in a data register, addresses are added up there if they are all that uses it"
+    STEPPED_BEFORE = (
+        "a loop that ends with a test, with the next value of its counter computed before, is not rotated"
+    )
     PRODUCT_STEPS = "the shifts and sums of a product are each in a bank that has them, and an addition does the last shift"
     NARROW_FACTORS = "a product is one of 16 bits if both factors are narrow in C: loaded, masked, or a number that fits the type of the other"
     ADDRESS_CLASSES = "an address of a byte is added where that costs the fewest moves, and an argument that only it takes waits in its data register"
@@ -218,6 +221,7 @@ GCC: dict[Rule, str] = {
     Rule.STAYING_ARGUMENTS: "assign_hard_reg in ira-color.cc",
     Rule.EXPANSION_ORDER: "tree-ssa-ter.cc; reorder_operands in cfgexpand.cc",
     Rule.BYTE_ADDRESSES: "find_costs_and_classes in ira-costs.cc",
+    Rule.STEPPED_BEFORE: "do_while_loop_p in tree-ssa-loop-ch.cc",
     Rule.PRODUCT_STEPS: "addsi3 and its like in bfin.md, try_combine in combine.cc",
     Rule.NARROW_FACTORS: "is_widening_mult_p in tree-ssa-math-opts.cc",
     Rule.ADDRESS_CLASSES: "find_costs_and_classes in ira-costs.cc",
@@ -304,6 +308,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.STAYING_ARGUMENTS: (),  # from kernels that are not measured here: tests/kernel/estimate/registers/test_saved_registers.py
     Rule.EXPANSION_ORDER: (),
     Rule.BYTE_ADDRESSES: (),
+    Rule.STEPPED_BEFORE: (),
     Rule.PRODUCT_STEPS: (),
     Rule.NARROW_FACTORS: (),
     Rule.ADDRESS_CLASSES: (),

@@ -44,8 +44,17 @@ CLEANING = (
 )  # fmt: skip
 PASSES = (
     "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
-    "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
 )  # fmt: skip
+"""Before loops are rotated."""
+ROTATED_PASSES = (
+    "new_gvn",
+    "jump_threading",
+    "instruction_combine",
+    "simplify_cfg",
+    "loop_simplify",
+    "lcssa",
+)
+"""Behind that."""
 LATER_PASSES = ("jump_threading", *CLEANING)
 """Behind a second rotation: of the loops that jump threading has made."""
 REVEALED_PASSES = ("jump_threading", "instruction_combine", "simplify_cfg", "aggressive_dce", "simplify_cfg")
@@ -79,6 +88,8 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
     if profile.applies(Rule.THREADED_CHOICES):
         module = with_threaded_choices(module)
     llvm_passes.run(PASSES, module)
+    module = _rotated(module, profile, before=True)
+    llvm_passes.run(ROTATED_PASSES, module)
     module = _rotated(module, profile)
     llvm_passes.run(LATER_PASSES, module)
     text = str(module)
@@ -107,13 +118,14 @@ def _threaded(text: str, profile: CompilerProfile) -> str:
     return with_known_entries(with_first_iterations(text, profile))
 
 
-def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
-    """Rotate loops once more; those that end with their test already stay as they are."""
-    holding = held(str(module)) if profile.applies(Rule.ROTATED_ONCE) else None
+def _rotated(module: llvm.ModuleRef, profile: CompilerProfile, *, before: bool = False) -> llvm.ModuleRef:
+    """Rotate loops, first or once more; those that end with their test already stay as they are."""
+    rule = Rule.STEPPED_BEFORE if before else Rule.ROTATED_ONCE
+    holding = held(str(module), before=before) if profile.applies(rule) else None
     if holding is not None:
         module = llvm.parse_assembly(holding)
     llvm_passes.run(("loop_rotate",), module)
-    return llvm.parse_assembly(released(str(module)))
+    return module if before else llvm.parse_assembly(released(str(module)))
 
 
 def _inline(module: llvm.ModuleRef, function: Function) -> None:

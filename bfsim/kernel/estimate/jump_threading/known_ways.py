@@ -18,6 +18,9 @@ from bfsim.kernel.ir.writing import with_names, write_module
 BEFORE = ".before"
 """Ends the label of a block without code in which several entries of a loop join."""
 
+COPY = ".kept"
+"""Ends, before a number, the label of a copied block."""
+
 
 @dataclass(frozen=True, slots=True)
 class KnownWays:
@@ -36,7 +39,7 @@ class KnownWays:
         """Each such block, with the names of a block between it and the chain, and of copies of the blocks of that."""
         for number, each in enumerate(self.before):
             copied = (*self.chain, self.onward)
-            yield each, f"{self.chain[0]}.way{number}", {block: f"{block}.kept{number}" for block in copied}
+            yield each, f"{self.chain[0]}.way{number}", {block: f"{block}{COPY}{number}" for block in copied}
 
     @property
     def onward(self) -> str:
@@ -68,7 +71,7 @@ def with_known_ways(
     llvm_passes.run(("sroa", "sccp", "aggressive_dce"), module)
     named = with_names(str(module))
     cleaned = [
-        _without_empty_blocks(each, before.blocks)
+        _with_copies_joined(_without_empty_blocks(each, before.blocks))
         for each, before in zip(read_module(named), routines, strict=True)
     ]
     return write_module(named, cleaned)
@@ -146,4 +149,29 @@ def _without_empty_blocks(routine: Routine, kept: Iterable[BasicBlock]) -> Routi
             and not any({*goals} & {*blocks[each].successors} for each in before)
         ):
             bypass(blocks, before, label, goals[0])
+    return replace(routine, blocks=tuple(blocks.values()))
+
+
+def _with_copies_joined(routine: Routine) -> Routine:
+    """Return `routine` with each copy and the block to which it alone leads as one block."""
+    blocks = {each.label: each for each in routine.blocks}
+    for label in [each for each in blocks if COPY in each]:
+        (goal, *others) = blocks[label].successors or ("",)
+        before = [each.label for each in blocks.values() if label in each.successors]
+        behind = blocks.get(goal)
+        is_alone = [each.label for each in blocks.values() if goal in each.successors] == [label]
+        phis = [
+            each
+            for block in (blocks[label], behind)
+            if block
+            for each in block.instructions
+            if each.opcode == "phi"
+        ]
+        if others or behind is None or not is_alone or phis or goal == label:
+            continue
+        rows = (*blocks[label].instructions[:-1], *behind.instructions)
+        blocks[goal] = replace(behind, instructions=rows, enters=(*blocks[label].enters, *behind.enters))
+        for each in before:
+            blocks[each] = going_to(blocks[each], label, goal)
+        del blocks[label]
     return replace(routine, blocks=tuple(blocks.values()))

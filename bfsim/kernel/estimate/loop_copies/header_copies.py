@@ -27,6 +27,8 @@ from bfsim.kernel.ir.text import (
 
 WHILE = re.compile(r"test(\.|$)")
 """The block of the test of a `while`."""
+FOR = re.compile(r"for(\.|$)")
+"""The block of the test of a `for`."""
 MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
 
 
@@ -74,7 +76,11 @@ def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
         return False
     if loop.latch.endswith(SECOND):
         return False  # LLVM had joined both tests, so they are at its end
-    if WHILE.match(loop.header) or (inside == [loop.latch] and _is_while_alone(flow.blocks[loop.latch])):
+    if (
+        WHILE.match(loop.header)
+        or FOR.match(loop.header)
+        or (inside == [loop.latch] and _is_while_alone(flow.blocks[loop.latch]))
+    ):
         return False  # it ended with its `break`: it is a do-while loop already [do_while_loop_p]
     way_out = next(way for way in header.successors if way not in loop.blocks)
     back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
