@@ -69,11 +69,11 @@ class Moves:
         for label in self.flow.order:
             block: list[MachineInstruction] = []
             product, copied = "", set[str]()
-            """What the instructions of one product were moved for: they reuse it [reload_inheritance in reload1.cc]."""
+            """What was moved for one product, or for products that begin alike: they reuse it [choose_reload_regs in reload1.cc]."""
             for instruction in self.code.of[label]:
                 made = (instruction.result or "").partition(STEP)[0]
                 if made != product:
-                    product, copied = made, set()
+                    product, copied = made, {each for each in copied if STEP in each}
                 for position, (name, wanted) in enumerate(instruction.uses):
                     bank = self._wanted(instruction, wanted)
                     if name.startswith("#") or bank in (

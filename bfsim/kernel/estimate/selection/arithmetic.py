@@ -26,6 +26,8 @@ class Arithmetic:
         self.divisions = divisions
         self.factors = set[tuple[str, str]]()
         """Bytes that have been extended for a product, with the block: other products there take the same extension."""
+        self.multiples = dict[tuple[str, str, tuple[Step, ...]], str]()
+        """What the first steps of a product leave, by block and factor: other products there begin with it [cse.cc]."""
 
     def add(self, each: Instruction) -> None:
         if self.context.folding.in_shifted_sum(each):
@@ -131,7 +133,12 @@ class Arithmetic:
         knows_banks = self.context.profile.applies(Rule.PRODUCT_STEPS)
         is_whole = not self.context.folding.in_shifted_addition(each)
         for number, step in enumerate(steps if is_whole else steps[:-1]):
-            result = each.result if number == len(steps) - 1 else f"{each.result}{STEP}{number}"
+            result = each.result or "" if number == len(steps) - 1 else f"{each.result}{STEP}{number}"
+            made = self.emitter.label, factor, steps[: number + 1]
+            if knows_banks and result != each.result and made in self.multiples:
+                before, value = value, self.multiples[made]
+                continue
+            self.multiples[made] = result
             is_shift = step.op is Op.SHIFT
             follows_shift = number > 0 and steps[number - 1].op is Op.SHIFT
             if knows_banks and is_shift:
@@ -141,7 +148,7 @@ class Arithmetic:
             other = (before if follows_shift else value) if knows_banks and step.with_itself else factor
             others = () if knows_banks and is_shift else ((other, bank),)
             self.append(step.op, each, result, bank, (value, bank), *others)
-            before, value = value, result or ""
+            before, value = value, result
 
     def _steps_along(self, each: Instruction) -> bool:
         """Whether it is a product of a counter: an addition per iteration replaces it (strength reduction)."""

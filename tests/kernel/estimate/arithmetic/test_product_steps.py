@@ -23,5 +23,8 @@ CASES = {
     "an addition shifts by 1": (product("a[i] * 6 + t"), 842, 0.01),
     "what was subtracted moves to the addition": (product("a[i] * 30 + t"), 1242, 0.01),
     "two additions shift": (product("a[i] * 250 + t"), 1642, 0.01),
+    "two products begin alike": (product("((a[i] * 7) >> 4) ^ ((a[i] * 14) >> 8)"), 1641, 0.01),
+    "two products begin alike and go on in the other bank": (product("((a[i] * 90) >> 8) + ((a[i] * 12) >> 8)"), 2241, 0.01),
+    "three products": (product("((a[i] * 77) >> 4) ^ ((a[i] * 150) >> 8) ^ ((a[i] * 29) >> 3)"), 4441, 0.01),
 }  # fmt: skip
 test_product_steps_are_near_what_gcc_makes, test_product_steps_are_what_runs = beside_gcc(CASES)
