@@ -2,17 +2,22 @@
 
 LLVM turns the same load on several paths into one load after them, from a phi of addresses [foldPHIArgLoadIntoPHI]; if
 only some paths from there need it, the load even sinks below. For elements of two arrays with one index, as in
-`left[node] if low else right[node]`, it makes a phi of the arrays [SinkCommonCodeFromPredecessors]. GCC leaves each
-load where the source has it. The kernel language has no pointers, so a phi of addresses always comes from this.
+`left[node] if low else right[node]`, it makes a phi of the arrays [SinkCommonCodeFromPredecessors], and for two elements
+of one array, one of the indices [foldPHIArgGEPIntoPHI]. GCC leaves each load where the source has it. The kernel language
+has no pointers, so a phi of addresses always comes from this.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from bfsim.kernel.ir.control_flow import ControlFlow
 from bfsim.kernel.ir.edges import put_between
 from bfsim.kernel.ir.text import BasicBlock, Instruction, Routine, arms_of, each_arm, phi_of, renamed
+
+INDICES = re.compile(r"\.pn\d*$")
+"""Ends the name of a phi of the indices of two addresses that LLVM has joined."""
 
 
 def split_loads(routine: Routine) -> Routine:
@@ -36,7 +41,7 @@ def split_loads(routine: Routine) -> Routine:
 
 
 def _with_addresses_on_ways(routine: Routine) -> Routine:
-    """Return `routine` with phis of addresses in place of elements of a phi of arrays."""
+    """Return `routine` with phis of addresses in place of elements of a phi of arrays, or with a phi of indices."""
     while (found := _chosen_array(routine)) is not None:
         label, phi, users = found
         blocks = {each.label: each for each in routine.blocks}
@@ -56,7 +61,8 @@ def _chosen_array(routine: Routine) -> tuple[str, Instruction, list[Instruction]
     for label, block in flow.blocks.items():
         for phi in block.instructions:
             users = flow.users.get(phi.result or "", [])
-            is_chosen = phi.text.startswith("phi ptr") and users and not _is_carried(flow, label, phi)
+            is_joined = phi.text.startswith("phi ptr") or INDICES.search(phi.result or "") is not None
+            is_chosen = phi.opcode == "phi" and is_joined and users and not _is_carried(flow, label, phi)
             if is_chosen and all(_is_known_before(flow, label, phi, each) for each in users):
                 return label, phi, users
     return None
@@ -68,10 +74,11 @@ def _is_carried(flow: ControlFlow, label: str, phi: Instruction) -> bool:
 
 
 def _is_known_before(flow: ControlFlow, label: str, phi: Instruction, address: Instruction) -> bool:
-    """Whether an address is of an element of a chosen array, with an index that is known before block `label`."""
-    if address.opcode != "getelementptr" or address.operands[0] != phi.result:
+    """Whether an address is of an element of a chosen array, with an index that is known before block `label`, or the other way round."""
+    if address.opcode != "getelementptr" or phi.result not in address.operands:
         return False
-    home, index = flow.defined.get(address.operands[-1], ("", None))
+    other = next((each for each in address.operands if each != phi.result), "")
+    home, index = flow.defined.get(other, ("", None))
     return (
         index is None
         or (home != label and home in flow.dominators[label])

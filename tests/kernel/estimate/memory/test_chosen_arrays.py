@@ -45,5 +45,12 @@ CASES = {
                     s += b[a[i]]
             return s
         """, 4989, 0.01),
+    "two elements of one array": (
+        """
+        def f(a: i16[:], n: i32, t: i32) -> i32:
+            if t > 3:
+                return a[n]
+            return a[t]
+        """, 20, 0.01),
 }  # fmt: skip
 test_chosen_arrays_are_near_what_gcc_makes, test_chosen_arrays_are_what_runs = beside_gcc(CASES)
