@@ -32,7 +32,7 @@ class Arithmetic:
     def add(self, each: Instruction) -> None:
         if self.context.folding.in_shifted_sum(each):
             return
-        if (product := self.context.folding.accumulates(each)) is not None:
+        if (product := self.context.folding.products.accumulates(each)) is not None:
             sum_before = next(operand for operand in each.operands if operand != product.result)
             factors = ((operand, DATA) for operand in product.operands[:2])
             self.append(Op.MAC, each, each.result, DATA, (sum_before, DATA), *factors)
@@ -110,11 +110,11 @@ class Arithmetic:
 
     def multiply(self, each: Instruction) -> None:
         left, right = each.operands[:2]
-        if self._steps_along(each) or self.context.folding.accumulated(each) is not None:
+        if self._steps_along(each) or self.context.folding.products.accumulated(each) is not None:
             return
-        if (steps := self.context.folding.steps_of(each)) is not None:
+        if (steps := self.context.folding.products.steps_of(each)) is not None:
             self._multiple(each, left, steps)
-        elif self.context.folding.is_short_product(each) or self.context.narrow.in_narrow_tree(each):
+        elif self.context.folding.products.is_short(each) or self.context.narrow.in_narrow_tree(each):
             for factor in dict.fromkeys((left, right)):
                 is_extended = (self.emitter.label, factor) in self.factors
                 if self.context.narrow.extended_for_product(factor) and not is_extended:

@@ -136,7 +136,7 @@ class Context:
             return flag is not None and flag.opcode == "phi"
         if each.opcode not in ("sext", "zext") or " i1 " in each.text:
             return False
-        if self.folding.is_extended_by_product(each):
+        if self.folding.products.does_extension(each):
             return True
         return self._is_clean(each.operands[0]) and not self.is_extended_late(each)
 

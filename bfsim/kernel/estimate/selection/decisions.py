@@ -143,7 +143,7 @@ class Decisions:
         result = self.context.converted(conversion)
         if conversion.kind is ConversionKind.ABSOLUTE:
             self.append(Op.DSP_ALU, each, result, DATA, (conversion.operands[0], DATA))
-            if self.context.folding.is_short(conversion.operands[0]):
+            if self.context.folding.products.is_short_factor(conversion.operands[0]):
                 self.append(Op.EXTEND, each, result, DATA, (result, DATA))
         elif conversion.kind is ConversionKind.EXTREME:
             operands = conversion.operands

@@ -5,21 +5,17 @@ from __future__ import annotations
 from functools import cached_property
 
 from bfsim.kernel.estimate.arithmetic.bits_set import counted_word
-from bfsim.kernel.estimate.arithmetic.multiples import STEP, Step, steps_of
-from bfsim.kernel.estimate.arithmetic.narrow_factors import NARROW, is_narrow_product
 from bfsim.kernel.estimate.arithmetic.remainders import quotient_of_rest
-from bfsim.kernel.estimate.selection.narrow_trees import is_cut_tree
+from bfsim.kernel.estimate.selection.products import Products
 from bfsim.kernel.ir.control_flow import BEFORE_TESTS, ControlFlow
 from bfsim.kernel.ir.text import COUNTS, Instruction, is_number, predicate
-from bfsim.kernel.ir.widths import BYTE
-from bfsim.kernel.operations import ADDRESS_SHIFTS, Op
+from bfsim.kernel.operations import ADDRESS_SHIFTS
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 SHIFTS = ("shl", "lshr", "ashr")
 SIGNS = {*((relation, "0") for relation in ("slt", "sle", "sgt", "sge")), ("sgt", "-1"), ("slt", "1")}
 """Tests of which sign a word has, as LLVM writes them."""
-HALF_WORD = 2 * BYTE
 BYTE_MASK = 0xFF
 HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
 
@@ -30,6 +26,7 @@ class Folding:
     def __init__(self, flow: ControlFlow, profile: CompilerProfile, flags: frozenset[str | None]) -> None:
         """`flags`: what is computed from conditions without a branch (`if_conversion`)."""
         self.flow, self.profile, self.flags = flow, profile, flags
+        self.products = Products(flow, profile)
 
     def shift_add(self, each: Instruction) -> tuple[str, str] | None:
         """The value that an addition shifts by 1 or 2 on the way, and the other one."""
@@ -39,7 +36,7 @@ class Folding:
             source = self.flow.instruction(operand)
             if source is None or len(self.users(operand)) != 1 or is_number(other):
                 continue
-            if (shifted := self.shifted_last(source)) is not None:
+            if (shifted := self.products.shifted_last(source)) is not None:
                 return shifted, other
             if source.opcode == "shl":
                 amount = source.operands[1]
@@ -48,26 +45,11 @@ class Folding:
                     return source.operands[0], other
         return None
 
-    def steps_of(self, product: Instruction) -> tuple[Step, ...] | None:
-        """The shifts and sums that a product with a constant becomes; None if GCC multiplies."""
-        if product.opcode != "mul" or not is_number(product.operands[1]):
-            return None
-        is_cut = self.profile.applies(Rule.NARROW_TREES) and is_cut_tree(self.users, product)
-        return None if self.is_short_product(product) and not is_cut else steps_of(int(product.operands[1]))
-
-    def shifted_last(self, product: Instruction) -> str | None:
-        """What is shifted by 1 or 2 at the end of a product with a constant, if an addition can do that."""
-        steps = self.steps_of(product) if self.profile.applies(Rule.PRODUCT_STEPS) else None
-        ends = steps is not None and len(steps) > 1 and steps[-1].op is Op.SHIFT
-        if steps is None or not ends or steps[-1].shift not in ADDRESS_SHIFTS:
-            return None
-        return f"{product.result}{STEP}{len(steps) - 2}"
-
     def in_shifted_addition(self, product: Instruction) -> bool:
         """Whether the addition that uses a product does the shift at its end."""
         users = self.users(product.result or "")
         plan = self.shift_add(users[0]) if len(users) == 1 else None
-        return plan is not None and plan[0] == self.shifted_last(product)
+        return plan is not None and plan[0] == self.products.shifted_last(product)
 
     def shifted_sum(self, shift: Instruction) -> tuple[str, str] | None:
         """The two values of (x + y) << 1 or 2, which is one operation."""
@@ -84,29 +66,6 @@ class Folding:
         if constant or not amount.isdigit() or int(amount) not in ADDRESS_SHIFTS:
             return None
         return source.operands[0], source.operands[1]
-
-    def accumulated(self, product: Instruction) -> Instruction | None:
-        """The addition of a 16-bit product to a sum that a loop carries, where the compiler has one operation for both."""
-        users = self.users(product.result or "")
-        if (
-            not self.profile.accumulates
-            or product.opcode != "mul"
-            or len(users) != 1
-            or users[0].opcode != "add"
-        ):
-            return None
-        others = [self.flow.instruction(each) for each in users[0].operands if each != product.result]
-        carried = any(
-            each is not None and each.opcode == "phi" and users[0].result in each.operands for each in others
-        )
-        return users[0] if carried and self.is_short_product(product) else None
-
-    def accumulates(self, addition: Instruction) -> Instruction | None:
-        """The product that an addition takes in as a multiply-accumulate."""
-        products = (self.flow.instruction(each) for each in addition.operands)
-        return next(
-            (each for each in products if each is not None and self.accumulated(each) is addition), None
-        )
 
     def in_shifted_sum(self, each: Instruction) -> bool:
         """Whether an addition is done by the shift that uses it."""
@@ -272,37 +231,6 @@ class Folding:
     def counted_bits(self, each: Instruction) -> str | None:
         """The word whose bits an instruction ends up with, counted in parallel: an instruction does that."""
         return counted_word(self.flow, each) if self.profile.applies(Rule.PARALLEL_COUNTS) else None
-
-    def is_short_product(self, each: Instruction) -> bool:
-        """Whether a product is one of 16 bits."""
-        if self.profile.applies(Rule.NARROW_FACTORS):
-            return is_narrow_product(self.flow, each)
-        is_made_narrow = each.bits == BYTE and self._is_extended(each)  # LLVM multiplies bytes that fit
-        return is_made_narrow or all(map(self.is_short, each.operands[:2]))
-
-    def _is_extended(self, each: Instruction) -> bool:
-        users = self.users(each.result or "")
-        return bool(users) and all(user.opcode == "zext" for user in users)
-
-    def is_extended_by_product(self, extension: Instruction) -> bool:
-        """Whether an extension of a half-word is done by the products of 16 bits that use it, or that it is of."""
-        if extension.bits != HALF_WORD or not self.profile.applies(Rule.NARROW_FACTORS):
-            return False
-        made = self.flow.instruction(extension.operands[0])
-        is_of_product = made is not None and made.opcode == "mul" and self.is_short_product(made)
-        return is_of_product or self.is_narrow_factor(extension)
-
-    def is_narrow_factor(self, each: Instruction) -> bool:
-        """Whether nothing but products of 16 bits use a value."""
-        users = self.users(each.result or "") if self.profile.applies(Rule.NARROW_FACTORS) else []
-        return bool(users) and all(user.opcode == "mul" and self.is_short_product(user) for user in users)
-
-    def is_short(self, operand: str) -> bool:
-        """Whether a compiler sees that a factor has 16 bits: a constant, or a narrow value that was extended."""
-        if is_number(operand):
-            return -(1 << 15) <= int(operand) < 1 << 15
-        each = self.flow.instruction(operand)
-        return each is not None and each.opcode in ("sext", "zext", "load") and each.bits in NARROW
 
     def users(self, value: str) -> list[Instruction]:
         """Return the instructions that use a value."""

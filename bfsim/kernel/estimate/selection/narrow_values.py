@@ -96,7 +96,7 @@ class NarrowValues:
         if (
             user.opcode == "mul"
             and self.profile.applies(Rule.FACTORS)
-            and self.folding.is_short_product(user)
+            and self.folding.products.is_short(user)
         ):
             return Use.FACTOR if load.bits == BYTE else Use.RAW  # a product takes the low half of a register
         if is_distance(user) and load.bits == BYTE and self.profile.applies(Rule.FACTORS):
@@ -118,7 +118,7 @@ class NarrowValues:
             ALONG in (user.result or "") or (user.result or "").endswith(FOLLOWING)
         )
         narrow = (self.in_narrow_tree(user) and user.opcode != "shl") or self.narrowed(user)
-        changed = user.opcode in BITWISE and self.folding.is_narrow_factor(user)
+        changed = user.opcode in BITWISE and self.folding.products.is_narrow_factor(user)
         return user.opcode == "store" or stored or along or narrow or changed or self._masks(load, user)
 
     def _masks(self, load: Instruction, user: Instruction) -> bool:
@@ -186,7 +186,8 @@ class NarrowValues:
 
     def _is_extension(self, each: Instruction) -> bool:
         """Whether a conversion is an operation: where only 16 bits are wanted, that of a half-word is none."""
-        return each.opcode == "zext" or (each.opcode == "sext" and not self._is_cut(each))
+        is_done = self.folding.products.does_extension(each)
+        return not is_done and (each.opcode == "zext" or (each.opcode == "sext" and not self._is_cut(each)))
 
     def _is_cut(self, each: Instruction) -> bool:
         return all(self.in_narrow_tree(user) for user in self.folding.users(each.result or ""))

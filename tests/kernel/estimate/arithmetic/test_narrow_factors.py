@@ -24,6 +24,7 @@ CASES = {
     "three colours": (
         product("u16", "((a[i] & 31) * 77 + (a[i + 1] & 31) * 150 + (a[i + 2] & 31) * 29) >> 8"), 2645, 0.01,
     ),
+    "two half-words are not extended for their products": (product("u16", "a[i] * 77 + a[i + 1] * 150"), 1244, 0.01),
     "a bit that is set in a byte": (product("u8", "(a[i] | 1) * 77"), 1013, 0.01),
     "the upper half of an element": (product("u16", "(a[i] >> 8) * 77"), 842, 0.01),
     "bits of an element that is shifted": (product("u16", "((a[i] >> 3) & 15) * 77"), 1044, 0.01),
