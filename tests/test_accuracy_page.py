@@ -43,7 +43,7 @@ def test_what_to_expect_is_the_error_of_the_last_kernels_at_first_sight(page: st
     off = [error for _, error in found[-LAST:]]
     assert found[-LAST - 1][0] < found[-LAST][0]  # whole batches
     text = " ".join((ROOT / page).read_text().split())
-    assert f"Expect {mean(off):.0f} %: the mean error at `gcc-O2` of the last {LAST} kernels" in text
+    assert f"Expect {mean(off):.0f} %: the mean error at `gcc-O2` of {LAST} kernels" in text
     assert f"Half of them were within {median(off):.0f} %" in text
     large = sum(error > 20 for error in off)
     assert f"and {large} were off by more than 20 %, one by {max(off):.0f} %" in text

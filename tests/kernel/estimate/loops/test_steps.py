@@ -116,11 +116,11 @@ def within(start: i32, stop: i32, step: i32) -> i32:
 @pytest.mark.parametrize("stop", [-9, 0, 9])
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda each: each.name)
 def test_a_step_below_1_is_an_error(profile: CompilerProfile, stop: int, step: int) -> None:
-    """It is told with file, line, step and what to do, also where the loop would do nothing; native or as it is written."""
+    """It is told with file, line, column, step and what to do, also where the loop would do nothing; native or as it is written."""
     line = counted.function.first_line + 3
     message = (
-        f"{__file__}:{line}: a range has the step {step} in kernel counted; a step must be 1 or more, or a negative constant\n"
-        "    for x in range(start, stop, step):"
+        f"{__file__}:{line}:5: a range has the step {step} in kernel counted; a step must be 1 or more, or a negative constant\n"
+        "        for x in range(start, stop, step):\n        ^"
     )
     with pytest.raises(KernelError) as caught:
         run(counted, 0, stop, step, profile=profile)
