@@ -172,7 +172,7 @@ ESTIMATE = _sets(
             "choices conditions loops arithmetic memory ranges switches induction_variables jump_threading "
             "prediction redundancies"
         ),
-        "registers": "memory induction_variables selection",
+        "registers": "arithmetic memory induction_variables selection",
         "rewrites": (
             "choices conditions loops arithmetic memory switches induction_variables jump_threading redundancies "
             "loop_copies"
