@@ -7,9 +7,7 @@ from collections.abc import Callable
 
 from bfsim.errors import RecordingError
 from bfsim.recording.calibrating.calibration import StereoCalibration, calibrate
-from bfsim.recording.calibration_report import (
-    LensName,
-)
+from bfsim.recording.calibration_report import LensName
 from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.reader import RecordingReader
 from bfsim.recording.writer import RecordingWriter

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.kernel.beside_gcc import beside_gcc
+from tests.kernel.estimate.loops.test_ends_of_loops import PROBES
 
 UP = """
 def f(a: u8[:], n: i32, t: i32) -> i32:
@@ -61,21 +62,6 @@ def f(a: u8[:], n: i32, t: i32) -> i32:
             s += a[i]
             i += 1
     return s
-"""
-PROBES = """
-def f(a: u8[:], keys: i32[:], n: i32, t: i32) -> i32:
-    mask = t - 37
-    new = 0
-    for x in range(n):
-        slot = a[x] & mask
-        probes = 0
-        while keys[slot] != a[x] and keys[slot] > -400:
-            slot = (slot + 1) & mask
-            probes += 1
-            if probes > mask:
-                return -1
-        new += slot
-    return new
 """
 CASES = {
     "below": (UP.format("i < n"), 515, 0.01),
